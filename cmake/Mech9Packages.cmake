@@ -1,0 +1,2 @@
+# The libraries the project stands on, all from Debian.
+find_package(LAPACK REQUIRED)

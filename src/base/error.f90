@@ -1,0 +1,66 @@
+!> Failures as values: a code, a message, and where it happened. Uses nothing.
+!>
+!> A procedure that can fail has a last argument `type(error_type), allocatable, intent(out) :: err`;
+!> allocated means failed. Places are added on the way up. Only the programs end a run.
+module mech9_error
+  implicit none
+  private
+  public :: error_type, place_type, raise, add_place
+  public :: exit_done, exit_internal, exit_usage, exit_data, exit_structure, exit_assembly
+  public :: exit_singular, exit_integrator, exit_file, exit_interrupted
+
+  !> What a program answers to the shell; the codes double as kinds of errors.
+  integer, parameter :: exit_done = 0
+  integer, parameter :: exit_internal = 1       !< a defect of the program itself
+  integer, parameter :: exit_usage = 2          !< wrong command line
+  integer, parameter :: exit_data = 3           !< wrong data file
+  integer, parameter :: exit_structure = 4      !< structure or mobility
+  integer, parameter :: exit_assembly = 5       !< the mechanism cannot be assembled
+  integer, parameter :: exit_singular = 6       !< singular position, or the branch would change
+  integer, parameter :: exit_integrator = 7     !< integration cannot go on
+  integer, parameter :: exit_file = 8           !< a file cannot be read or written
+  integer, parameter :: exit_interrupted = 130  !< the user interrupted the run
+
+  !> A place in the data file; line 0 means none.
+  type :: place_type
+    integer :: line = 0
+    integer :: column = 0
+  end type place_type
+
+  !> A failure: what went wrong, and where.
+  type :: error_type
+    integer :: code = exit_internal
+    character(len=:), allocatable :: message
+    !> Place in the data file, where one is known.
+    type(place_type) :: place
+  end type error_type
+
+contains
+
+  !> Make a failure.
+  pure subroutine raise(err, code, message, place)
+    type(error_type), allocatable, intent(out) :: err
+    integer, intent(in) :: code               !< one of the exit_ codes
+    character(len=*), intent(in) :: message   !< what went wrong and what to do
+    type(place_type), intent(in), optional :: place
+
+    allocate (err)
+    err%code = code
+    err%message = message
+    if (present(place)) err%place = place
+  end subroutine raise
+
+  !> Say where a failure happened; does nothing when all is well.
+  !> A place in the data file is kept if the failure has one already.
+  pure subroutine add_place(err, text, place)
+    type(error_type), allocatable, intent(inout) :: err
+    character(len=*), intent(in), optional :: text   !< put before the message, as "text: message"
+    type(place_type), intent(in), optional :: place
+
+    if (.not. allocated(err)) return
+    if (present(text)) err%message = text//': '//err%message
+    if (present(place)) then
+      if (err%place%line == 0) err%place = place
+    end if
+  end subroutine add_place
+end module mech9_error

@@ -1,0 +1,16 @@
+!> Inertia of a link. Uses kinds, error.
+module mech9_body
+  use mech9_kinds, only: wp
+  use mech9_error, only: place_type
+  implicit none
+  private
+  public :: body_type
+
+  type :: body_type
+    integer :: link = 0
+    real(wp) :: mass = 0.0_wp              !< [kg]
+    real(wp) :: centre(3) = 0.0_wp         !< mass centre in the link's system [m]
+    real(wp) :: inertia(3, 3) = 0.0_wp     !< tensor about the centre, link axes [kg m^2]
+    type(place_type) :: place              !< of its group in the data file
+  end type body_type
+end module mech9_body

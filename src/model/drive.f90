@@ -1,0 +1,31 @@
+!> A drive: an independent coordinate as a given function of time. Uses kinds, error.
+module mech9_drive
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, place_type
+  implicit none
+  private
+  public :: drive_type, drive_slot_type
+
+  type, abstract :: drive_type
+    integer :: coordinate = 0     !< number of the coordinate it drives
+    type(place_type) :: place     !< of its group in the data file
+  contains
+    procedure(evaluate_interface), deferred :: evaluate
+  end type drive_type
+
+  !> One of several drives of different kinds.
+  type :: drive_slot_type
+    class(drive_type), allocatable :: drive
+  end type drive_slot_type
+
+  abstract interface
+    !> q(t) and its first two derivatives in time; fails where the drive has no value.
+    subroutine evaluate_interface(self, t, q, dq, ddq, err)
+      import :: drive_type, error_type, wp
+      class(drive_type), intent(in) :: self
+      real(wp), intent(in) :: t                  !< time [s]
+      real(wp), intent(out) :: q, dq, ddq        !< [rad or m], per s, per s^2
+      type(error_type), allocatable, intent(out) :: err
+    end subroutine evaluate_interface
+  end interface
+end module mech9_drive

@@ -1,0 +1,34 @@
+!> Drive q = mean + amplitude sin(angular_frequency t + phase). Uses kinds, error, drive.
+module mech9_harmonic_drive
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_drive, only: drive_type
+  implicit none
+  private
+  public :: harmonic_drive_type
+
+  type, extends(drive_type) :: harmonic_drive_type
+    real(wp) :: mean = 0.0_wp                !< [rad or m]
+    real(wp) :: amplitude = 0.0_wp           !< [rad or m]
+    real(wp) :: angular_frequency = 0.0_wp   !< [rad/s]
+    real(wp) :: phase = 0.0_wp               !< [rad]
+  contains
+    procedure :: evaluate
+  end type harmonic_drive_type
+
+contains
+
+  subroutine evaluate(self, t, q, dq, ddq, err)
+    class(harmonic_drive_type), intent(in) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(out) :: q, dq, ddq
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: angle, swing
+
+    angle = self%angular_frequency*t + self%phase
+    swing = self%amplitude*sin(angle)
+    q = self%mean + swing
+    dq = self%amplitude*self%angular_frequency*cos(angle)
+    ddq = -self%angular_frequency**2*swing
+  end subroutine evaluate
+end module mech9_harmonic_drive

@@ -1,0 +1,86 @@
+!> A pair: the one-degree-of-freedom joint of two links, as every pair is seen from above.
+!> Uses kinds, error, pose.
+!>
+!> A pair is any one-parameter motion of its moving link in its reference link. Most pairs turn
+!> about or slide along one fixed axis, or both in proportion: they say so through `as_screw`,
+!> and the plan then never calls `evaluate` for them.
+module mech9_pair
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, place_type
+  use mech9_pose, only: pose_type
+  implicit none
+  private
+  public :: pair_type, pair_slot_type, pair_motion_type, screw_factors_type
+
+  !> Where a pair puts its moving link at one value of q, and how that changes with q.
+  !> All vectors in the axes of the reference link.
+  type :: pair_motion_type
+    type(pose_type) :: pose          !< of the moving link in the reference link
+    real(wp) :: w(3) = 0.0_wp        !< angular rate: vee(A' A^T)
+    real(wp) :: v(3) = 0.0_wp        !< rate of the moving link's origin, U'
+    real(wp) :: w_rate(3) = 0.0_wp   !< derivative of w in q
+    real(wp) :: v_rate(3) = 0.0_wp   !< derivative of v in q, U''
+  end type pair_motion_type
+
+  !> A pair with a fixed axis as factors: pose = before * (turn by `turn`*(q + offset) about z and
+  !> slide by `slide`*(q + offset) along z) * after.
+  type :: screw_factors_type
+    type(pose_type) :: before
+    type(pose_type) :: after
+    real(wp) :: turn = 0.0_wp     !< 1, or 0 for a prismatic pair
+    real(wp) :: slide = 0.0_wp    !< length per unit of q
+    real(wp) :: offset = 0.0_wp
+  end type screw_factors_type
+
+  type, abstract :: pair_type
+    integer :: coordinate = 0         !< number k of its coordinate q_k
+    integer :: reference = 0          !< the link in which its motion is described
+    integer :: moving = 0             !< the link that moves
+    logical :: angular = .true.       !< its coordinate is an angle [rad]; else a length or the user's own
+    type(place_type) :: place         !< of its group in the data file
+  contains
+    procedure(evaluate_interface), deferred :: evaluate
+    procedure(as_screw_interface), deferred :: as_screw
+    procedure(kind_name_interface), deferred :: kind_name
+    procedure(calls_interface), deferred :: user_calls
+  end type pair_type
+
+  !> One of several pairs of different kinds.
+  type :: pair_slot_type
+    class(pair_type), allocatable :: pair
+  end type pair_slot_type
+
+  abstract interface
+    !> Motion of the moving link in the reference link at q, with two derivatives in q.
+    !> Fails where the pair has no pose: collinear characteristic points, values that are not finite.
+    subroutine evaluate_interface(self, q, motion, err)
+      import :: pair_type, pair_motion_type, error_type, wp
+      class(pair_type), intent(in) :: self
+      real(wp), intent(in) :: q
+      type(pair_motion_type), intent(out) :: motion
+      type(error_type), allocatable, intent(out) :: err
+    end subroutine evaluate_interface
+
+    !> The factors of a pair with a fixed axis; `is_screw` is false for any other pair.
+    pure subroutine as_screw_interface(self, factors, is_screw)
+      import :: pair_type, screw_factors_type
+      class(pair_type), intent(in) :: self
+      type(screw_factors_type), intent(out) :: factors
+      logical, intent(out) :: is_screw
+    end subroutine as_screw_interface
+
+    !> The name of its kind as in the data file, for reports.
+    pure function kind_name_interface(self) result(name)
+      import :: pair_type
+      class(pair_type), intent(in) :: self
+      character(len=:), allocatable :: name
+    end function kind_name_interface
+
+    !> How often one evaluation calls a user's procedure; 0 for built-in pairs.
+    pure integer function calls_interface(self)
+      import :: pair_type
+      class(pair_type), intent(in) :: self
+    end function calls_interface
+  end interface
+
+end module mech9_pair

@@ -1,0 +1,15 @@
+!> Points of links whose motion is recorded. Uses kinds, error.
+module mech9_point
+  use mech9_kinds, only: wp
+  use mech9_error, only: place_type
+  implicit none
+  private
+  public :: point_type
+
+  type :: point_type
+    character(len=:), allocatable :: name
+    integer :: link = 0
+    real(wp) :: position(3) = 0.0_wp   !< in the link's system [m]
+    type(place_type) :: place          !< of its group in the data file
+  end type point_type
+end module mech9_point

@@ -1,0 +1,136 @@
+!> Revolute, prismatic and helical pairs: motion along one fixed screw axis.
+!> Uses kinds, error, text, pose, pair.
+!>
+!> T(q) = F * motion(q + offset) * G^-1, where F stands in the reference link, G in the moving one,
+!> and the motion turns about z, slides along z, or does both.
+module mech9_screw_pair
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
+  use mech9_rotation, only: cross
+  use mech9_pose, only: pose_type, compose, inverse, pose_from_dh, identity_pose
+  use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type
+  implicit none
+  private
+  public :: screw_pair_type, revolute_pair, prismatic_pair, helical_pair
+  public :: revolute_pair_dh, prismatic_pair_dh, helical_pair_dh
+
+  type, extends(pair_type) :: screw_pair_type
+    type(screw_factors_type) :: factors
+  contains
+    procedure :: evaluate
+    procedure :: as_screw
+    procedure :: kind_name
+    procedure :: user_calls
+  end type screw_pair_type
+
+contains
+
+  !> Turns by q [rad] about the common z axis of its two frames.
+  pure function revolute_pair(frame_in_reference, frame_in_moving) result(pair)
+    type(pose_type), intent(in) :: frame_in_reference, frame_in_moving
+    type(screw_pair_type) :: pair
+
+    pair%angular = .true.
+    pair%factors = screw_factors_type(before=frame_in_reference, after=inverse(frame_in_moving), turn=1.0_wp)
+  end function revolute_pair
+
+  !> Slides by q [m] along the common z axis of its two frames.
+  pure function prismatic_pair(frame_in_reference, frame_in_moving) result(pair)
+    type(pose_type), intent(in) :: frame_in_reference, frame_in_moving
+    type(screw_pair_type) :: pair
+
+    pair%angular = .false.
+    pair%factors = screw_factors_type(before=frame_in_reference, after=inverse(frame_in_moving), slide=1.0_wp)
+  end function prismatic_pair
+
+  !> Turns by q [rad] and advances by `pitch` [m] per turn.
+  pure function helical_pair(frame_in_reference, frame_in_moving, pitch) result(pair)
+    type(pose_type), intent(in) :: frame_in_reference, frame_in_moving
+    real(wp), intent(in) :: pitch
+    type(screw_pair_type) :: pair
+
+    pair%angular = .true.
+    pair%factors = screw_factors_type(before=frame_in_reference, after=inverse(frame_in_moving), &
+                                      turn=1.0_wp, slide=pitch/(2.0_wp*pi))
+  end function helical_pair
+
+  !> Revolute pair in Denavit-Hartenberg form, q added to theta.
+  pure function revolute_pair_dh(a, alpha, d, theta) result(pair)
+    real(wp), intent(in) :: a, alpha, d, theta   !< lengths [m], angles [rad]
+    type(screw_pair_type) :: pair
+
+    pair%angular = .true.
+    pair%factors = screw_factors_type(before=identity_pose, after=pose_from_dh(a, alpha, d, 0.0_wp), &
+                                      turn=1.0_wp, offset=theta)
+  end function revolute_pair_dh
+
+  !> Prismatic pair in Denavit-Hartenberg form, q added to d.
+  pure function prismatic_pair_dh(a, alpha, d, theta) result(pair)
+    real(wp), intent(in) :: a, alpha, d, theta   !< lengths [m], angles [rad]
+    type(screw_pair_type) :: pair
+
+    pair%angular = .false.
+    pair%factors = screw_factors_type(before=identity_pose, after=pose_from_dh(a, alpha, 0.0_wp, theta), &
+                                      slide=1.0_wp, offset=d)
+  end function prismatic_pair_dh
+
+  !> Helical pair in Denavit-Hartenberg form, q added to theta.
+  pure function helical_pair_dh(a, alpha, d, theta, pitch) result(pair)
+    real(wp), intent(in) :: a, alpha, d, theta   !< lengths [m], angles [rad]
+    real(wp), intent(in) :: pitch                !< advance per turn [m]
+    type(screw_pair_type) :: pair
+
+    pair%angular = .true.
+    pair%factors = screw_factors_type(before=pose_from_dh(0.0_wp, 0.0_wp, d, theta), &
+                                      after=pose_from_dh(a, alpha, 0.0_wp, 0.0_wp), &
+                                      turn=1.0_wp, slide=pitch/(2.0_wp*pi))
+  end function helical_pair_dh
+
+  subroutine evaluate(self, q, motion, err)
+    class(screw_pair_type), intent(in) :: self
+    real(wp), intent(in) :: q
+    type(pair_motion_type), intent(out) :: motion
+    type(error_type), allocatable, intent(out) :: err
+    type(pose_type) :: step
+    real(wp) :: x, axis(3), arm(3)
+
+    associate (f => self%factors)
+      x = q + f%offset
+      step = pose_from_dh(0.0_wp, 0.0_wp, f%slide*x, f%turn*x)
+      motion%pose = compose(compose(f%before, step), f%after)
+      axis = f%before%r(:, 3)
+      arm = motion%pose%p - f%before%p
+      motion%w = f%turn*axis
+      motion%v = f%slide*axis + cross(motion%w, arm)
+      motion%v_rate = cross(motion%w, motion%v)
+    end associate
+  end subroutine evaluate
+
+  pure subroutine as_screw(self, factors, is_screw)
+    class(screw_pair_type), intent(in) :: self
+    type(screw_factors_type), intent(out) :: factors
+    logical, intent(out) :: is_screw
+
+    factors = self%factors
+    is_screw = .true.
+  end subroutine as_screw
+
+  pure function kind_name(self) result(name)
+    class(screw_pair_type), intent(in) :: self
+    character(len=:), allocatable :: name
+
+    if (self%factors%turn == 0.0_wp) then
+      name = 'prismatic'
+    else if (self%factors%slide == 0.0_wp) then
+      name = 'revolute'
+    else
+      name = 'helical'
+    end if
+  end function kind_name
+
+  pure integer function user_calls(self)
+    class(screw_pair_type), intent(in) :: self
+
+    user_calls = 0*self%coordinate   ! a pair with a fixed axis calls none
+  end function user_calls
+end module mech9_screw_pair

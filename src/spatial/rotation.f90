@@ -1,0 +1,114 @@
+!> Rotations as 3x3 matrices, and vectors. Uses mech9_kinds only.
+!>
+!> r_ab turns components in frame B into components in frame A.
+module mech9_rotation
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: identity, cross, unit, about_axis, about_z, rotation_vector, axial_vector
+
+  !> The rotation that turns nothing.
+  real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, &
+                                                   0.0_wp, 1.0_wp, 0.0_wp, &
+                                                   0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+
+contains
+
+  !> Vector product a x b.
+  pure function cross(a, b) result(c)
+    real(wp), intent(in) :: a(3), b(3)
+    real(wp) :: c(3)
+
+    c(1) = a(2)*b(3) - a(3)*b(2)
+    c(2) = a(3)*b(1) - a(1)*b(3)
+    c(3) = a(1)*b(2) - a(2)*b(1)
+  end function cross
+
+  !> The vector at length one; zero stays zero. Scaled first, so that no square overflows.
+  pure function unit(a) result(e)
+    real(wp), intent(in) :: a(3)
+    real(wp) :: e(3), largest
+
+    largest = maxval(abs(a))
+    if (largest == 0.0_wp) then
+      e = 0.0_wp
+      return
+    end if
+    e = a/largest
+    e = e/norm2(e)
+  end function unit
+
+  !> Rotation by an angle [rad] about a unit axis (Rodrigues).
+  pure function about_axis(axis, angle) result(r)
+    real(wp), intent(in) :: axis(3), angle
+    real(wp) :: r(3, 3), c, s, v
+    integer :: i, j
+
+    c = cos(angle)
+    s = sin(angle)
+    v = 2.0_wp*sin(0.5_wp*angle)**2
+    do j = 1, 3
+      do i = 1, 3
+        r(i, j) = v*axis(i)*axis(j)
+      end do
+      r(j, j) = r(j, j) + c
+    end do
+    r(3, 2) = r(3, 2) + s*axis(1)
+    r(2, 3) = r(2, 3) - s*axis(1)
+    r(1, 3) = r(1, 3) + s*axis(2)
+    r(3, 1) = r(3, 1) - s*axis(2)
+    r(2, 1) = r(2, 1) + s*axis(3)
+    r(1, 2) = r(1, 2) - s*axis(3)
+  end function about_axis
+
+  !> Rotation by an angle [rad] about z.
+  pure function about_z(angle) result(r)
+    real(wp), intent(in) :: angle
+    real(wp) :: r(3, 3)
+
+    r = identity
+    r(1, 1) = cos(angle)
+    r(2, 1) = sin(angle)
+    r(1, 2) = -r(2, 1)
+    r(2, 2) = r(1, 1)
+  end function about_z
+
+  !> The vector of the skew part of a matrix: w with (r - r^T)/2 = w x.
+  pure function axial_vector(r) result(w)
+    real(wp), intent(in) :: r(3, 3)
+    real(wp) :: w(3)
+
+    w(1) = 0.5_wp*(r(3, 2) - r(2, 3))
+    w(2) = 0.5_wp*(r(1, 3) - r(3, 1))
+    w(3) = 0.5_wp*(r(2, 1) - r(1, 2))
+  end function axial_vector
+
+  !> Rotation vector (axis times angle, 0 to pi [rad]) of a rotation matrix. Right at all angles:
+  !> near 180 degrees the axis comes from the symmetric part, where the skew part vanishes.
+  pure function rotation_vector(r) result(phi)
+    real(wp), intent(in) :: r(3, 3)
+    real(wp) :: phi(3), w(3), s, c, angle, axis(3), column(3)
+    integer :: k
+
+    w = axial_vector(r)
+    s = norm2(w)
+    c = 0.5_wp*(r(1, 1) + r(2, 2) + r(3, 3) - 1.0_wp)
+    if (c > 0.0_wp) then
+      ! angle/sin(angle), by its series where the quotient would lose digits
+      if (s < 1.0e-4_wp) then
+        phi = w*(1.0_wp + s*s*(1.0_wp/6.0_wp + s*s*(3.0_wp/40.0_wp)))
+      else
+        phi = w*(atan2(s, c)/s)
+      end if
+      return
+    end if
+    angle = atan2(s, c)
+    ! symmetric part = cos I + (1 - cos) axis axis^T: its largest column points along the axis
+    k = maxloc([r(1, 1), r(2, 2), r(3, 3)], dim=1)
+    column = 0.5_wp*(r(:, k) + r(k, :))
+    column(k) = column(k) - c
+    axis = column/norm2(column)
+    if (dot_product(axis, w) < 0.0_wp) axis = -axis
+    phi = angle*axis
+  end function rotation_vector
+end module mech9_rotation

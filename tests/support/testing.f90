@@ -1,0 +1,82 @@
+!> The smallest test harness: named checks that say why their number is right, and a count.
+!> A test program makes a `tester_type`, checks, and calls `finish`, which ends with 1 on any failure.
+module mech9_testing
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  implicit none
+  private
+  public :: tester_type
+
+  type :: tester_type
+    integer :: passed = 0
+    integer :: failed = 0
+  contains
+    procedure :: is_true
+    procedure :: near
+    procedure :: no_error
+    procedure :: has_error
+    procedure :: finish
+  end type tester_type
+
+contains
+
+  !> Check that a condition holds.
+  subroutine is_true(self, condition, why)
+    class(tester_type), intent(inout) :: self
+    logical, intent(in) :: condition
+    character(len=*), intent(in) :: why
+
+    if (condition) then
+      self%passed = self%passed + 1
+    else
+      self%failed = self%failed + 1
+      print '(2a)', 'FAILED: ', why
+    end if
+  end subroutine is_true
+
+  !> Check |value - expected| <= tol*max(1, |expected|).
+  subroutine near(self, value, expected, tol, why)
+    class(tester_type), intent(inout) :: self
+    real(wp), intent(in) :: value, expected, tol
+    character(len=*), intent(in) :: why
+
+    if (abs(value - expected) <= tol*max(1.0_wp, abs(expected))) then
+      self%passed = self%passed + 1
+    else
+      self%failed = self%failed + 1
+      print '(2a,3(a,es24.16))', 'FAILED: ', why, ': got', value, ', expected', expected, ', tolerance', tol
+    end if
+  end subroutine near
+
+  !> Check that a call went well.
+  subroutine no_error(self, err, why)
+    class(tester_type), intent(inout) :: self
+    type(error_type), allocatable, intent(in) :: err
+    character(len=*), intent(in) :: why
+
+    call self%is_true(.not. allocated(err), why)
+    if (allocated(err)) print '(2a)', '  it answered: ', err%message
+  end subroutine no_error
+
+  !> Check that a call failed with this code.
+  subroutine has_error(self, err, code, why)
+    class(tester_type), intent(inout) :: self
+    type(error_type), allocatable, intent(in) :: err
+    integer, intent(in) :: code
+    character(len=*), intent(in) :: why
+
+    if (allocated(err)) then
+      call self%is_true(err%code == code, why)
+    else
+      call self%is_true(.false., why//' (no error came)')
+    end if
+  end subroutine has_error
+
+  !> Print the counts and end the program, with 1 if anything failed.
+  subroutine finish(self)
+    class(tester_type), intent(in) :: self
+
+    print '(i0,a,i0,a)', self%passed, ' checks passed, ', self%failed, ' failed'
+    if (self%failed > 0 .or. self%passed == 0) stop 1
+  end subroutine finish
+end module mech9_testing
