@@ -131,6 +131,6 @@ contains
   pure integer function user_calls(self)
     class(screw_pair_type), intent(in) :: self
 
-    user_calls = 0*self%coordinate   ! a pair with a fixed axis calls none
+    user_calls = 0
   end function user_calls
 end module mech9_screw_pair
