@@ -1,5 +1,6 @@
 !> Small helpers for text: numbers as text, case, lists, nearest names. Uses mech9_kinds only.
 module mech9_text
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_kinds, only: wp, long
   implicit none
   private
@@ -45,7 +46,7 @@ contains
 
     n = 6
     if (present(digits)) n = digits
-    if (number /= number) then
+    if (ieee_is_nan(number)) then
       text = 'NaN'
       return
     else if (abs(number) > huge(number)) then
@@ -56,7 +57,7 @@ contains
     write (form, '(a,i0,a)') '(es48.', n - 1, 'e3)'
     write (buffer, form) number
     read (buffer(index(buffer, 'E') + 1:), *) exponent
-    if (number == 0.0_wp) then
+    if (abs(number) <= 0.0_wp) then
       text = '0'
     else if (exponent >= -4 .and. exponent < max(n, 6)) then
       write (form, '(a,i0,a)') '(f48.', max(n - 1 - exponent, 0), ')'
@@ -156,7 +157,7 @@ contains
   !> Fewest insertions, deletions, changes and exchanges of neighbours that turn a into b.
   pure integer function edit_distance(a, b) result(distance)
     character(len=*), intent(in) :: a, b
-    integer :: d(0:len(a), 0:len(b)), i, j, change
+    integer :: d(-1:len(a), -1:len(b)), i, j, change
 
     do i = 0, len(a)
       d(i, 0) = i

@@ -119,9 +119,9 @@ contains
     class(screw_pair_type), intent(in) :: self
     character(len=:), allocatable :: name
 
-    if (self%factors%turn == 0.0_wp) then
+    if (.not. self%angular) then
       name = 'prismatic'
-    else if (self%factors%slide == 0.0_wp) then
+    else if (abs(self%factors%slide) <= 0.0_wp) then
       name = 'revolute'
     else
       name = 'helical'

@@ -76,7 +76,7 @@ contains
     z = unit(axis)
     x = unit(zero)
     x = x - dot_product(x, z)*z
-    ok = norm2(x) > 1.0e-8_wp .and. any(axis /= 0.0_wp)
+    ok = norm2(x) > 1.0e-8_wp .and. any(abs(axis) > 0.0_wp)
     if (.not. ok) return
     x = unit(x)
     x = unit(x - dot_product(x, z)*z)

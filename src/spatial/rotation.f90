@@ -30,7 +30,7 @@ contains
     real(wp) :: e(3), largest
 
     largest = maxval(abs(a))
-    if (largest == 0.0_wp) then
+    if (.not. largest > 0.0_wp) then
       e = 0.0_wp
       return
     end if

@@ -1,0 +1,69 @@
+!> Derivatives of a smooth function of one variable from its values alone, to near round-off.
+!> Uses kinds only.
+!>
+!> Central differences over a wide symmetric stencil: the interpolating polynomial of degree 16
+!> through x +- h, +- 2h, ... +- 8h. With h around 1/16 of the length over which the function changes,
+!> truncation falls to round-off while the differences stay large, so that both derivatives keep
+!> twelve and more digits. A few steps h are tried; the one whose two highest orders agree best wins.
+module mech9_differentiation
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil
+
+  integer, parameter :: half_width = 8
+  !> Values on one stencil: x - 8h ... x + 8h.
+  integer, parameter :: stencil_size = 2*half_width + 1
+  !> How many steps h are tried.
+  integer, parameter :: step_count = 7
+
+contains
+
+  !> The trial step of this number (1 .. step_count), for a function that varies over lengths of `scale`,
+  !> from 1/8 of it down by factors of 4.
+  pure real(wp) function trial_step(number, scale) result(h)
+    integer, intent(in) :: number
+    real(wp), intent(in) :: scale
+
+    ! powers of two: x + i h is then exact for moderate x
+    h = 2.0_wp**exponent(scale)*2.0_wp**(-2 - 2*number)
+  end function trial_step
+
+  !> First and second derivative from values on a stencil of step h, with an estimate of the error
+  !> of the second: the difference between degrees 16 and 14 together with the round-off of the values.
+  pure subroutine derivatives_from_stencil(values, h, first, second, error)
+    real(wp), intent(in) :: values(-half_width:half_width)
+    real(wp), intent(in) :: h
+    real(wp), intent(out) :: first, second, error
+    real(wp) :: odd(half_width), even(half_width), second_lower
+    integer :: i
+
+    do i = 1, half_width
+      odd(i) = values(i) - values(-i)
+      even(i) = (values(i) - values(0)) + (values(-i) - values(0))
+    end do
+    first = 0.0_wp
+    second = 0.0_wp
+    second_lower = 0.0_wp
+    do i = half_width, 1, -1
+      first = first + weight(half_width, i)*odd(i)/i
+      second = second + 2.0_wp*weight(half_width, i)*even(i)/i**2
+      if (i < half_width) second_lower = second_lower + 2.0_wp*weight(half_width - 1, i)*even(i)/i**2
+    end do
+    first = first/h
+    second = second/h**2
+    second_lower = second_lower/h**2
+    error = abs(second - second_lower) + 8.0_wp*epsilon(h)*maxval(abs(values))/h**2
+  end subroutine derivatives_from_stencil
+
+  !> (-1)^(i+1) (n!)^2 / ((n-i)! (n+i)!): the central-difference weight of order 2n at i.
+  pure real(wp) function weight(n, i)
+    integer, intent(in) :: n, i
+    integer :: k
+
+    weight = merge(1.0_wp, -1.0_wp, mod(i, 2) == 1)
+    do k = 1, i
+      weight = weight*(n - i + k)/real(n + k, wp)
+    end do
+  end function weight
+end module mech9_differentiation

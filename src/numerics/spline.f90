@@ -1,0 +1,98 @@
+!> Cubic spline through points, with continuous second derivative. Uses kinds, error, text, lapack.
+module mech9_spline
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_text, only: to_text
+  use mech9_lapack, only: dgtsv
+  implicit none
+  private
+  public :: spline_type, build_spline
+
+  !> Piecewise cubic; on [x(i), x(i+1)] it is given by the values and second derivatives at the ends.
+  type :: spline_type
+    real(wp), allocatable :: x(:)        !< increasing
+    real(wp), allocatable :: y(:)        !< values at x
+    real(wp), allocatable :: second(:)   !< second derivatives at x
+  contains
+    procedure :: evaluate
+  end type spline_type
+
+contains
+
+  !> The spline through (x, y) whose third derivative is continuous at the second and the last but
+  !> one point ("not a knot"), so that a cubic is reproduced exactly. Needs at least four points
+  !> with increasing x.
+  subroutine build_spline(x, y, spline, err)
+    real(wp), intent(in) :: x(:), y(:)
+    type(spline_type), intent(out) :: spline
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: h(size(x) - 1), slope(size(x) - 1)
+    real(wp) :: below(size(x) - 3), diagonal(size(x) - 2), above(size(x) - 3), right(size(x) - 2, 1)
+    integer :: n, i, info
+
+    n = size(x)
+    if (n < 4) then
+      call raise(err, exit_data, 'a smooth curve needs at least 4 points, and there are '//to_text(n))
+      return
+    end if
+    h = x(2:) - x(:n - 1)
+    if (any(.not. h > 0.0_wp)) then
+      i = findloc(h > 0.0_wp, .false., dim=1)
+      call raise(err, exit_data, 'points must have increasing abscissae; point '//to_text(i + 1)// &
+                 ' does not come after point '//to_text(i))
+      return
+    end if
+    slope = (y(2:) - y(:n - 1))/h
+
+    ! unknown: second derivatives at points 2 .. n-1; those at the ends follow from the condition there
+    do i = 1, n - 2
+      diagonal(i) = 2.0_wp*(h(i) + h(i + 1))
+      right(i, 1) = 6.0_wp*(slope(i + 1) - slope(i))
+    end do
+    below = h(2:n - 2)
+    above = h(2:n - 2)
+    diagonal(1) = diagonal(1) + h(1)*(h(1) + h(2))/h(2)
+    above(1) = above(1) - h(1)**2/h(2)
+    diagonal(n - 2) = diagonal(n - 2) + h(n - 1)*(h(n - 1) + h(n - 2))/h(n - 2)
+    below(n - 3) = below(n - 3) - h(n - 1)**2/h(n - 2)
+    call dgtsv(n - 2, 1, below, diagonal, above, right, n - 2, info)
+    if (info /= 0) then
+      call raise(err, exit_data, 'no smooth curve runs through these points')
+      return
+    end if
+    spline%x = x
+    spline%y = y
+    allocate (spline%second(n))
+    spline%second(2:n - 1) = right(:, 1)
+    spline%second(1) = right(1, 1) - (right(2, 1) - right(1, 1))*h(1)/h(2)
+    spline%second(n) = right(n - 2, 1) + (right(n - 2, 1) - right(n - 3, 1))*h(n - 1)/h(n - 2)
+  end subroutine build_spline
+
+  !> Value and first two derivatives at x; outside its points the end pieces are continued.
+  pure subroutine evaluate(self, x, y, dy, ddy)
+    class(spline_type), intent(in) :: self
+    real(wp), intent(in) :: x
+    real(wp), intent(out) :: y, dy, ddy
+    integer :: low, high, middle
+    real(wp) :: h, a, b
+
+    low = 1
+    high = size(self%x)
+    do while (high - low > 1)
+      middle = (low + high)/2
+      if (self%x(middle) > x) then
+        high = middle
+      else
+        low = middle
+      end if
+    end do
+    h = self%x(high) - self%x(low)
+    a = (self%x(high) - x)/h
+    b = (x - self%x(low))/h
+    associate (m0 => self%second(low), m1 => self%second(high), y0 => self%y(low), y1 => self%y(high))
+      y = a*y0 + b*y1 + ((a**3 - a)*m0 + (b**3 - b)*m1)*h**2/6.0_wp
+      dy = (y1 - y0)/h + ((3.0_wp*b**2 - 1.0_wp)*m1 - (3.0_wp*a**2 - 1.0_wp)*m0)*h/6.0_wp
+      ddy = a*m0 + b*m1
+    end associate
+  end subroutine evaluate
+end module mech9_spline

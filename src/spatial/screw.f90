@@ -1,0 +1,80 @@
+!> Screws as six numbers (w, v): rotation and the velocity it gives to the point at the origin of the
+!> frame it is written in. Uses kinds, rotation, pose, lapack.
+module mech9_screw
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: cross
+  use mech9_pose, only: pose_type
+  use mech9_lapack, only: dgesvd
+  implicit none
+  private
+  public :: bracket, moved_screw, generated_algebra, orthonormal_basis
+
+contains
+
+  !> Lie bracket of two screws: how the second changes when the first moves it.
+  pure function bracket(a, b) result(c)
+    real(wp), intent(in) :: a(6), b(6)
+    real(wp) :: c(6)
+
+    c(1:3) = cross(a(1:3), b(1:3))
+    c(4:6) = cross(a(1:3), b(4:6)) - cross(b(1:3), a(4:6))
+  end function bracket
+
+  !> The screw given in frame B, written in frame A.
+  pure function moved_screw(x_ab, screw_b) result(screw_a)
+    type(pose_type), intent(in) :: x_ab
+    real(wp), intent(in) :: screw_b(6)
+    real(wp) :: screw_a(6)
+
+    screw_a(1:3) = matmul(x_ab%r, screw_b(1:3))
+    screw_a(4:6) = matmul(x_ab%r, screw_b(4:6)) + cross(x_ab%p, screw_a(1:3))
+  end function moved_screw
+
+  !> Orthonormal basis of the columns of `screws`; singular values below `tolerance` times the
+  !> largest do not count. Lengths must be scaled to order one by the caller.
+  subroutine orthonormal_basis(screws, tolerance, basis, rank)
+    real(wp), intent(in) :: screws(:, :)      !< (6, n)
+    real(wp), intent(in) :: tolerance
+    real(wp), intent(out) :: basis(6, 6)      !< the first `rank` columns count
+    integer, intent(out) :: rank
+    real(wp) :: a(6, size(screws, 2)), s(6), vt(1, 1), work(64 + 8*size(screws, 2))
+    integer :: info, n
+
+    n = size(screws, 2)
+    rank = 0
+    basis = 0.0_wp
+    if (n == 0) return
+    a = screws
+    s = 0.0_wp
+    call dgesvd('A', 'N', 6, n, a, 6, s, basis, 6, vt, 1, work, size(work), info)
+    rank = count(s > tolerance*max(s(1), tiny(s)))
+  end subroutine orthonormal_basis
+
+  !> Orthonormal basis of the smallest space of screws that holds the given ones and is closed under
+  !> the bracket. Whatever the joints do, the motion stays in it: 3 for planar and spherical chains,
+  !> 1 to 3 for translations, 2 for cylindrical, 4 for planar with a translation across, else 6.
+  subroutine generated_algebra(screws, tolerance, basis, rank)
+    real(wp), intent(in) :: screws(:, :)      !< (6, n), lengths scaled to order one
+    real(wp), intent(in) :: tolerance
+    real(wp), intent(out) :: basis(6, 6)      !< the first `rank` columns count
+    integer, intent(out) :: rank
+    real(wp) :: extended(6, 21)
+    integer :: i, j, n, before
+
+    call orthonormal_basis(screws, tolerance, basis, rank)
+    do
+      before = rank
+      if (rank == 6) return
+      n = rank
+      extended(:, 1:n) = basis(:, 1:n)
+      do j = 2, before
+        do i = 1, j - 1
+          n = n + 1
+          extended(:, n) = bracket(basis(:, i), basis(:, j))
+        end do
+      end do
+      call orthonormal_basis(extended(:, 1:n), tolerance, basis, rank)
+      if (rank == before) return
+    end do
+  end subroutine generated_algebra
+end module mech9_screw

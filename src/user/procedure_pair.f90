@@ -1,0 +1,190 @@
+!> A pair given by a user's procedure, in either form. Uses kinds, error, text, taylor,
+!> differentiation, spatial, pair and the hooks.
+module mech9_procedure_pair
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_text, only: to_text
+  use mech9_taylor, only: taylor, variable, sqrt, operator(+), operator(-), operator(*), operator(/)
+  use mech9_differentiation, only: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil
+  use mech9_rotation, only: axial_vector
+  use mech9_pose, only: pose_type, pose_from_points
+  use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type
+  use mech9_not_linked, only: not_linked
+  use mech9_user_pair, only: user_pair
+  use mech9_user_pair_values, only: user_pair_values
+  implicit none
+  private
+  public :: procedure_pair_type, make_procedure_pair
+
+  type, extends(pair_type) :: procedure_pair_type
+    real(wp), allocatable :: parameters(:)   !< handed to the user's procedure
+    logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
+  contains
+    procedure :: evaluate
+    procedure :: as_screw
+    procedure :: kind_name
+    procedure :: user_calls
+  end type procedure_pair_type
+
+contains
+
+  !> Make the pair and find out which form of procedure is linked. Fails where none is.
+  subroutine make_procedure_pair(coordinate, parameters, pair, err)
+    integer, intent(in) :: coordinate
+    real(wp), intent(in) :: parameters(:)
+    type(procedure_pair_type), intent(out) :: pair
+    type(error_type), allocatable, intent(out) :: err
+    type(taylor) :: r1(3), r2(3), r3(3)
+    real(wp) :: v1(3), v2(3), v3(3)
+
+    pair%coordinate = coordinate
+    pair%angular = .false.
+    pair%parameters = parameters
+    call user_pair(coordinate, variable(0.0_wp), parameters, r1, r2, r3)
+    pair%plain_values = all(is_missing(r1%value))
+    if (.not. pair%plain_values) return
+    call user_pair_values(coordinate, 0.0_wp, parameters, v1, v2, v3)
+    if (all(is_missing(v1))) &
+      call raise(err, exit_data, 'pair '//to_text(coordinate)//' asks for a user procedure, but none is linked; '// &
+                 'see docs/user-procedures.md for how to write user_pair and link it')
+  end subroutine make_procedure_pair
+
+  elemental logical function is_missing(x)
+    real(wp), intent(in) :: x
+
+    is_missing = x <= not_linked
+  end function is_missing
+
+  subroutine evaluate(self, q, motion, err)
+    class(procedure_pair_type), intent(in) :: self
+    real(wp), intent(in) :: q
+    type(pair_motion_type), intent(out) :: motion
+    type(error_type), allocatable, intent(out) :: err
+    type(taylor) :: r(3, 3)
+    type(pose_type) :: pose
+    logical :: ok
+
+    if (self%plain_values) then
+      call differentiate(self, q, r, ok)
+    else
+      call user_pair(self%coordinate, variable(q), self%parameters, r(:, 1), r(:, 2), r(:, 3))
+      ok = all(ieee_is_finite(r%value) .and. ieee_is_finite(r%first) .and. ieee_is_finite(r%second))
+    end if
+    if (.not. ok) then
+      call raise(err, exit_data, 'the user procedure of pair '//to_text(self%coordinate)// &
+                 ' gives numbers that are not finite at q = '//to_text(q, 12), self%place)
+      return
+    end if
+    call pose_from_points(r(:, 1)%value, r(:, 2)%value, r(:, 3)%value, pose, ok)
+    if (.not. ok) then
+      call raise(err, exit_data, 'the characteristic points of pair '//to_text(self%coordinate)// &
+                 ' lie on one line at q = '//to_text(q, 12)//'; they must span a plane', self%place)
+      return
+    end if
+    call motion_from_points(r, motion)
+  end subroutine evaluate
+
+  !> (3)-(6) carried with two derivatives, and the screw of the motion from them.
+  pure subroutine motion_from_points(r, motion)
+    type(taylor), intent(in) :: r(3, 3)   !< the three points by columns
+    type(pair_motion_type), intent(out) :: motion
+    type(taylor) :: d(3), f(3), e(3, 3)
+
+    d = r(:, 2) - r(:, 1)
+    f = r(:, 3) - r(:, 1)
+    e(:, 1) = unit_taylor(d)
+    e(:, 2) = unit_taylor(cross_taylor(d, f))
+    e(:, 3) = cross_taylor(e(:, 1), e(:, 2))
+    motion%pose%r = e%value
+    motion%pose%p = r(:, 1)%value
+    motion%w = axial_vector(matmul(e%first, transpose(e%value)))
+    motion%w_rate = axial_vector(matmul(e%second, transpose(e%value)))
+    motion%v = r(:, 1)%first
+    motion%v_rate = r(:, 1)%second
+  end subroutine motion_from_points
+
+  pure function cross_taylor(a, b) result(c)
+    type(taylor), intent(in) :: a(3), b(3)
+    type(taylor) :: c(3)
+
+    c(1) = a(2)*b(3) - a(3)*b(2)
+    c(2) = a(3)*b(1) - a(1)*b(3)
+    c(3) = a(1)*b(2) - a(2)*b(1)
+  end function cross_taylor
+
+  pure function unit_taylor(a) result(e)
+    type(taylor), intent(in) :: a(3)
+    type(taylor) :: e(3)
+
+    e = a/sqrt(a(1)*a(1) + a(2)*a(2) + a(3)*a(3))
+  end function unit_taylor
+
+  !> Points and their derivatives from the form in plain reals: the widest stencil that is at
+  !> round-off is taken, or the best of all. `ok` is false where no stencil has finite values.
+  subroutine differentiate(self, q, r, ok)
+    type(procedure_pair_type), intent(in) :: self
+    real(wp), intent(in) :: q
+    type(taylor), intent(out) :: r(3, 3)
+    logical, intent(out) :: ok
+    real(wp) :: values(-half_width:half_width, 3, 3), h, worst, best
+    type(taylor) :: trial(3, 3)
+    integer :: number, i
+
+    best = huge(best)
+    do number = 1, step_count
+      h = trial_step(number, 1.0_wp)
+      do i = -half_width, half_width
+        call user_pair_values(self%coordinate, q + i*h, self%parameters, &
+                              values(i, :, 1), values(i, :, 2), values(i, :, 3))
+      end do
+      if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
+      call points_from_stencil(values, h, trial, worst)
+      if (worst < best) then
+        best = worst
+        r = trial
+      end if
+      if (worst <= 1.0e-12_wp*maxval(abs(values))) exit
+    end do
+    ok = best < huge(best)
+  end subroutine differentiate
+
+  !> The three points with derivatives from their values on a stencil, and the worst error estimate.
+  pure subroutine points_from_stencil(values, h, r, worst)
+    real(wp), intent(in) :: values(-half_width:half_width, 3, 3), h
+    type(taylor), intent(out) :: r(3, 3)
+    real(wp), intent(out) :: worst
+    real(wp) :: error
+    integer :: i, j
+
+    worst = 0.0_wp
+    do j = 1, 3
+      do i = 1, 3
+        r(i, j)%value = values(0, i, j)
+        call derivatives_from_stencil(values(:, i, j), h, r(i, j)%first, r(i, j)%second, error)
+        worst = max(worst, error)
+      end do
+    end do
+  end subroutine points_from_stencil
+
+  pure subroutine as_screw(self, factors, is_screw)
+    class(procedure_pair_type), intent(in) :: self
+    type(screw_factors_type), intent(out) :: factors
+    logical, intent(out) :: is_screw
+
+    is_screw = .false.
+  end subroutine as_screw
+
+  pure function kind_name(self) result(name)
+    class(procedure_pair_type), intent(in) :: self
+    character(len=:), allocatable :: name
+
+    name = 'user'
+  end function kind_name
+
+  pure integer function user_calls(self)
+    class(procedure_pair_type), intent(in) :: self
+
+    user_calls = merge(stencil_size, 1, self%plain_values)
+  end function user_calls
+end module mech9_procedure_pair

@@ -1,0 +1,16 @@
+!> What answers where no user's drive in Taylor arithmetic is linked. Uses not_linked.
+submodule (mech9_user_drive) mech9_user_drive_default
+  use mech9_not_linked, only: not_linked
+  implicit none
+
+contains
+
+  module subroutine user_drive(coordinate, t, parameters, q)
+    integer, intent(in) :: coordinate
+    type(taylor), intent(in) :: t
+    real(wp), intent(in) :: parameters(:)
+    type(taylor), intent(out) :: q
+
+    q = constant(not_linked)
+  end subroutine user_drive
+end submodule mech9_user_drive_default

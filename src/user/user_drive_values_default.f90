@@ -1,0 +1,16 @@
+!> What answers where no user's drive in plain real numbers is linked. Uses not_linked.
+submodule (mech9_user_drive_values) mech9_user_drive_values_default
+  use mech9_not_linked, only: not_linked
+  implicit none
+
+contains
+
+  module subroutine user_drive_values(coordinate, t, parameters, q)
+    integer, intent(in) :: coordinate
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: parameters(:)
+    real(wp), intent(out) :: q
+
+    q = not_linked
+  end subroutine user_drive_values
+end submodule mech9_user_drive_values_default
