@@ -1,22 +1,35 @@
 # What can be chosen when configuring, and the compiler flags of each kind of build.
-option(MECH9_BUILD_TESTS "build the tests" ON)
+# The user's own flags (FFLAGS, CMAKE_Fortran_FLAGS) are left as they are and come first.
+option(MECH9_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(MECH9_NATIVE "use every instruction of this machine (-march=native)" OFF)
-set(MECH9_SANITIZE "" CACHE STRING "sanitizers, such as address,undefined")
+option(MECH9_LTO "optimise across files when linking" OFF)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "kind of build" FORCE)
 endif()
+set_property(CACHE CMAKE_BUILD_TYPE PROPERTY STRINGS Release Debug Sanitize Coverage)
 
-set(CMAKE_Fortran_FLAGS "-std=f2008 -fimplicit-none -Wall -Wextra -Wpedantic -Wno-unused-dummy-argument -Wtrampolines -Werror=implicit-interface")
+# The language and its warnings, for the project's own sources only.
+set(MECH9_FORTRAN_OPTIONS -std=f2008 -fimplicit-none -Wall -Wextra -Wpedantic
+  -Wno-unused-dummy-argument -Wtrampolines -Werror=implicit-interface)
+# Undoes what would refuse fixed-form FORTRAN 77: implicit types, arithmetic IF, calls without interface.
+set(MECH9_FORTRAN77_OPTIONS -std=legacy -fno-implicit-none -w)
+
 set(CMAKE_Fortran_FLAGS_RELEASE "-O3")
 set(CMAKE_Fortran_FLAGS_DEBUG
   "-g -Og -fcheck=all -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
-set(CMAKE_Fortran_FLAGS_COVERAGE "-g -O0 --coverage")
+set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
+foreach(language C Fortran)
+  set(CMAKE_${language}_FLAGS_SANITIZE "-g -O1 ${mech9_sanitizers}")
+  set(CMAKE_${language}_FLAGS_COVERAGE "-g -O0 --coverage")
+endforeach()
 
+add_compile_options("$<$<COMPILE_LANGUAGE:Fortran>:${MECH9_FORTRAN_OPTIONS}>")
 if(MECH9_NATIVE)
   add_compile_options(-march=native)
 endif()
-if(MECH9_SANITIZE)
-  add_compile_options(-fsanitize=${MECH9_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
-  add_link_options(-fsanitize=${MECH9_SANITIZE})
+if(MECH9_LTO)
+  # fat objects: the library can also be linked without it
+  add_compile_options(-flto=auto -ffat-lto-objects)
+  add_link_options(-flto=auto)
 endif()

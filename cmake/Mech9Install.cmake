@@ -1,0 +1,51 @@
+# What `cmake --install` puts where, and the command mech9-link for the build and the install tree.
+include(CMakePackageConfigHelpers)
+
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/mech9")
+set(modules_dir "${CMAKE_INSTALL_INCLUDEDIR}/mech9")
+set(data_dir "${CMAKE_INSTALL_DATADIR}/mech9")
+set(MECH9_INSTALL_PROGRAMS "${data_dir}/programs")
+
+# mech9-link knows its folders relative to itself once it is installed, so that the tree can be moved.
+file(RELATIVE_PATH prefix_from_bin "/${CMAKE_INSTALL_BINDIR}" "/")
+string(TOUPPER "${CMAKE_BUILD_TYPE}" kind)
+string(STRIP "${CMAKE_Fortran_FLAGS} ${CMAKE_Fortran_FLAGS_${kind}}" link_compile_flags)
+string(STRIP "${CMAKE_EXE_LINKER_FLAGS} ${CMAKE_EXE_LINKER_FLAGS_${kind}}" link_linker_flags)
+string(REPLACE ";" " " link_fortran77_options "${MECH9_FORTRAN77_OPTIONS}")
+string(REPLACE ";" " " link_libraries "${MECH9_LINK_LIBRARIES}")
+
+set(link_modules "${PROJECT_BINARY_DIR}/modules")
+set(link_library "${PROJECT_BINARY_DIR}/libmech9.a")
+set(link_programs "${MECH9_PROGRAMS_DIR}")
+configure_file(cmake/mech9-link.in bin/mech9-link @ONLY
+  FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+
+set(link_modules "\$here/${prefix_from_bin}${modules_dir}")
+set(link_library "\$here/${prefix_from_bin}${CMAKE_INSTALL_LIBDIR}/libmech9.a")
+set(link_programs "\$here/${prefix_from_bin}${MECH9_INSTALL_PROGRAMS}")
+configure_file(cmake/mech9-link.in install/mech9-link @ONLY)
+
+install(PROGRAMS "${PROJECT_BINARY_DIR}/install/mech9-link" DESTINATION "${CMAKE_INSTALL_BINDIR}")
+foreach(program mech9k mech9d)
+  if(TARGET ${program})
+    install(TARGETS ${program} DESTINATION "${CMAKE_INSTALL_BINDIR}")
+    install(FILES "${MECH9_PROGRAMS_DIR}/${program}.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}")
+  endif()
+endforeach()
+install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+# .smod: users' submodules need those of their hooks
+install(DIRECTORY "${PROJECT_BINARY_DIR}/modules/" DESTINATION "${modules_dir}"
+  FILES_MATCHING PATTERN "*.mod" PATTERN "*.smod")
+install(DIRECTORY user_procs DESTINATION "${data_dir}")
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+install(EXPORT mech9Targets NAMESPACE mech9:: DESTINATION "${package_dir}")
+configure_package_config_file(cmake/mech9Config.cmake.in "${PROJECT_BINARY_DIR}/install/mech9Config.cmake"
+  INSTALL_DESTINATION "${package_dir}" PATH_VARS MECH9_INSTALL_PROGRAMS)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/install/mech9ConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  "${PROJECT_BINARY_DIR}/install/mech9Config.cmake"
+  "${PROJECT_BINARY_DIR}/install/mech9ConfigVersion.cmake"
+  cmake/Mech9Programs.cmake
+  DESTINATION "${package_dir}")
