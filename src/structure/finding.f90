@@ -1,0 +1,76 @@
+!> What is wrong with structural data, and at which number. Uses text.
+!>
+!> Checks of data collect findings, so that a user sees all that is wrong at once, and whoever read
+!> the data file can point at the very number.
+module mech9_finding
+  use mech9_text, only: to_text
+  implicit none
+  private
+  public :: finding_type, finding_list_type, listed
+
+  !> One thing that is wrong.
+  type :: finding_type
+    character(len=:), allocatable :: message   !< what is wrong and what to do
+    !> Name of the data: 'c', 'cq', 'nrg', 'nws', 'rdw', 'nrw' or 'links'.
+    character(len=8) :: name = ''
+    !> Where in it: row and column of C; position in a vector and 0; for 'links' the coordinate of the
+    !> pair and 1 or 2, the place of the link (0: both); 0, 0 for the whole.
+    integer :: index(2) = 0
+  end type finding_type
+
+  !> Findings being collected.
+  type :: finding_list_type
+    private
+    integer :: count = 0
+    type(finding_type), allocatable :: items(:)
+  contains
+    procedure :: add
+    procedure :: hand_over
+  end type finding_list_type
+
+contains
+
+  !> Note one more thing.
+  pure subroutine add(self, name, index, message)
+    class(finding_list_type), intent(inout) :: self
+    character(len=*), intent(in) :: name      !< see finding_type
+    integer, intent(in) :: index(2)           !< see finding_type
+    character(len=*), intent(in) :: message
+    type(finding_type), allocatable :: grown(:)
+
+    if (.not. allocated(self%items)) allocate (self%items(4))
+    if (self%count == size(self%items)) then
+      allocate (grown(2*self%count))
+      grown(:self%count) = self%items
+      call move_alloc(grown, self%items)
+    end if
+    self%count = self%count + 1
+    self%items(self%count)%message = message
+    self%items(self%count)%name = name
+    self%items(self%count)%index = index
+  end subroutine add
+
+  !> The findings as an array of just their number; the list is empty afterwards.
+  pure subroutine hand_over(self, findings)
+    class(finding_list_type), intent(inout) :: self
+    type(finding_type), allocatable, intent(out) :: findings(:)
+
+    allocate (findings(self%count))
+    if (self%count > 0) findings = self%items(:self%count)
+    self%count = 0
+    if (allocated(self%items)) deallocate (self%items)
+  end subroutine hand_over
+
+  !> Numbers for a message, a long list shortened: "3, 5, 6, 7, 9, 10, ... (12 in all)".
+  pure function listed(numbers) result(text)
+    integer, intent(in) :: numbers(:)
+    character(len=:), allocatable :: text
+    integer, parameter :: most = 8
+
+    if (size(numbers) <= most) then
+      text = to_text(numbers)
+    else
+      text = to_text(numbers(:most - 2))//', ... ('//to_text(size(numbers))//' in all)'
+    end if
+  end function listed
+end module mech9_finding

@@ -1,0 +1,272 @@
+!> The structure of a mechanism, the paper's first set of data: which pairs join which links, and
+!> which coordinates are independent; (7), (8). Uses text, finding.
+!>
+!> Held sparsely, as two links a pair: the coincidence matrix C itself is only ever read.
+module mech9_structure
+  use mech9_text, only: to_text
+  use mech9_finding, only: finding_type, finding_list_type, listed
+  implicit none
+  private
+  public :: structure_type, finding_type
+  public :: structure_from_pairs, structure_from_matrix, check_pair_links
+
+  !> Links, pairs and independent coordinates. Pair k has coordinate k.
+  type :: structure_type
+    integer :: n_links = 0                          !< N, with link 1 the frame
+    integer :: n_coordinates = 0                    !< M, as many as pairs
+    integer, allocatable :: links(:, :)             !< (2,M) the two links of each pair
+    logical, allocatable :: independent(:)          !< (M) is the coordinate independent?
+  end type structure_type
+
+contains
+
+  !> Structure from the links of each pair. Two pairs may join the same two links.
+  pure subroutine structure_from_pairs(n_links, links, cq, structure, findings)
+    integer, intent(in) :: n_links                  !< N
+    integer, intent(in) :: links(:, :)              !< (2,M) links of pair k in column k
+    integer, intent(in) :: cq(:)                    !< independent coordinates
+    type(structure_type), intent(out) :: structure  !< of use only without findings
+    type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
+    type(finding_list_type) :: list
+
+    structure%n_links = n_links
+    structure%n_coordinates = size(links, 2)
+    structure%links = links
+    call check_counts(n_links, size(links, 2), 'links', list)
+    call check_link_numbers(n_links, links, list)
+    call check_connected(n_links, links, 'links', list)
+    call take_independent(cq, structure, list)
+    call list%hand_over(findings)
+  end subroutine structure_from_pairs
+
+  !> Structure from the coincidence matrix (7). It cannot express two pairs between the same links.
+  pure subroutine structure_from_matrix(c, n_coordinates, cq, structure, findings)
+    integer, intent(in) :: c(:, :)                  !< c(i,j) = c(j,i) = k where pair k joins links i and j
+    integer, intent(in) :: n_coordinates            !< M
+    integer, intent(in) :: cq(:)                    !< independent coordinates
+    type(structure_type), intent(out) :: structure  !< of use only without findings
+    type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
+    type(finding_list_type) :: list
+    integer :: n
+
+    n = size(c, 1)
+    structure%n_links = n
+    structure%n_coordinates = max(n_coordinates, 0)
+    allocate (structure%links(2, structure%n_coordinates), source=0)
+    if (size(c, 2) /= n) then
+      call list%add('c', [0, 0], 'C has '//to_text(n)//' rows and '//to_text(size(c, 2))// &
+                    ' columns; it must have a row and a column for each link')
+    else
+      call check_counts(n, n_coordinates, 'c', list)
+      call check_diagonal(c, list)
+      call check_symmetry(c, list)
+      call take_links(c, structure%links, list)
+      call check_connected(n, joined_in_matrix(c), 'c', list)
+    end if
+    call take_independent(cq, structure, list)
+    call list%hand_over(findings)
+  end subroutine structure_from_matrix
+
+  !> Compare the links that the pairs themselves name with those of a structure given otherwise.
+  pure subroutine check_pair_links(structure, links, findings)
+    type(structure_type), intent(in) :: structure
+    integer, intent(in) :: links(:, :)              !< (2,M) links of pair k in column k
+    type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
+    type(finding_list_type) :: list
+    integer :: k
+
+    do k = 1, min(structure%n_coordinates, size(links, 2))
+      associate (ours => structure%links(:, k), theirs => links(:, k))
+        if (minval(ours) == minval(theirs) .and. maxval(ours) == maxval(theirs)) cycle
+        call list%add('links', [k, 0], 'pair '//to_text(k)//' is said to join links '// &
+                      to_text(theirs(1))//' and '//to_text(theirs(2))//', but the structural data join links '// &
+                      to_text(ours(1))//' and '//to_text(ours(2))//' by it; correct one of them')
+      end associate
+    end do
+    call list%hand_over(findings)
+  end subroutine check_pair_links
+
+  pure subroutine check_counts(n_links, n_coordinates, name, list)
+    integer, intent(in) :: n_links, n_coordinates
+    character(len=*), intent(in) :: name
+    type(finding_list_type), intent(inout) :: list
+
+    if (n_links < 2) call list%add(name, [0, 0], 'a mechanism has at least two links (link 1 is the frame), not '// &
+                                   to_text(n_links))
+    if (n_coordinates < 1) call list%add(name, [0, 0], 'a mechanism has at least one pair, and a coordinate for it')
+  end subroutine check_counts
+
+  pure subroutine check_link_numbers(n_links, links, list)
+    integer, intent(in) :: n_links, links(:, :)
+    type(finding_list_type), intent(inout) :: list
+    integer :: i, k
+
+    do k = 1, size(links, 2)
+      do i = 1, 2
+        if (links(i, k) < 1 .or. links(i, k) > n_links) &
+          call list%add('links', [k, i], 'pair '//to_text(k)//' names link '//to_text(links(i, k))// &
+                        '; the links are 1 to '//to_text(n_links))
+      end do
+      if (links(1, k) == links(2, k)) &
+        call list%add('links', [k, 2], 'pair '//to_text(k)//' joins link '//to_text(links(1, k))// &
+                      ' to itself; a pair joins two different links')
+    end do
+  end subroutine check_link_numbers
+
+  !> Note the links that no sequence of pairs joins to the frame.
+  !> Pairs with wrong link numbers join nothing; they have a finding of their own.
+  pure subroutine check_connected(n_links, links, name, list)
+    integer, intent(in) :: n_links, links(:, :)
+    character(len=*), intent(in) :: name
+    type(finding_list_type), intent(inout) :: list
+    integer, allocatable :: group(:), apart(:)
+    integer :: i, k, a, b
+
+    if (n_links > 2*size(links, 2) + 1000) then
+      ! a mistyped count, most likely: no list of so many
+      call list%add(name, [0, 0], to_text(n_links)//' links cannot all be connected by '// &
+                    to_text(size(links, 2))//' pairs')
+      return
+    end if
+    group = [(i, i=1, n_links)]
+    do k = 1, size(links, 2)
+      if (any(links(:, k) < 1 .or. links(:, k) > n_links)) cycle
+      call find_group(group, links(1, k), a)
+      call find_group(group, links(2, k), b)
+      group(max(a, b)) = min(a, b)
+    end do
+    do i = 1, n_links
+      call find_group(group, i, a)
+    end do
+    apart = pack([(i, i=1, n_links)], group /= 1)
+    if (size(apart) == 1) then
+      call list%add(name, [0, 0], 'link '//listed(apart)//' is not connected to link 1 (the frame); '// &
+                    'give a pair that joins it')
+    else if (size(apart) > 1) then
+      call list%add(name, [0, 0], 'links '//listed(apart)//' are not connected to link 1 (the frame); '// &
+                    'give pairs that join them')
+    end if
+  end subroutine check_connected
+
+  !> The least link of a link's group; the way there is halved for the next time.
+  pure subroutine find_group(group, link, least)
+    integer, intent(inout) :: group(:)
+    integer, intent(in) :: link
+    integer, intent(out) :: least
+
+    least = link
+    do while (group(least) /= least)
+      group(least) = group(group(least))
+      least = group(least)
+    end do
+    group(link) = least
+  end subroutine find_group
+
+  pure subroutine check_diagonal(c, list)
+    integer, intent(in) :: c(:, :)
+    type(finding_list_type), intent(inout) :: list
+    integer :: i
+
+    do i = 1, size(c, 1)
+      if (c(i, i) /= 0) call list%add('c', [i, i], entry_text(c, i, i)// &
+                                      ' is on the diagonal and must be 0: no pair joins a link to itself')
+    end do
+  end subroutine check_diagonal
+
+  pure subroutine check_symmetry(c, list)
+    integer, intent(in) :: c(:, :)
+    type(finding_list_type), intent(inout) :: list
+    integer :: i, j
+
+    do i = 2, size(c, 1)
+      do j = 1, i - 1
+        if (c(i, j) /= c(j, i)) &
+          call list%add('c', [i, j], 'C is not symmetric: '//entry_text(c, j, i)//', but '//entry_text(c, i, j))
+      end do
+    end do
+  end subroutine check_symmetry
+
+  !> Links of each coordinate, with findings for numbers out of range, repeated or missing.
+  !> Where C is not symmetric, a number counts as present but not as repeated: one fault, one finding.
+  pure subroutine take_links(c, links, list)
+    integer, intent(in) :: c(:, :)
+    integer, intent(inout) :: links(:, :)           !< (2,M) zeros on entry
+    type(finding_list_type), intent(inout) :: list
+    integer :: i, j, k, m
+    logical :: present_in_c(size(links, 2))
+    integer, allocatable :: missing(:)
+
+    m = size(links, 2)
+    present_in_c = .false.
+    do i = 1, size(c, 1)
+      do j = 1, size(c, 1)
+        k = c(i, j)
+        if (k == 0 .or. i == j) cycle
+        if (k < 0 .or. k > m) then
+          if (j > i .or. c(j, i) /= k) &
+            call list%add('c', [i, j], entry_text(c, i, j)//' is no number of a coordinate; they are 1 to '//to_text(m))
+          cycle
+        end if
+        present_in_c(k) = .true.
+        if (j < i .or. c(j, i) /= k) cycle
+        if (links(1, k) == 0) then
+          links(:, k) = [i, j]
+        else
+          call list%add('c', [i, j], 'coordinate '//to_text(k)//' is repeated: it joins links '// &
+                        to_text(links(1, k))//' and '//to_text(links(2, k))//' already, and '// &
+                        to_text(i)//' and '//to_text(j)//' again')
+        end if
+      end do
+    end do
+    missing = pack([(k, k=1, m)], .not. present_in_c)
+    if (size(missing) == 1) then
+      call list%add('c', [0, 0], 'coordinate '//listed(missing)//' is missing in C')
+    else if (size(missing) > 1) then
+      call list%add('c', [0, 0], 'coordinates '//listed(missing)//' are missing in C')
+    end if
+  end subroutine take_links
+
+  !> Links that C joins by any number, right or wrong, in either half.
+  pure function joined_in_matrix(c) result(links)
+    integer, intent(in) :: c(:, :)
+    integer, allocatable :: links(:, :)
+    integer :: i, j, n
+
+    allocate (links(2, count(c /= 0)))
+    n = 0
+    do j = 1, size(c, 2)
+      do i = 1, size(c, 1)
+        if (c(i, j) == 0) cycle
+        n = n + 1
+        links(:, n) = [i, j]
+      end do
+    end do
+  end function joined_in_matrix
+
+  pure subroutine take_independent(cq, structure, list)
+    integer, intent(in) :: cq(:)
+    type(structure_type), intent(inout) :: structure
+    type(finding_list_type), intent(inout) :: list
+    integer :: i
+
+    allocate (structure%independent(structure%n_coordinates), source=.false.)
+    do i = 1, size(cq)
+      if (cq(i) < 1 .or. cq(i) > structure%n_coordinates) then
+        call list%add('cq', [i, 0], 'cq names coordinate '//to_text(cq(i))//'; the coordinates are 1 to '// &
+                      to_text(structure%n_coordinates))
+      else if (structure%independent(cq(i))) then
+        call list%add('cq', [i, 0], 'cq names coordinate '//to_text(cq(i))//' twice; name each one once')
+      else
+        structure%independent(cq(i)) = .true.
+      end if
+    end do
+  end subroutine take_independent
+
+  !> "c(2,3) = 4"
+  pure function entry_text(c, i, j) result(text)
+    integer, intent(in) :: c(:, :), i, j
+    character(len=:), allocatable :: text
+
+    text = 'c('//to_text(i)//','//to_text(j)//') = '//to_text(c(i, j))
+  end function entry_text
+end module mech9_structure
