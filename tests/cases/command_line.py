@@ -1,0 +1,226 @@
+"""mech9k from outside: options, exit codes, what goes to stdout, stderr and files.
+
+usage: command_line.py MECH9K VERSION
+"""
+import json
+import os
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+import data_file
+from mech9_cases import REFERENCE, Checks, read_table, run, tolerance_of
+
+FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
+SLIDER = os.path.join(REFERENCE, 'kinematics_slider_crank.nml')
+# design of the exit codes: what ends with which number
+DONE, USAGE, DATA, STRUCTURE, ASSEMBLY, SINGULAR, FILE = 0, 2, 3, 4, 5, 6, 8
+OPTIONS = ['--check', '--structure', '--table', '--set', '--quiet', '--verbose', '--help', '--version',
+           '--no-write', '--report']
+
+
+class Session:
+    """Runs the program in a folder of its own and keeps the counts."""
+
+    def __init__(self, program, folder):
+        self.program, self.folder, self.checks = os.path.abspath(program), folder, Checks()
+
+    def run(self, *arguments, **more):
+        return run(self.program, *arguments, folder=self.folder, **more)
+
+    def ends(self, code, why, *arguments, says='', **more):
+        """Run and check the exit code, that stderr says something, and that nothing crashed."""
+        done = self.run(*arguments, **more)
+        self.checks.true(done.returncode == code, f'{why}: exit code {code}',
+                         f'it was {done.returncode}; stderr:\n{done.stderr}')
+        for text in [says] if isinstance(says, str) else says:
+            self.checks.true(text in done.stderr, f'{why}: says "{text}"', done.stderr)
+        trouble = ('Backtrace', 'backtrace', 'Fortran runtime error', 'SIGSEGV', 'AddressSanitizer', 'runtime error:')
+        self.checks.true(not any(word in done.stderr for word in trouble), f'{why}: no crash', done.stderr)
+        return done
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def exists(self, name):
+        return os.path.exists(self.path(name))
+
+    def write(self, name, text):
+        with open(self.path(name), 'w', encoding='utf-8', newline='') as file:
+            file.write(text)
+        return self.path(name)
+
+    def table(self, name):
+        with open(self.path(name), encoding='utf-8') as file:
+            return read_table(file.read())
+
+
+def text_of(path):
+    with open(path, encoding='utf-8') as file:
+        return file.read()
+
+
+def same_tables(checks, first, second, why):
+    checks.equal(list(second), list(first), f'{why}: the same columns')
+    for column in first:
+        if column != 'closure':
+            checks.near(second[column], first[column], tolerance_of(column), f'{why}: {column}')
+
+
+def help_and_version(s, version):
+    done = s.ends(DONE, '--help', '--help')
+    for option in OPTIONS:
+        s.checks.true(option in done.stdout, f'--help tells of {option}', done.stdout)
+    s.checks.equal(done.stderr, '', '--help: nothing on stderr')
+    done = s.ends(DONE, '--version', '--version')
+    s.checks.true(done.stdout.startswith(f'mech9k {version}'), '--version gives the version', done.stdout)
+    s.ends(DONE, '--help wins over a missing file', 'nowhere.nml', '--help')
+
+
+def wrong_use(s):
+    s.ends(USAGE, 'unknown option', FIG1, '--tabel', 'x', says='--table')
+    s.ends(USAGE, 'two files', FIG1, SLIDER)
+    s.ends(USAGE, 'an option without its argument', FIG1, '--table', says='--table')
+    s.ends(USAGE, 'an argument where none belongs', FIG1, '--quiet=yes', says='--quiet')
+    s.ends(FILE, 'no such data file', 'nowhere.nml', says='nowhere.nml')
+    s.ends(FILE, 'a folder as data file', s.folder)
+
+
+def structure(s):
+    done = s.ends(DONE, '--structure', FIG1, '--structure')
+    lines = [' '.join(line.split()) for line in done.stdout.splitlines()]
+    # the paper's vectors; its nrw is a misprint, by its definition link 1 closes the first chain at position 5
+    for line in ('nrg = 1 2 3 4 1 1 6 5 3', 'nws = 0 5 4 7 6 0 1 2 3', 'rdw = 1 1 0 0 0 1 0 0 0',
+                 'nrw = 0 0 0 0 1 1 1 1 2'):
+        s.checks.true(line in lines, f'--structure prints {line}', done.stdout)
+    s.checks.true(not s.exists('kinematics_fig1.dat'), '--structure writes no table')
+    # geometry is not looked at: pairs may be missing
+    groups = [group for group in data_file.parse(text_of(FIG1)) if group[0] in ('mechanism', 'structure')]
+    alone = s.write('structure_alone.nml', data_file.write(groups))
+    s.checks.equal(s.ends(DONE, '--structure without pairs', alone, '--structure').stdout, done.stdout,
+                   'the structure alone gives the same vectors')
+
+
+def tables(s):
+    s.ends(DONE, 'a plain run', FIG1)
+    s.checks.true(s.exists('kinematics_fig1.dat'), 'the table of &output is written into the working folder')
+    plain = s.table('kinematics_fig1.dat')
+    text = text_of(s.path('kinematics_fig1.dat'))
+    s.checks.true(text.startswith('#') and 'Fig. 1: two closed chains' in text.splitlines()[0] + text.splitlines()[1],
+                  'the table begins with the title', text[:200])
+    names = ['t'] + [f'{d}q{k}' for d in ('', 'd', 'dd') for k in range(1, 8)] + \
+        [f'{p}.{v}{x}' for p in 'PQ' for v in ('', 'v', 'a') for x in 'xyz'] + ['closure']
+    s.checks.equal(list(plain), names, 'the columns stand in their fixed order')
+    s.checks.near(plain['t'], np.arange(21) / 20.0, 1e-15, 'the times are start + (end - start) i/intervals')
+    s.checks.near(plain['q5'], 0.5 + 6.0 * plain['t'], 1e-15, 'the drive is followed')
+
+    s.ends(DONE, '--table PATH', FIG1, '--table', 'other.dat')
+    same_tables(s.checks, plain, s.table('other.dat'), '--table')
+    done = s.ends(DONE, '--table -', FIG1, '--table', '-')
+    same_tables(s.checks, plain, read_table(done.stdout), 'the table on stdout')
+    s.ends(FILE, 'a table in a folder that is not there', FIG1, '--table', 'nowhere/x.dat', says='nowhere/x.dat')
+    if os.path.exists('/dev/full'):
+        s.ends(FILE, 'a full disk', FIG1, '--table', '/dev/full', says='/dev/full')
+
+    os.remove(s.path('kinematics_fig1.dat'))
+    s.ends(DONE, '--no-write', FIG1, '--no-write')
+    s.checks.true(not s.exists('kinematics_fig1.dat'), '--no-write writes no table')
+    s.ends(DONE, '--check', FIG1, '--check')
+    s.checks.true(not s.exists('kinematics_fig1.dat'), '--check writes no table')
+
+
+def settings(s):
+    s.ends(DONE, '--set', FIG1, '--table', 'set.dat', '--set', 'time.intervals=5', '--set', 'drive.coefficients=0.5, 3.0')
+    table = s.table('set.dat')
+    s.checks.near(table['t'], np.arange(6) / 5.0, 1e-15, '--set time.intervals=5')
+    s.checks.near(table['q5'], 0.5 + 3.0 * table['t'], 1e-15, '--set drive.coefficients')
+    s.ends(DONE, '--set=...', FIG1, '--table=set.dat', '--set=time.intervals=3')
+    s.checks.equal(len(s.table('set.dat')['t']), 4, '--set=time.intervals=3')
+    s.ends(DATA, '--set of an unknown name', FIG1, '--set', 'time.interval=5', says='intervals')
+    s.ends(DATA, '--set of a wrong value', FIG1, '--set', 'time.intervals=many', says='--set')
+    s.ends(USAGE, '--set without a value', FIG1, '--set', 'intervals', says='--set')
+
+
+def talk(s):
+    done = s.ends(DONE, 'a plain run', FIG1)
+    s.checks.equal(done.stdout, '', 'the table is in a file: nothing on stdout')
+    s.checks.true(done.stderr != '', 'a run reports on stderr')
+    for option in ('--check', '--no-write', '--structure'):
+        done = s.ends(DONE, f'--quiet {option}', FIG1, '--quiet', option)
+        s.checks.equal(done.stderr, '', f'--quiet {option}: nothing on stderr')
+    done = s.ends(DONE, '--quiet', FIG1, '--quiet')
+    s.checks.equal((done.stdout, done.stderr), ('', ''), '--quiet: silent')
+    s.checks.true(s.run('nowhere.nml', '--quiet').stderr != '', '--quiet still says what is wrong')
+    s.ends(DONE, '--report', FIG1, '--report', 'report.json')
+    report = json.loads(text_of(s.path('report.json')))
+    s.checks.true(isinstance(report, dict) and 21 in report.values() or '21' in json.dumps(report),
+                  'the report is JSON and counts 21 positions', report)
+    s.ends(FILE, 'a report that cannot be written', FIG1, '--report', 'nowhere/report.json', says='nowhere/report.json')
+
+
+def bad_data(s):
+    text = text_of(FIG1)
+    done = s.ends(DATA, 'a misspelt kind', s.write('kind.nml', text.replace("'revolute'", "'revolutte'", 1)),
+                  says=["kind.nml:16:", "revolutte", "'revolute'"])
+    s.checks.true('^^^' in done.stderr, 'the place is marked', done.stderr)
+    crlf = s.write('crlf.nml', text.replace('\n', '\r\n'))
+    s.ends(DONE, 'line ends of Windows', crlf, '--table', 'crlf.dat')
+    s.ends(DONE, 'a plain run', FIG1, '--table', 'plain.dat')
+    same_tables(s.checks, s.table('plain.dat'), s.table('crlf.dat'), 'line ends of Windows change nothing')
+    s.ends(DATA, 'an empty file', s.write('empty.nml', ''))
+    s.ends(STRUCTURE, 'two independent coordinates where one will do', FIG1, '--set', 'structure.cq=5, 1', '--check')
+
+
+def cannot_move(s):
+    # crank 0.3, rod 1, slider axis 2 off: out of reach
+    s.ends(ASSEMBLY, 'a mechanism that cannot be assembled', SLIDER, '--set', 'pair(4).point=0,2,0')
+    groups = [(group, dict(items)) for group, items in data_file.parse(text_of(SLIDER))]
+    for group, items in groups:
+        if group == 'structure':
+            items['cq'] = [4]
+        if group == 'drive':
+            # the slider reaches out to sqrt(1.3^2 - 0.1^2) = 1.296 only
+            items.update(coordinate=[4], coefficients=[1.2, 0.2])
+        if group == 'initial' and items['coordinate'] == [4]:
+            items.update(coordinate=[1], position=[0.5])
+    path = s.write('dead_point.nml', data_file.write(groups))
+    done = s.ends(SINGULAR, 'a slider driven beyond its dead point', path, '--table', 'dead.dat')
+    kept = s.table('dead.dat')
+    s.checks.true(1 <= len(kept['t']) < 11 and np.max(kept['q4']) <= np.sqrt(1.3 ** 2 - 0.1 ** 2),
+                  'what was computed before the dead point is kept', kept['q4'])
+    s.checks.true('4' in done.stderr and 't = ' in done.stderr, 'the coordinate and the time are named', done.stderr)
+
+
+def degrees(s):
+    """The same motion told in degrees: angles and their rates are scaled, everything else stays."""
+    turn = 180.0 / np.pi
+    groups = data_file.parse(text_of(SLIDER))
+    for group, items in groups:
+        if group == 'mechanism':
+            items['angle_unit'] = ['deg']
+        if group == 'drive':
+            items['coefficients'] = [turn * c for c in items['coefficients']]
+        if group == 'initial' and items['coordinate'] != [4]:
+            items['position'] = [turn * x for x in items['position']]
+    s.ends(DONE, 'angles in degrees', s.write('degrees.nml', data_file.write(groups)), '--table', 'degrees.dat')
+    s.ends(DONE, 'angles in radians', SLIDER, '--table', 'radians.dat')
+    radians, table = s.table('radians.dat'), s.table('degrees.dat')
+    for column in radians:
+        factor = turn if column.lstrip('d') in ('q1', 'q2', 'q3') else 1.0
+        if column != 'closure':
+            s.checks.near(table[column] / factor, radians[column], tolerance_of(column), f'in degrees: {column}')
+
+
+def main():
+    program, version = sys.argv[1:3]
+    with tempfile.TemporaryDirectory() as folder:
+        s = Session(program, folder)
+        help_and_version(s, version)
+        for part in (wrong_use, structure, tables, settings, talk, bad_data, cannot_move, degrees):
+            part(s)
+        s.checks.finish()
+
+
+main()

@@ -1,0 +1,156 @@
+"""The samples of user_procs: their programs against closed forms, and the two forms of a procedure
+against each other.
+
+usage: user_programs.py FOLDER      FOLDER holds trammel_k, trammel_values_k, cam_follower_k,
+                                    cycloidal_drive_k, cycloidal_drive_values_k
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import TREE, Checks, table_of, tolerance_of
+
+
+class Jet:
+    """Values over time with their first two derivatives: plain calculus, written out once."""
+
+    def __init__(self, value, first=0.0, second=0.0):
+        self.value, self.first, self.second = value, first, second
+
+    def through(self, f, f1, f2):
+        """Chain rule for a function with the derivatives f1, f2."""
+        return Jet(f, f1 * self.first, f2 * self.first ** 2 + f1 * self.second)
+
+    def __add__(self, other):
+        other = jet(other)
+        return Jet(self.value + other.value, self.first + other.first, self.second + other.second)
+
+    def __mul__(self, other):
+        other = jet(other)
+        return Jet(self.value * other.value, self.first * other.value + self.value * other.first,
+                   self.second * other.value + 2 * self.first * other.first + self.value * other.second)
+
+    def __sub__(self, other):
+        return self + jet(other) * -1.0
+
+    def __truediv__(self, other):
+        v = jet(other).value
+        return self * jet(other).through(1 / v, -1 / v ** 2, 2 / v ** 3)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __rsub__(self, other):
+        return jet(other) - self
+
+
+def jet(x):
+    return x if isinstance(x, Jet) else Jet(x)
+
+
+def sin(x):
+    return x.through(np.sin(x.value), np.cos(x.value), -np.sin(x.value))
+
+
+def cos(x):
+    return x.through(np.cos(x.value), -np.sin(x.value), -np.cos(x.value))
+
+
+def sqrt(x):
+    root = np.sqrt(x.value)
+    return x.through(root, 0.5 / root, -0.25 / root ** 3)
+
+
+def arcsin(x):
+    root = np.sqrt(1 - x.value ** 2)
+    return x.through(np.arcsin(x.value), 1 / root, x.value / root ** 3)
+
+
+def arccos(x):
+    root = np.sqrt(1 - x.value ** 2)
+    return x.through(np.arccos(x.value), -1 / root, -x.value / root ** 3)
+
+
+def check_coordinate(checks, table, k, expected, why, turns=False):
+    """q_k, dq_k, ddq_k against a closed form; an angle may differ by whole turns, the same in all rows."""
+    value = expected.value
+    if turns:
+        value = value + 2 * np.pi * np.round((table[f'q{k}'][0] - value[0]) / (2 * np.pi))
+    for column, numbers in ((f'q{k}', value), (f'dq{k}', expected.first), (f'ddq{k}', expected.second)):
+        checks.near(table[column], numbers, tolerance_of(column), f'{why}: {column} by its closed form')
+
+
+def check_point(checks, table, point, components, why):
+    for axis, expected in zip('xyz', components):
+        expected = jet(expected)
+        for column, numbers in ((f'{point}.{axis}', expected.value), (f'{point}.v{axis}', expected.first),
+                                (f'{point}.a{axis}', expected.second)):
+            checks.near(table[column], numbers, tolerance_of(column), f'{why}: {column} by its closed form')
+
+
+def check_trammel(checks, table, why):
+    """P on the ellipse; the slider S at the height 0.1 on a rod of length 0.8, ahead of P."""
+    q = Jet(0.3 + 2.0 * table['t'], 2.0, 0.0)
+    px, py = 0.3 * cos(q), 0.2 * sin(q)
+    rod = arcsin((0.1 - py) / 0.8)             # angle of the rod against the x axis
+    sx = px + 0.8 * cos(rod)
+    check_coordinate(checks, table, 1, q, why)
+    check_coordinate(checks, table, 2, rod + q - np.pi, why, turns=True)   # AB stands at pi - q
+    check_coordinate(checks, table, 3, -1.0 * rod, why, turns=True)
+    check_coordinate(checks, table, 4, sx, why)
+    check_point(checks, table, 'P', (px, py, 0.0), why)
+    check_point(checks, table, 'S', (sx, 0.1, 0.0), why)
+
+
+def check_cam(checks, table, why):
+    """E on the cam; N stands 0.05 outside of it, on the normal."""
+    q = Jet(1.5 * table['t'], 1.5, 0.0)
+    r = 0.1 + 0.01 * (1.0 - cos(3.0 * q))
+    slope = 0.03 * sin(3.0 * q)                # dr/dq
+    x, y = r * cos(q), r * sin(q)
+    tx, ty = slope * cos(q) - r * sin(q), slope * sin(q) + r * cos(q)
+    length = sqrt(tx * tx + ty * ty)
+    check_coordinate(checks, table, 1, q, why)
+    check_point(checks, table, 'E', (x, y, 0.0), why)
+    check_point(checks, table, 'N', (x + 0.05 * ty / length, y - 0.05 * tx / length, 0.0), why)
+
+
+def check_cycloid(checks, table, why):
+    """The slider at 0.8 + q4, crank 0.3 and rod 1: the law of cosines gives the crank's angle."""
+    share = Jet(table['t'] / 2.0, 0.5, 0.0)
+    q4 = 0.4 * (share - sin(2 * np.pi * share) / (2 * np.pi))
+    x = 0.8 + q4
+    crank = arccos((x * x + (0.3 ** 2 - 1.0)) / (0.6 * x))
+    rod = arcsin(-0.3 * sin(crank))
+    check_coordinate(checks, table, 4, q4, why)
+    check_coordinate(checks, table, 1, crank, why, turns=True)
+    check_coordinate(checks, table, 2, rod - crank, why, turns=True)
+    check_coordinate(checks, table, 3, -1.0 * rod, why, turns=True)
+    check_point(checks, table, 'A', (0.3 * cos(crank), 0.3 * sin(crank), 0.0), why)
+
+
+def check_same(checks, first, second, why):
+    for column in first:
+        if column != 'closure':
+            checks.near(second[column], first[column], tolerance_of(column), f'{why}: {column}')
+
+
+def main():
+    folder = sys.argv[1]
+    checks = Checks()
+    forms = {}
+    for sample, program, check in (('trammel', 'trammel', check_trammel),
+                                   ('trammel', 'trammel_values', check_trammel),
+                                   ('cam_follower', 'cam_follower', check_cam),
+                                   ('cycloidal_drive', 'cycloidal_drive', check_cycloid),
+                                   ('cycloidal_drive', 'cycloidal_drive_values', check_cycloid)):
+        data = os.path.join(TREE, 'user_procs', sample, sample + '.nml')
+        forms[program] = table_of(os.path.join(folder, program + '_k'), data)
+        check(checks, forms[program], program)
+    for name in ('trammel', 'cycloidal_drive'):
+        check_same(checks, forms[name], forms[name + '_values'], f'{name}: Taylor arithmetic and plain values agree')
+    checks.finish()
+
+
+main()

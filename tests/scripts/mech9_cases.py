@@ -1,0 +1,101 @@
+"""What the scripts in tests/cases share: running a program, reading tables, counting checks.
+
+Needs numpy only. A script makes a Checks, checks, and leaves through its finish().
+"""
+import os
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+TREE = os.path.dirname(TESTS)
+REFERENCE = os.path.join(TESTS, 'reference')
+
+# What the reference values are held against: |difference| / max(1, |value|). A position is closed to
+# round-off (1e-16 times the conditioning of a well-posed chain, some hundreds); each derivative in time
+# brings one more solution with the same matrix and factors of the driving rate.
+POSITION, VELOCITY, ACCELERATION = 1e-12, 1e-11, 1e-10
+
+
+class Checks:
+    """Counts checks, prints those that fail, ends the script with 1 if any did."""
+
+    def __init__(self):
+        self.passed = 0
+        self.failed = 0
+
+    def true(self, condition, why, more=''):
+        if condition:
+            self.passed += 1
+        else:
+            self.failed += 1
+            print(f'FAILED: {why}')
+            if more:
+                print('  ' + str(more).rstrip().replace('\n', '\n  '))
+        return bool(condition)
+
+    def equal(self, value, expected, why):
+        return self.true(value == expected, why, f'got {value!r}, expected {expected!r}')
+
+    def near(self, values, expected, tolerance, why):
+        """Scaled error |difference| / max(1, |expected|) of whole arrays."""
+        values, expected = np.broadcast_arrays(np.asarray(values, float), np.asarray(expected, float))
+        if not self.true(values.size > 0, f'{why}: there are values'):
+            return False
+        error = np.abs(values - expected) / np.maximum(1.0, np.abs(expected))
+        worst = int(np.argmax(np.where(np.isfinite(error), error, np.inf)))
+        return self.true(bool(np.all(error <= tolerance)), why,
+                         f'scaled error {error.flat[worst]:.3e} in entry {worst}: got {values.flat[worst]!r}, '
+                         f'expected {expected.flat[worst]!r}, tolerance {tolerance:.0e}')
+
+    def finish(self):
+        print(f'{self.passed} checks passed, {self.failed} failed')
+        sys.exit(1 if self.failed or not self.passed else 0)
+
+
+def run(program, *arguments, folder=None, stdin='', timeout=120):
+    """Run a program; gives its completed process with text in stdout and stderr."""
+    return subprocess.run([os.fspath(program), *map(os.fspath, arguments)], cwd=folder, input=stdin,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors='replace',
+                          timeout=timeout)
+
+
+def read_table(text):
+    """Columns by name of a table of results (lines of '#', a line of names, rows of numbers)."""
+    lines = [line for line in text.splitlines() if not line.startswith('#')]
+    names = lines[0].split()
+    rows = np.array([[float(word) for word in line.split()] for line in lines[1:]])
+    if len(set(names)) != len(names) or rows.ndim != 2 or rows.shape[1] != len(names):
+        raise ValueError(f'not a table: {len(names)} names, rows of shape {rows.shape}')
+    return {name: rows[:, i] for i, name in enumerate(names)}
+
+
+def table_of(program, data, *options):
+    """The table that a program writes for a data file; fails loudly where the run fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'table.dat')
+        done = run(program, os.path.abspath(data), '--table', path, *options, folder=folder)
+        if done.returncode != 0:
+            raise RuntimeError(f'{program} {data} ended with {done.returncode}:\n{done.stderr}')
+        with open(path, encoding='utf-8') as file:
+            return read_table(file.read())
+
+
+def read_csv(path):
+    """Columns by name of a file of reference values."""
+    with open(path, encoding='utf-8') as file:
+        names = file.readline().strip().split(',')
+        rows = np.array([[float(word) for word in line.split(',')] for line in file if line.strip()])
+    return {name: rows[:, i] for i, name in enumerate(names)}
+
+
+def tolerance_of(name):
+    """The tolerance that belongs to a column of a table, by what it is."""
+    last = name.rsplit('.', 1)[-1]
+    if name.startswith('ddq') or last in ('ax', 'ay', 'az'):
+        return ACCELERATION
+    if name.startswith('dq') or last in ('vx', 'vy', 'vz'):
+        return VELOCITY
+    return POSITION

@@ -1,0 +1,33 @@
+C     OLD ROUTINE, FIXED FORM, KEPT AS IT WAS
+C     POINT OF A DISC CAM AND ITS TANGENT AT THE POLAR ANGLE PHI
+C     R = RB + H*(1-COS(N*PHI))/2
+C     INPUT   PHI           POLAR ANGLE, RADIANS
+C     OUTPUT  X, Y          POINT OF THE CAM
+C             TX, TY        TANGENT, NOT OF LENGTH ONE
+C     THE CAM IS KEPT IN COMMON /CAMDAT/, SEE CAMSET
+      SUBROUTINE CAMPT(PHI, X, Y, TX, TY)
+      IMPLICIT DOUBLE PRECISION (A-H,O-Z)
+      COMMON /CAMDAT/ RB, H, N
+      R = RB + H*(1D0 - DCOS(N*PHI))/2D0
+      DR = H*N*DSIN(N*PHI)/2D0
+      C = DCOS(PHI)
+      S = DSIN(PHI)
+      X = R*C
+      Y = R*S
+      TX = DR*C - R*S
+      TY = DR*S + R*C
+      RETURN
+      END
+C     SET THE CAM: BASE RADIUS, LIFT, NUMBER OF LOBES
+      SUBROUTINE CAMSET(RB0, H0, N0)
+      IMPLICIT DOUBLE PRECISION (A-H,O-Z)
+      COMMON /CAMDAT/ RB, H, N
+      IF (N0) 10, 10, 20
+   10 N = 1
+      GO TO 30
+   20 N = N0
+   30 CONTINUE
+      RB = RB0
+      H = H0
+      RETURN
+      END

@@ -1,0 +1,20 @@
+!> Template: a pair of your own, in Taylor arithmetic. Copy it, rename the submodule, fill in the
+!> three points. As it stands it is a prismatic pair along x: the moving link keeps its direction.
+submodule (mech9_user_pair) user_pair_template
+  implicit none
+
+contains
+
+  module subroutine user_pair(coordinate, q, parameters, r1, r2, r3)
+    integer, intent(in) :: coordinate         ! which pair is asked for, if you have several
+    type(taylor), intent(in) :: q             ! its coordinate
+    real(wp), intent(in) :: parameters(:)     ! the numbers of &user parameters = ... /
+    type(taylor), intent(out) :: r1(3)        ! origin of the moving link, in the reference link [m]
+    type(taylor), intent(out) :: r2(3)        ! a point on its x axis
+    type(taylor), intent(out) :: r3(3)        ! y is along (r2 - r1) x (r3 - r1)
+
+    r1 = [q, constant(0.0_wp), constant(0.0_wp)]
+    r2 = r1 + [1.0_wp, 0.0_wp, 0.0_wp]
+    r3 = r1 - [0.0_wp, 0.0_wp, 1.0_wp]        ! 1 below the origin: so y stays y and z stays z
+  end subroutine user_pair
+end submodule user_pair_template

@@ -1,0 +1,20 @@
+!> Template: a pair of your own, in plain real numbers; the program differentiates it, which costs
+!> 17 calls and more for each evaluation. As it stands it is a prismatic pair along x.
+submodule (mech9_user_pair_values) user_pair_values_template
+  implicit none
+
+contains
+
+  module subroutine user_pair_values(coordinate, q, parameters, r1, r2, r3)
+    integer, intent(in) :: coordinate         ! which pair is asked for, if you have several
+    real(wp), intent(in) :: q                 ! its coordinate
+    real(wp), intent(in) :: parameters(:)     ! the numbers of &user parameters = ... /
+    real(wp), intent(out) :: r1(3)            ! origin of the moving link, in the reference link [m]
+    real(wp), intent(out) :: r2(3)            ! a point on its x axis
+    real(wp), intent(out) :: r3(3)            ! y is along (r2 - r1) x (r3 - r1)
+
+    r1 = [q, 0.0_wp, 0.0_wp]
+    r2 = r1 + [1.0_wp, 0.0_wp, 0.0_wp]
+    r3 = r1 - [0.0_wp, 0.0_wp, 1.0_wp]        ! 1 below the origin: so y stays y and z stays z
+  end subroutine user_pair_values
+end submodule user_pair_values_template

@@ -1,0 +1,23 @@
+!> An elliptic trammel: a link whose point A slides along the x axis and whose point B slides along
+!> the y axis of the reference link. Every other point of the line AB runs on an ellipse.
+!>
+!> Parameter 1: the length a of AB [m]. The coordinate q is the angle of AB:
+!> A = (a cos q, 0, 0), B = (0, a sin q, 0). Moving link: origin in A, x towards B, z stays z.
+submodule (mech9_user_pair) trammel
+  implicit none
+
+contains
+
+  module subroutine user_pair(coordinate, q, parameters, r1, r2, r3)
+    integer, intent(in) :: coordinate
+    type(taylor), intent(in) :: q
+    real(wp), intent(in) :: parameters(:)
+    type(taylor), intent(out) :: r1(3), r2(3), r3(3)
+    type(taylor) :: nought
+
+    nought = constant(0.0_wp)
+    r1 = [parameters(1)*cos(q), nought, nought]
+    r2 = [nought, parameters(1)*sin(q), nought]
+    r3 = r1 - [0.0_wp, 0.0_wp, 1.0_wp]   ! below A, never in line with A and B
+  end subroutine user_pair
+end submodule trammel
