@@ -1,0 +1,319 @@
+!> A writer of JSON for reports: objects, arrays, numbers, texts, truth values.
+!> Uses mech9_text, mech9_printable, mech9_text_file and the base.
+!>
+!>     call json%begin_object()
+!>     call json%add('positions', 101)
+!>     call json%begin_array('blocks')
+!>     call json%add('4-bar')
+!>     call json%end_array()
+!>     call json%end_object()
+!>     call json%save('report.json', err)
+module mech9_json
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, raise, exit_internal
+  use mech9_text, only: to_text
+  use mech9_printable, only: utf8_length
+  use mech9_text_file, only: text_file_type
+  implicit none
+  private
+  public :: json_type
+
+  integer, parameter :: deepest = 32
+  character, parameter :: line_end = achar(10)
+
+  !> A document being composed in memory. What is added in an object comes with a name, what is
+  !> added in an array without; a document that breaks this is refused by `save`.
+  type :: json_type
+    private
+    character(len=:), allocatable :: buffer
+    integer :: used = 0               !< letters of the buffer in use
+    integer :: depth = 0
+    character :: closing(deepest) = ' '   !< what ends the object or array at each depth
+    logical :: empty = .true.         !< nothing stands yet in the innermost object or array
+    logical :: wrong = .false.        !< the calls do not make a document
+  contains
+    procedure :: begin_object
+    procedure :: end_object
+    procedure :: begin_array
+    procedure :: end_array
+    procedure :: add_null
+    procedure :: save => save_document
+    procedure, private :: add_real, add_integer, add_long, add_logical, add_text, add_reals
+    procedure, private :: item_real, item_integer, item_long, item_logical, item_text
+    !> `add(name, value)` in an object, `add(value)` in an array.
+    generic :: add => add_real, add_integer, add_long, add_logical, add_text, add_reals, &
+      item_real, item_integer, item_long, item_logical, item_text
+    procedure, private :: put_item, begin, finish, append
+  end type json_type
+
+contains
+
+  subroutine begin_object(self, name)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in), optional :: name
+
+    call self%begin('{', '}', name)
+  end subroutine begin_object
+
+  subroutine end_object(self)
+    class(json_type), intent(inout) :: self
+
+    call self%finish('}')
+  end subroutine end_object
+
+  subroutine begin_array(self, name)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in), optional :: name
+
+    call self%begin('[', ']', name)
+  end subroutine begin_array
+
+  subroutine end_array(self)
+    class(json_type), intent(inout) :: self
+
+    call self%finish(']')
+  end subroutine end_array
+
+  subroutine add_null(self, name)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in), optional :: name
+
+    call self%put_item('null', name)
+  end subroutine add_null
+
+  subroutine add_real(self, name, value)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: value
+
+    call self%put_item(number_text(value), name)
+  end subroutine add_real
+
+  subroutine add_integer(self, name, value)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: value
+
+    call self%put_item(to_text(value), name)
+  end subroutine add_integer
+
+  subroutine add_long(self, name, value)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer(long), intent(in) :: value
+
+    call self%put_item(to_text(value), name)
+  end subroutine add_long
+
+  subroutine add_logical(self, name, value)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    logical, intent(in) :: value
+
+    call self%put_item(trim(merge('true ', 'false', value)), name)
+  end subroutine add_logical
+
+  subroutine add_text(self, name, value)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: value
+
+    call self%put_item(quoted(value), name)
+  end subroutine add_text
+
+  subroutine add_reals(self, name, values)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: values(:)
+    integer :: i
+
+    call self%begin_array(name)
+    do i = 1, size(values)
+      call self%put_item(number_text(values(i)))
+    end do
+    call self%end_array()
+  end subroutine add_reals
+
+  subroutine item_real(self, value)
+    class(json_type), intent(inout) :: self
+    real(wp), intent(in) :: value
+
+    call self%put_item(number_text(value))
+  end subroutine item_real
+
+  subroutine item_integer(self, value)
+    class(json_type), intent(inout) :: self
+    integer, intent(in) :: value
+
+    call self%put_item(to_text(value))
+  end subroutine item_integer
+
+  subroutine item_long(self, value)
+    class(json_type), intent(inout) :: self
+    integer(long), intent(in) :: value
+
+    call self%put_item(to_text(value))
+  end subroutine item_long
+
+  subroutine item_logical(self, value)
+    class(json_type), intent(inout) :: self
+    logical, intent(in) :: value
+
+    call self%put_item(trim(merge('true ', 'false', value)))
+  end subroutine item_logical
+
+  subroutine item_text(self, value)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: value
+
+    call self%put_item(quoted(value))
+  end subroutine item_text
+
+  !> Write the finished document to a file.
+  subroutine save_document(self, path, err)
+    class(json_type), intent(in) :: self
+    character(len=*), intent(in) :: path   !< '-' is standard output
+    type(error_type), allocatable, intent(out) :: err
+    type(text_file_type) :: file
+    type(error_type), allocatable :: close_error
+
+    if (self%wrong .or. self%depth /= 0 .or. self%used == 0) then
+      call raise(err, exit_internal, 'the report '//path//' was not composed as a whole document')
+      return
+    end if
+    call file%open(path, err)
+    if (allocated(err)) return
+    call file%write(self%buffer(:self%used)//line_end, err)
+    call file%close(close_error)
+    if (.not. allocated(err)) call move_alloc(close_error, err)
+  end subroutine save_document
+
+  subroutine begin(self, opening, closing, name)
+    class(json_type), intent(inout) :: self
+    character, intent(in) :: opening, closing
+    character(len=*), intent(in), optional :: name
+
+    call self%put_item(opening, name)
+    if (self%depth == deepest) self%wrong = .true.
+    if (self%wrong) return
+    self%depth = self%depth + 1
+    self%closing(self%depth) = closing
+    self%empty = .true.
+  end subroutine begin
+
+  subroutine finish(self, closing)
+    class(json_type), intent(inout) :: self
+    character, intent(in) :: closing
+
+    if (self%depth == 0) self%wrong = .true.
+    if (self%wrong) return
+    if (self%closing(self%depth) /= closing) then
+      self%wrong = .true.
+      return
+    end if
+    self%depth = self%depth - 1
+    if (.not. self%empty) call self%append(line_end//repeat('  ', self%depth))
+    call self%append(closing)
+    self%empty = .false.
+  end subroutine finish
+
+  !> Write a value that is JSON already, with its name, comma and indentation.
+  subroutine put_item(self, value, name)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: value
+    character(len=*), intent(in), optional :: name
+    logical :: in_object
+
+    in_object = .false.
+    if (self%depth > 0) in_object = self%closing(self%depth) == '}'
+    if (in_object .neqv. present(name)) self%wrong = .true.
+    if (self%depth == 0 .and. self%used > 0) self%wrong = .true.
+    if (self%wrong) return
+    if (.not. self%empty) call self%append(',')
+    if (self%depth > 0) call self%append(line_end//repeat('  ', self%depth))
+    if (present(name)) call self%append(quoted(name)//': ')
+    call self%append(value)
+    self%empty = .false.
+  end subroutine put_item
+
+  subroutine append(self, text)
+    class(json_type), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: grown
+
+    if (.not. allocated(self%buffer)) allocate (character(len=4096) :: self%buffer)
+    if (self%used + len(text) > len(self%buffer)) then
+      allocate (character(len=2*(self%used + len(text))) :: grown)
+      grown(:self%used) = self%buffer(:self%used)
+      call move_alloc(grown, self%buffer)
+    end if
+    self%buffer(self%used + 1:self%used + len(text)) = text
+    self%used = self%used + len(text)
+  end subroutine append
+
+  !> The shortest of 15 to 17 digits that reads back as the same number; JSON has no NaN and no
+  !> infinity, they become null.
+  pure function number_text(value) result(text)
+    real(wp), intent(in) :: value
+    character(len=:), allocatable :: text
+    real(wp) :: read_back
+    integer :: digits, status
+
+    text = 'null'
+    if (.not. is_finite(value)) return
+    ! rounded to fewer digits, the very largest numbers would overflow
+    do digits = merge(15, 17, abs(value) < 1.0e308_wp), 17
+      text = to_text(value, digits)
+      read (text, *, iostat=status) read_back
+      if (status == 0 .and. transfer(read_back, 0_long) == transfer(value, 0_long)) return
+    end do
+  end function number_text
+
+  !> By the bits: a comparison with NaN would stop a program that traps invalid operations.
+  pure logical function is_finite(value)
+    real(wp), intent(in) :: value
+
+    is_finite = ibits(transfer(value, 0_long), 52, 11) /= 2047
+  end function is_finite
+
+  !> A text as a JSON string; bytes that are not UTF-8 become the replacement character.
+  pure function quoted(text) result(json)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: json
+    integer :: i, length
+
+    json = '"'
+    i = 1
+    do while (i <= len(text))
+      length = utf8_length(text, i)
+      if (length == 0) then
+        json = json//'\ufffd'
+      else
+        json = json//escaped(text(i:i + length - 1))
+      end if
+      i = i + max(length, 1)
+    end do
+    json = json//'"'
+  end function quoted
+
+  !> One character, escaped where JSON wants it.
+  pure function escaped(letter) result(json)
+    character(len=*), intent(in) :: letter
+    character(len=:), allocatable :: json
+    character(len=2) :: code
+
+    json = letter
+    if (len(letter) > 1) return
+    select case (iachar(letter))
+    case (34, 92)
+      json = '\'//letter
+    case (10)
+      json = '\n'
+    case (9)
+      json = '\t'
+    case (0:8, 11:31, 127)
+      write (code, '(z2.2)') iachar(letter)
+      json = '\u00'//code
+    end select
+  end function escaped
+end module mech9_json

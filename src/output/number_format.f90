@@ -1,0 +1,260 @@
+!> Real numbers as text of 17 significant digits, correctly rounded, in columns of one width.
+!> Uses mech9_kinds only.
+!>
+!> A number is m 2^e with an integer m < 2^53. Its 17 digits are the integer nearest to m 2^e 10^p
+!> for the right power p, and that product is taken in integers: 10^p stands in a table as a
+!> 120-bit integer g times a power of two, and m g has so many bits behind the 17 digits that the
+!> rounding is plain, but for a handful of numbers in all; those take the slow way, a formatted write.
+module mech9_number_format
+  use mech9_kinds, only: wp, long
+  implicit none
+  private
+  public :: number_format_type, number_width
+
+  !> Width of a number as text: a blank, the sign, 17 digits and the point, up to E-308.
+  integer, parameter :: number_width = 25
+
+  !> Integers that hold the product of two of kind `long`.
+  integer, parameter :: wide = selected_int_kind(38)
+  !> Powers of ten that bring the largest and the smallest number to 17 digits.
+  integer, parameter :: least_power = -292, greatest_power = 340
+  !> Halves of a table entry, and limbs of the long integers it is made from.
+  integer, parameter :: half_bits = 60, limb_bits = 30, limbs = 32
+  integer(long), parameter :: limb_mask = maskr(limb_bits, long)
+  integer(long), parameter :: ten_to_8 = 100000000_long
+  integer(long), parameter :: ten_to_16 = ten_to_8*ten_to_8, ten_to_17 = 10*ten_to_16
+
+  character(len=*), parameter :: pairs = &
+    '0001020304050607080910111213141516171819202122232425262728293031323334353637383940414243444546474849'// &
+    '5051525354555657585960616263646566676869707172737475767778798081828384858687888990919293949596979899'
+
+  !> The table of powers of ten; made by `number_format_type()`, about ten microseconds.
+  type :: number_format_type
+    private
+    !> 10^p = (high 2^60 + low + d) 2^(binary_exponent(p)), 2^59 <= high < 2^60, 0 <= d < 1;
+    !> d = 0 for p = 0 .. 51.
+    integer(long) :: high(least_power:greatest_power)
+    integer(long) :: low(least_power:greatest_power)
+  contains
+    procedure :: put
+  end type number_format_type
+
+  interface number_format_type
+    module procedure new_number_format
+  end interface number_format_type
+
+contains
+
+  !> The table, exactly truncated: 5^p from p = 0 upwards by multiplication, and floor(2^n/5^p)
+  !> downwards by repeated division, which truncates to the same number as one division would.
+  pure function new_number_format() result(self)
+    type(number_format_type) :: self
+    integer(long) :: number(limbs)
+    integer :: p
+
+    number = 0
+    number(6) = 1
+    do p = 0, greatest_power
+      call leading_bits(number, self%high(p), self%low(p))
+      call multiply_by_5(number)
+    end do
+    number = 0
+    number(limbs) = 1
+    do p = -1, least_power, -1
+      call divide_by_5(number)
+      call leading_bits(number, self%high(p), self%low(p))
+    end do
+  end function new_number_format
+
+  pure subroutine multiply_by_5(number)
+    integer(long), intent(inout) :: number(limbs)
+    integer(long) :: carry
+    integer :: i
+
+    carry = 0
+    do i = 1, limbs
+      carry = carry + 5*number(i)
+      number(i) = iand(carry, limb_mask)
+      carry = shiftr(carry, limb_bits)
+    end do
+  end subroutine multiply_by_5
+
+  pure subroutine divide_by_5(number)
+    integer(long), intent(inout) :: number(limbs)
+    integer(long) :: rest
+    integer :: i
+
+    rest = 0
+    do i = limbs, 1, -1
+      rest = ior(shiftl(rest, limb_bits), number(i))
+      number(i) = rest/5
+      rest = rest - 5*number(i)
+    end do
+  end subroutine divide_by_5
+
+  !> The first 120 bits of a long integer (which has more than that), in two halves.
+  pure subroutine leading_bits(number, high, low)
+    integer(long), intent(in) :: number(limbs)   !< least limb first
+    integer(long), intent(out) :: high, low
+    integer(long) :: aligned(4)
+    integer :: top, bits, i
+
+    top = limbs
+    do while (number(top) == 0)
+      top = top - 1
+    end do
+    bits = int(bit_size(number)) - leadz(number(top))
+    do i = 1, 4
+      aligned(i) = iand(ior(shiftl(number(top + 1 - i), limb_bits - bits), &
+                            shiftr(number(top - i), bits)), limb_mask)
+    end do
+    high = ior(shiftl(aligned(1), limb_bits), aligned(2))
+    low = ior(shiftl(aligned(3), limb_bits), aligned(4))
+  end subroutine leading_bits
+
+  !> Write a number into a field, at its right end: `-1.2345678901234567E+00`. What is not finite
+  !> becomes `NaN`, `Infinity` or `-Infinity`.
+  pure subroutine put(self, number, field)
+    class(number_format_type), intent(in) :: self
+    real(wp), intent(in) :: number
+    character(len=number_width), intent(out) :: field
+    integer(long) :: bits, mantissa, digits
+    integer :: binary_exponent, exponent, shift
+    logical :: decided
+
+    bits = transfer(number, bits)
+    mantissa = ibits(bits, 0, 52)
+    binary_exponent = int(ibits(bits, 52, 11))
+    if (binary_exponent == 2047) then
+      field = not_finite(mantissa /= 0, bits < 0)
+      return
+    else if (binary_exponent > 0) then
+      mantissa = ibset(mantissa, 52)
+      binary_exponent = binary_exponent - 1075
+    else if (mantissa /= 0) then
+      shift = leadz(mantissa) - 11
+      mantissa = shiftl(mantissa, shift)
+      binary_exponent = -1074 - shift
+    else
+      call put_digits(0_long, 0, bits < 0, field)
+      return
+    end if
+    call find_digits(self, mantissa, binary_exponent, digits, exponent, decided)
+    if (.not. decided) call read_digits(number, digits, exponent)
+    call put_digits(digits, exponent, bits < 0, field)
+  end subroutine put
+
+  pure function not_finite(is_nan, negative) result(field)
+    logical, intent(in) :: is_nan, negative
+    character(len=number_width) :: field
+
+    if (is_nan) then
+      field = 'NaN'
+    else if (negative) then
+      field = '-Infinity'
+    else
+      field = 'Infinity'
+    end if
+    field = adjustr(field)
+  end function not_finite
+
+  !> The 17 digits of mantissa 2^binary_exponent, and the power of ten of the first of them.
+  pure subroutine find_digits(self, mantissa, binary_exponent, digits, exponent, decided)
+    type(number_format_type), intent(in) :: self
+    integer(long), intent(in) :: mantissa   !< 2^52 <= mantissa < 2^53
+    integer, intent(in) :: binary_exponent
+    integer(long), intent(out) :: digits    !< 10^16 <= digits < 10^17
+    integer, intent(out) :: exponent
+    logical, intent(out) :: decided         !< false: 120 bits do not tell which way to round
+    integer(wide) :: product
+    integer(long) :: fraction, half
+    integer :: p, shift
+
+    ! floor(log10(2) n), which is the exponent or one less
+    exponent = shifta((binary_exponent + 52)*78913, 18)
+    do
+      p = 16 - exponent
+      ! the true product lies in [product, product + 2), in units of the bits kept
+      product = int(mantissa, wide)*int(self%high(p), wide) &
+                + shiftr(int(mantissa, wide)*int(self%low(p), wide), half_bits)
+      ! floor(log2(10) p) is the binary exponent of 10^p
+      shift = half_bits - 1 - binary_exponent - shifta(p*1741647, 19)
+      digits = int(shiftr(product, shift), long)
+      if (digits < ten_to_17) exit
+      exponent = exponent + 1
+    end do
+    fraction = int(ibits(product, 0, shift), long)
+    half = shiftl(1_long, shift - 1)
+    decided = .true.
+    if (p >= 0 .and. p <= 24) then
+      ! the product is exact, and only here can a half be met exactly: m 5^p, an odd number below
+      ! 2 10^17, has no room for more fives; it goes to the even digit, as in every formatted write
+      if (fraction > half .or. (fraction == half .and. btest(digits, 0))) digits = digits + 1
+    else
+      if (fraction >= half) digits = digits + 1
+      decided = fraction /= half - 1
+    end if
+    if (digits == ten_to_17) then
+      digits = ten_to_16
+      exponent = exponent + 1
+    end if
+  end subroutine find_digits
+
+  !> The digits by the compiler's formatted write: exact for every number, but slow.
+  pure subroutine read_digits(number, digits, exponent)
+    real(wp), intent(in) :: number
+    integer(long), intent(out) :: digits
+    integer, intent(out) :: exponent
+    character(len=24) :: text
+    character(len=17) :: digits_text
+
+    write (text, '(es24.16e3)') abs(number)
+    digits_text = text(2:2)//text(4:19)
+    read (digits_text, '(i17)') digits
+    read (text(21:24), '(i4)') exponent
+  end subroutine read_digits
+
+  !> Lay the digits out; two digits of exponent where they are enough, else three.
+  pure subroutine put_digits(digits, exponent, negative, field)
+    integer(long), intent(in) :: digits
+    integer, intent(in) :: exponent
+    logical, intent(in) :: negative
+    character(len=number_width), intent(out) :: field
+    integer(long) :: first, upper, rest
+    integer :: at, size
+
+    size = abs(exponent)
+    at = merge(3, 2, size < 100)
+    first = digits/ten_to_16
+    rest = digits - first*ten_to_16
+    upper = rest/ten_to_8
+    field(:at) = ''
+    if (negative) field(at:at) = '-'
+    field(at + 1:at + 1) = achar(48 + int(first))
+    field(at + 2:at + 2) = '.'
+    call put_8_digits(int(upper), field(at + 3:at + 10))
+    call put_8_digits(int(rest - upper*ten_to_8), field(at + 11:at + 18))
+    field(at + 19:at + 19) = 'E'
+    field(at + 20:at + 20) = merge('-', '+', exponent < 0)
+    if (at == 2) then
+      field(23:23) = achar(48 + size/100)
+      size = mod(size, 100)
+    end if
+    field(24:25) = pairs(2*size + 1:2*size + 2)
+  end subroutine put_digits
+
+  pure subroutine put_8_digits(number, text)
+    integer, intent(in) :: number
+    character(len=8), intent(out) :: text
+    integer :: upper, lower, a, c
+
+    upper = number/10000
+    lower = number - upper*10000
+    a = upper/100
+    c = lower/100
+    text(1:2) = pairs(2*a + 1:2*a + 2)
+    text(3:4) = pairs(2*(upper - 100*a) + 1:2*(upper - 100*a) + 2)
+    text(5:6) = pairs(2*c + 1:2*c + 2)
+    text(7:8) = pairs(2*(lower - 100*c) + 1:2*(lower - 100*c) + 2)
+  end subroutine put_8_digits
+end module mech9_number_format

@@ -1,0 +1,185 @@
+!> The table of results: comment lines, a line of names, rows of numbers.
+!> Uses mech9_number_format, mech9_text_file, mech9_printable, mech9_clock and the base.
+!>
+!>     # A slider-crank
+!>     # mech9k 0.1.0
+!>     # units:                s                      rad
+!>                             t                       q1
+!>        0.0000000000000000E+00   5.0000000000000000E-01
+!>
+!> Rows gather in a buffer and leave it as whole rows, when it is full and about once a second, so
+!> that a run that is killed leaves a table that can be read.
+module mech9_table
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_internal
+  use mech9_text, only: string_type
+  use mech9_clock, only: pacer_type
+  use mech9_number_format, only: number_format_type, number_width
+  use mech9_printable, only: printable, column_name
+  use mech9_text_file, only: text_file_type
+  implicit none
+  private
+  public :: table_type
+
+  integer, parameter :: buffer_size = 1048576
+  !> How long rows may wait in the buffer [s], at the next row at least.
+  real(wp), parameter :: longest_wait = 1.0_wp
+  character, parameter :: line_end = achar(10)
+
+  !> A table being written.
+  type :: table_type
+    private
+    type(text_file_type) :: file
+    type(number_format_type) :: format
+    type(pacer_type) :: pacer
+    character(len=:), allocatable :: buffer
+    integer :: used = 0      !< bytes waiting in the buffer
+    integer :: columns = 0
+    integer :: row_size = 0  !< bytes
+  contains
+    procedure :: open => open_table
+    procedure :: write_row
+    procedure :: close => close_table
+    procedure, private :: hand_over
+  end type table_type
+
+contains
+
+  !> Create the file and write what stands above the rows.
+  subroutine open_table(self, path, title, program, names, units, err)
+    class(table_type), intent(inout) :: self
+    character(len=*), intent(in) :: path          !< '-' is standard output
+    character(len=*), intent(in) :: title         !< any text; a comment line for each of its lines
+    character(len=*), intent(in) :: program       !< name and version
+    type(string_type), intent(in) :: names(:)     !< of the columns
+    type(string_type), intent(in) :: units(:)     !< of the columns; empty for a plain number
+    type(error_type), allocatable, intent(out) :: err
+
+    if (size(names) == 0 .or. size(names) /= size(units)) then
+      call raise(err, exit_internal, 'a table needs columns, and as many units as names')
+      return
+    end if
+    call self%file%open(path, err)
+    if (allocated(err)) return
+    self%format = number_format_type()
+    self%columns = size(names)
+    self%row_size = number_width*self%columns + 1
+    self%used = 0
+    if (allocated(self%buffer)) deallocate (self%buffer)
+    allocate (character(len=max(buffer_size, self%row_size)) :: self%buffer)
+    call self%pacer%start(longest_wait)
+    call self%file%write(comment_lines(title)//comment_lines(program) &
+                         //unit_line(units)//name_line(names), err)
+  end subroutine open_table
+
+  !> Write one row, a value for each column. It may wait in the buffer for a moment.
+  subroutine write_row(self, values, err)
+    class(table_type), intent(inout) :: self
+    real(wp), intent(in) :: values(:)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i, at
+
+    if (size(values) /= self%columns .or. .not. self%file%is_open()) then
+      call raise(err, exit_internal, 'a row needs an open table and a value for each column')
+      return
+    end if
+    if (self%used + self%row_size > len(self%buffer)) then
+      call self%hand_over(err)
+      if (allocated(err)) return
+    end if
+    at = self%used
+    do i = 1, self%columns
+      call self%format%put(values(i), self%buffer(at + 1:at + number_width))
+      at = at + number_width
+    end do
+    self%buffer(at + 1:at + 1) = line_end
+    self%used = at + 1
+    if (self%pacer%due()) call self%hand_over(err)
+  end subroutine write_row
+
+  !> Write the last rows and close the file; does nothing to a table that is not open. The file is closed
+  !> even when writing fails.
+  subroutine close_table(self, err)
+    class(table_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: close_error
+
+    if (.not. self%file%is_open()) return
+    call self%hand_over(err)
+    call self%file%close(close_error)
+    if (.not. allocated(err)) call move_alloc(close_error, err)
+    deallocate (self%buffer)
+  end subroutine close_table
+
+  !> Empty the buffer into the file. Rows that cannot be written are dropped: the run is about to
+  !> end with this error, and must not meet it again when it closes the table.
+  subroutine hand_over(self, err)
+    class(table_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+    integer :: used
+
+    used = self%used
+    self%used = 0
+    if (used > 0) call self%file%write(self%buffer(:used), err)
+  end subroutine hand_over
+
+  !> Text as comment lines; line ends of all kinds separate, and none is left in a line.
+  pure function comment_lines(text) result(lines)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: lines
+    integer :: first, length
+
+    lines = ''
+    first = 1
+    do while (first <= len(text))
+      length = scan(text(first:), achar(10)//achar(13)) - 1
+      if (length < 0) length = len(text) - first + 1
+      if (text(first:first + length - 1) /= '') &
+        lines = lines//'# '//trim(printable(text(first:first + length - 1)))//line_end
+      first = first + length + 1
+    end do
+  end function comment_lines
+
+  !> The units, each above its column.
+  pure function unit_line(units) result(line)
+    type(string_type), intent(in) :: units(:)
+    character(len=:), allocatable :: line
+    character(len=*), parameter :: beginning = '# units:'
+    integer :: i
+
+    line = beginning//right_aligned(unit_name(units(1)%text), number_width - len(beginning))
+    do i = 2, size(units)
+      line = line//right_aligned(unit_name(units(i)%text), number_width)
+    end do
+    line = line//line_end
+  end function unit_line
+
+  pure function unit_name(unit) result(name)
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: name
+
+    name = '1'
+    if (unit /= '') name = column_name(unit)
+  end function unit_name
+
+  pure function name_line(names) result(line)
+    type(string_type), intent(in) :: names(:)
+    character(len=:), allocatable :: line
+    integer :: i
+
+    line = ''
+    do i = 1, size(names)
+      line = line//right_aligned(column_name(names(i)%text), number_width)
+    end do
+    line = line//line_end
+  end function name_line
+
+  !> A word at the right end of a field; a word that fills the field keeps a blank before it.
+  pure function right_aligned(word, width) result(field)
+    character(len=*), intent(in) :: word
+    integer, intent(in) :: width
+    character(len=:), allocatable :: field
+
+    field = repeat(' ', max(width - len(word), 1))//word
+  end function right_aligned
+end module mech9_table

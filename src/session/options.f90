@@ -1,0 +1,72 @@
+!> The one table of the options of the command line; reading and help both come from it.
+!> Uses nothing.
+module mech9_options
+  implicit none
+  private
+  public :: option_type, options_table, option_names, find_option
+  public :: no_argument, optional_argument, needed_argument
+
+  integer, parameter :: no_argument = 0, optional_argument = 1, needed_argument = 2
+
+  !> One option.
+  type :: option_type
+    character(len=12) :: name             !< without the dashes
+    integer :: takes = no_argument        !< whether it takes an argument
+    character(len=18) :: argument = ''    !< the argument's name in the help
+    logical :: repeats = .false.          !< whether it may be given more than once
+    character(len=13) :: programs = ''    !< the programs that have it
+    character(len=72) :: help = ''        !< one line
+  end type option_type
+
+  character(len=*), parameter :: both = 'mech9k mech9d'
+
+  type(option_type), parameter :: options_table(*) = [ &
+    option_type('check', no_argument, '', .false., both, &
+                'read, judge and assemble the mechanism, do not run it'), &
+    option_type('structure', no_argument, '', .false., both, &
+                'print the structural vectors nrg, nws, rdw, nrw'), &
+    option_type('plan', no_argument, '', .false., both, &
+                'print what will be computed, in which order, and what is skipped'), &
+    option_type('table', needed_argument, 'PATH', .false., both, &
+                'write the table of results there; - is standard output'), &
+    option_type('no-write', no_argument, '', .false., both, &
+                'compute all that is asked for, write no results'), &
+    option_type('report', needed_argument, 'FILE', .false., both, &
+                'write the report of the run as JSON'), &
+    option_type('set', needed_argument, 'GROUP.NAME=VALUE', .true., both, &
+                'replace a value of the data file; may be repeated'), &
+    option_type('quiet', no_argument, '', .false., both, &
+                'say nothing but errors'), &
+    option_type('verbose', no_argument, '', .false., both, &
+                'say more'), &
+    option_type('help', no_argument, '', .false., both, &
+                'print this text'), &
+    option_type('help-data', optional_argument, 'GROUP', .false., both, &
+                'explain the data file, or one group of it'), &
+    option_type('version', no_argument, '', .false., both, &
+                'print the version')]
+
+contains
+
+  !> Place of an option in the table; 0 where the program has none of that name.
+  pure integer function find_option(name, program_name) result(place)
+    character(len=*), intent(in) :: name           !< without the dashes
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+
+    do place = 1, size(options_table)
+      if (options_table(place)%name == name &
+          .and. index(options_table(place)%programs, program_name) > 0) return
+    end do
+    place = 0
+  end function find_option
+
+  !> The names of all options of a program, without the dashes.
+  pure function option_names(program_name) result(names)
+    character(len=*), intent(in) :: program_name
+    character(len=len(options_table%name)), allocatable :: names(:)
+    integer :: i
+
+    names = pack(options_table%name, [(index(options_table(i)%programs, program_name) > 0, &
+                                       i=1, size(options_table))])
+  end function option_names
+end module mech9_options

@@ -1,0 +1,105 @@
+!> What only the system can do: end the program with an exit code, tell a terminal from a file, take
+!> Ctrl-C. Uses ISO C binding only.
+module mech9_system
+  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
+  implicit none
+  private
+  public :: exit_program, is_terminal, standard_input, standard_output, standard_error
+  public :: catch_interrupts, interrupted
+
+  !> The three standard files, for `is_terminal`.
+  integer, parameter :: standard_input = 0, standard_output = 1, standard_error = 2
+
+  ! Numbers of POSIX systems.
+  integer(c_int), parameter :: signal_interrupt = 2, signal_broken_pipe = 13, signal_terminate = 15
+  !> SIG_DFL and SIG_IGN as addresses.
+  integer(c_intptr_t), parameter :: default_action = 0, ignore_action = 1
+
+  !> Set by the signal handler, polled by `interrupted`. A signal handler is given nothing but the number
+  !> of the signal, so that it can only reach a module variable: this is the one exception of the
+  !> project to its rule that no module variable changes. An interrupt means the whole process, hence
+  !> every mechanism running in it.
+  integer(c_int), volatile, bind(c, name='mech9_interrupt_flag') :: interrupt_flag = 0
+
+  interface
+    subroutine c_exit(code) bind(c, name='exit')
+      import :: c_int
+      integer(c_int), value :: code
+    end subroutine c_exit
+
+    integer(c_int) function c_isatty(descriptor) bind(c, name='isatty')
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_isatty
+
+    type(c_funptr) function c_signal(number, action) bind(c, name='signal')
+      import :: c_int, c_funptr
+      integer(c_int), value :: number
+      type(c_funptr), value :: action
+    end function c_signal
+  end interface
+
+contains
+
+  !> End the program with an exit code, after all units are flushed. `stop` with a code would print
+  !> it, `error stop` a backtrace.
+  subroutine exit_program(code)
+    integer, intent(in) :: code   !< one of the exit_ codes of mech9_error
+    integer :: status
+
+    ! failures are of no use any more: what matters was written and checked elsewhere
+    flush (output_unit, iostat=status)
+    flush (error_unit, iostat=status)
+    call c_exit(int(code, c_int))
+  end subroutine exit_program
+
+  !> Whether a standard file is a terminal that a person looks at.
+  logical function is_terminal(descriptor)
+    integer, intent(in) :: descriptor   !< standard_input, standard_output or standard_error
+
+    is_terminal = c_isatty(int(descriptor, c_int)) == 1
+  end function is_terminal
+
+  !> From now on the first Ctrl-C, or the first request to terminate, only sets what `interrupted` tells,
+  !> so that a loop can end in order; a second one ends the program at once. A reader that goes away
+  !> (`mech9k ... | head`) becomes an error of writing instead of a silent death.
+  subroutine catch_interrupts()
+    type(c_funptr) :: previous
+
+    call catch(signal_interrupt)
+    call catch(signal_terminate)
+    previous = c_signal(signal_broken_pipe, action(ignore_action))
+  end subroutine catch_interrupts
+
+  !> Catch one signal, unless whoever started the program had it ignored (nohup, a job in the background).
+  subroutine catch(number)
+    integer(c_int), intent(in) :: number
+    type(c_funptr) :: previous
+
+    previous = c_signal(number, c_funloc(note_signal))
+    if (transfer(previous, 0_c_intptr_t) == ignore_action) &
+      previous = c_signal(number, action(ignore_action))
+  end subroutine catch
+
+  !> Whether the user wants the run to end. As cheap as reading a variable.
+  logical function interrupted()
+    interrupted = interrupt_flag /= 0
+  end function interrupted
+
+  !> The signal handler. It may do very little: note the signal, and give the next one its default
+  !> action, which is to end the program.
+  subroutine note_signal(number) bind(c)
+    integer(c_int), value :: number
+    type(c_funptr) :: previous
+
+    interrupt_flag = 1
+    previous = c_signal(number, action(default_action))
+  end subroutine note_signal
+
+  type(c_funptr) function action(address)
+    integer(c_intptr_t), intent(in) :: address
+
+    action = transfer(address, c_null_funptr)
+  end function action
+end module mech9_system
