@@ -163,7 +163,7 @@ def talk(s):
 def bad_data(s):
     text = text_of(FIG1)
     done = s.ends(DATA, 'a misspelt kind', s.write('kind.nml', text.replace("'revolute'", "'revolutte'", 1)),
-                  says=["kind.nml:16:", "revolutte", "'revolute'"])
+                  says=["kind.nml:15:", "revolutte", "'revolute'"])
     s.checks.true('^^^' in done.stderr, 'the place is marked', done.stderr)
     crlf = s.write('crlf.nml', text.replace('\n', '\r\n'))
     s.ends(DONE, 'line ends of Windows', crlf, '--table', 'crlf.dat')
