@@ -1,0 +1,203 @@
+!> Assembly: closing the chains of a block from a rough guess. Uses kinds, error, least_squares,
+!> random, plan, state, composition, closure, solver.
+!>
+!> Damped least squares (Levenberg and Marquardt), finished by Newton's method. Where the guess leads
+!> to no closed position, the guesses are changed by growing random amounts, always the same ones.
+module mech9_assembly
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
+  use mech9_least_squares, only: least_squares_type
+  use mech9_random, only: random_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_composition, only: place_frames
+  use mech9_closure, only: closure_errors, closure_jacobian, closing_error
+  use mech9_solver, only: block_work_type, newton_outcome_type, close_block, apply_change
+  implicit none
+  private
+  public :: assemble_block, assembly_outcome_type
+
+  integer, parameter :: most_restarts = 24
+  integer, parameter :: most_steps = 200
+
+  type :: assembly_outcome_type
+    logical :: closed = .false.
+    integer :: restarts = 0           !< changed guesses that were needed
+    integer :: worst_closure = 0      !< where it failed: the closure that is farthest from closed ...
+    real(wp) :: gap = 0.0_wp          !< ... and how far [m, rotations times the mechanism's size]
+  end type assembly_outcome_type
+
+contains
+
+  !> Close the chains of a block from the guesses in `state`. Where no closed position is found, the
+  !> coordinates are those that came nearest from the first guess.
+  subroutine assemble_block(plan, block, state, work, may_restart, outcome, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    logical, intent(in) :: may_restart
+    type(assembly_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: guess(size(block%unknowns)), nearest(size(block%unknowns))
+    type(random_type) :: random
+    integer :: restart, i, k
+
+    guess = state%q(plan%steps(block%unknowns)%coordinate)
+    do restart = 0, merge(most_restarts, 0, may_restart)
+      do i = 1, size(guess)
+        k = plan%steps(block%unknowns(i))%coordinate
+        state%q(k) = guess(i)
+        if (restart > 0) state%q(k) = guess(i) + plan%unit_of(k)*random%symmetric()*pi*restart/most_restarts
+      end do
+      call descend(plan, block, state, work, outcome, err)
+      if (allocated(err)) return
+      outcome%restarts = restart
+      if (outcome%closed) then
+        call unwind(plan, block, guess, state, err)
+        return
+      end if
+      if (restart == 0) nearest = state%q(plan%steps(block%unknowns)%coordinate)
+    end do
+    state%q(plan%steps(block%unknowns)%coordinate) = nearest
+    call place_frames(plan, block%first_step, block%last_step, state, err)
+    if (allocated(err)) return
+    call find_worst(plan, block, state, outcome)
+  end subroutine assemble_block
+
+  !> Damped least squares from the coordinates in `state`, then Newton.
+  subroutine descend(plan, block, state, work, outcome, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(assembly_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: newton
+    type(least_squares_type) :: damped
+    real(wp), allocatable :: right(:)
+    real(wp) :: before(size(block%unknowns))
+    real(wp) :: damping, lack, trial_lack
+    integer :: step, i, n, m
+
+    n = size(block%unknowns)
+    m = block%equations
+    call damped%create(m + n, n)
+    allocate (right(m + n))
+    damping = 1.0e-2_wp
+    call measure(plan, block, state, work, lack, err)
+    if (allocated(err)) return
+    do step = 1, most_steps
+      if (lack <= 1.0e-8_wp .or. n == 0) exit
+      call closure_jacobian(plan, block, state, work%column_of, damped%a(:m, :))
+      damped%a(m + 1:, :) = 0.0_wp
+      do i = 1, n
+        damped%a(m + i, i) = sqrt(damping)
+      end do
+      right(:m) = -work%right
+      right(m + 1:) = 0.0_wp
+      call damped%factorize()
+      call damped%solve(right, work%change)
+      ! no more than about a radian at once: beyond it the closures bend too much to follow
+      work%change = work%change/max(1.0_wp, maxval(abs(work%change)))
+      before = state%q(plan%steps(block%unknowns)%coordinate)
+      call apply_change(plan, block, work%change, state)
+      call measure(plan, block, state, work, trial_lack, err)
+      if (allocated(err)) return
+      if (trial_lack < lack) then
+        damping = max(damping*0.2_wp, 1.0e-14_wp)
+        if (trial_lack > 0.9999_wp*lack .and. damping < 1.0e-8_wp) exit   ! a least distance that is not zero
+        lack = trial_lack
+      else
+        state%q(plan%steps(block%unknowns)%coordinate) = before
+        call measure(plan, block, state, work, lack, err)
+        if (allocated(err)) return
+        damping = damping*5.0_wp
+        if (damping > 1.0e6_wp) exit
+      end if
+    end do
+    call finish(plan, block, state, work, newton, err)
+    if (allocated(err)) return
+    call find_worst(plan, block, state, outcome)
+    ! all six components of every closure count here, also those outside its space of motions
+    outcome%closed = newton%converged .and. outcome%gap <= 1.0e-10_wp*plan%length
+  end subroutine descend
+
+  !> Newton's method to round-off. At a singular position it would leave a closed chain: then what
+  !> damped least squares found is kept if it is closed.
+  subroutine finish(plan, block, state, work, newton, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(newton_outcome_type), intent(out) :: newton
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: before(size(block%unknowns)), lack
+
+    before = state%q(plan%steps(block%unknowns)%coordinate)
+    call close_block(plan, block, state, work, newton, err)
+    if (allocated(err)) return
+    if (newton%converged .and. newton%correction < 1.0e-2_wp) return
+    state%q(plan%steps(block%unknowns)%coordinate) = before
+    call measure(plan, block, state, work, lack, err)
+    newton%converged = lack <= 1.0e-12_wp
+  end subroutine finish
+
+  !> Length of the block's errors at the coordinates in `state`; the errors stay in work%right.
+  subroutine measure(plan, block, state, work, lack, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    real(wp), intent(out) :: lack
+    type(error_type), allocatable, intent(out) :: err
+
+    lack = huge(lack)
+    call place_frames(plan, block%first_step, block%last_step, state, err)
+    if (allocated(err)) return
+    call closure_errors(plan, block, state, work%right)
+    lack = norm2(work%right)
+  end subroutine measure
+
+  !> The closure of a block that is farthest from closed.
+  subroutine find_worst(plan, block, state, outcome)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(assembly_outcome_type), intent(inout) :: outcome
+    real(wp) :: gap
+    integer :: c
+
+    outcome%gap = 0.0_wp
+    do c = block%first_closure, block%last_closure
+      gap = closing_error(plan, plan%closures(c), state)
+      if (gap > outcome%gap .or. outcome%worst_closure == 0) then
+        outcome%gap = gap
+        outcome%worst_closure = c
+      end if
+    end do
+  end subroutine find_worst
+
+  !> Take full turns off the coordinates of revolute pairs, so that each is within half a turn of its guess.
+  subroutine unwind(plan, block, guess, state, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    real(wp), intent(in) :: guess(:)
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+    logical :: changed
+
+    changed = .false.
+    do i = 1, size(block%unknowns)
+      associate (step => plan%steps(block%unknowns(i)))
+        if (.not. step%is_screw .or. abs(step%slide) > 0.0_wp) cycle
+        if (abs(state%q(step%coordinate) - guess(i)) <= pi) cycle
+        state%q(step%coordinate) = state%q(step%coordinate) &
+                                   - 2.0_wp*pi*anint((state%q(step%coordinate) - guess(i))/(2.0_wp*pi))
+        changed = .true.
+      end associate
+    end do
+    if (changed) call place_frames(plan, block%first_step, block%last_step, state, err)
+  end subroutine unwind
+end module mech9_assembly

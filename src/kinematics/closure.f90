@@ -1,0 +1,161 @@
+!> Closures of a block, (12): by how much its chains fail to close, in independent equations, and the
+!> exact Jacobian. Uses kinds, rotation, plan, state.
+!>
+!> The twelve scalars of (12) hold at most six independent ones. They are replaced by the screw of
+!> the error pose: the rotation vector that turns the target onto the closing frame, and the distance
+!> between the two. The screw is written at the base frame of the loop, where the space of motions of
+!> the loop is constant, and the closure's constant rows pick its independent components. Rotations
+!> count in rad, translations in lengths of the mechanism.
+module mech9_closure
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: cross, rotation_vector
+  use mech9_plan, only: plan_type, closure_type, block_type
+  use mech9_state, only: state_type, velocity_known
+  implicit none
+  private
+  public :: closure_errors, closure_jacobian, closure_rates, closing_error, loop_screw
+
+contains
+
+  !> What the closures of a block lack: (equations), rotations in rad and translations in lengths.
+  pure subroutine closure_errors(plan, block, state, errors)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    real(wp), intent(out) :: errors(:)
+    real(wp) :: w(3), v(3), place(3)
+    integer :: c, row
+
+    row = 0
+    do c = block%first_closure, block%last_closure
+      call error_screw(plan%closures(c), state, w, v, place)
+      call reduce(plan, plan%closures(c), state, w, v, place, errors(row + 1:row + plan%closures(c)%rank))
+      row = row + plan%closures(c)%rank
+    end do
+  end subroutine closure_errors
+
+  !> Derivatives of the block's equations with respect to its dependent coordinates, each coordinate
+  !> in its own unit (rad, or the mechanism's length): (equations, unknowns).
+  pure subroutine closure_jacobian(plan, block, state, column_of, jacobian)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: column_of(:)       !< column of each of the block's steps; 0: not an unknown
+    real(wp), intent(out) :: jacobian(:, :)
+    real(wp) :: place(3), w(3), v(3), unit
+    integer :: c, i, s, row, column
+
+    jacobian = 0.0_wp
+    row = 0
+    do c = block%first_closure, block%last_closure
+      associate (closure => plan%closures(c))
+        place = state%p(:, closure%closing)
+        do i = 1, size(closure%path%steps)
+          s = closure%path%steps(i)
+          if (s < block%first_step) cycle
+          column = column_of(s - block%first_step + 1)
+          if (column == 0) cycle
+          unit = closure%path%signs(i)*plan%unit_of(plan%steps(s)%coordinate)
+          w = unit*state%axis_w(:, s)
+          v = unit*state%axis_v(:, s) + cross(w, place - state%p(:, s))
+          call reduce(plan, closure, state, w, v, place, jacobian(row + 1:row + closure%rank, column))
+        end do
+        row = row + closure%rank
+      end associate
+    end do
+  end subroutine closure_jacobian
+
+  !> How fast the block's closures open: from the velocities in `state`, or from its accelerations.
+  pure subroutine closure_rates(plan, block, state, order, rates)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: order          !< velocity_known or acceleration_known: which of them
+    real(wp), intent(out) :: rates(:)
+    real(wp) :: w(3), v(3), arm(3), place(3)
+    integer :: c, row
+
+    row = 0
+    do c = block%first_closure, block%last_closure
+      associate (closure => plan%closures(c), f => plan%closures(c)%closing, g => plan%closures(c)%target)
+        place = state%p(:, f)
+        arm = place - state%p(:, g)
+        if (order == velocity_known) then
+          w = state%omega(:, f) - state%omega(:, g)
+          v = state%v(:, f) - state%v(:, g) - cross(state%omega(:, g), arm)
+        else
+          w = state%alpha(:, f) - state%alpha(:, g)
+          v = state%a(:, f) - state%a(:, g) - cross(state%alpha(:, g), arm) &
+              - cross(state%omega(:, g), cross(state%omega(:, g), arm))
+        end if
+        call reduce(plan, closure, state, w, v, place, rates(row + 1:row + closure%rank))
+        row = row + closure%rank
+      end associate
+    end do
+  end subroutine closure_rates
+
+  !> How far a closure is from closed, all six components: a length [m], rotations times the mechanism's size.
+  pure real(wp) function closing_error(plan, closure, state)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp) :: w(3), v(3), place(3)
+
+    call error_screw(closure, state, w, v, place)
+    closing_error = max(norm2(v), plan%length*norm2(w))
+  end function closing_error
+
+  !> Error pose of a closure as a screw at the closing frame's origin, in the axes of frame 0.
+  pure subroutine error_screw(closure, state, w, v, place)
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(out) :: w(3), v(3), place(3)
+    real(wp) :: r_target(3, 3)
+
+    associate (g => closure%target)
+      r_target = matmul(state%r(:, :, g), closure%in_target%r)
+      place = state%p(:, closure%closing)
+      v = place - state%p(:, g) - matmul(state%r(:, :, g), closure%in_target%p)
+      w = matmul(r_target, rotation_vector(matmul(transpose(r_target), state%r(:, :, closure%closing))))
+    end associate
+  end subroutine error_screw
+
+  !> The independent components of a screw that is given at `place` in the axes of frame 0.
+  pure subroutine reduce(plan, closure, state, w, v, place, components)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(in) :: w(3), v(3), place(3)
+    real(wp), intent(out) :: components(:)
+    real(wp) :: screw(6)
+    integer :: i
+
+    if (closure%rank == 6) then
+      components(1:3) = w
+      components(4:6) = v/plan%length
+      return
+    end if
+    screw = loop_screw(plan, closure, state, w, v, place)
+    do i = 1, closure%rank
+      components(i) = dot_product(closure%rows(:, i), screw)
+    end do
+  end subroutine reduce
+
+  !> A screw given at `place` in the axes of frame 0, moved to the base frame of a loop, lengths scaled.
+  pure function loop_screw(plan, closure, state, w, v, place) result(screw)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(in) :: w(3), v(3), place(3)
+    real(wp) :: screw(6), v_base(3)
+
+    v_base = (v + cross(w, state%p(:, closure%base) - place))/plan%length
+    if (closure%base == 0) then
+      screw(1:3) = w
+      screw(4:6) = v_base
+    else
+      screw(1:3) = matmul(w, state%r(:, :, closure%base))
+      screw(4:6) = matmul(v_base, state%r(:, :, closure%base))
+    end if
+  end function loop_screw
+end module mech9_closure

@@ -1,0 +1,172 @@
+!> One block at one time: Newton's method for its positions, then its exact rates and accelerations.
+!> Uses kinds, error, least_squares, plan, state, composition, closure, motion.
+module mech9_solver
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_least_squares, only: least_squares_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type, velocity_known, acceleration_known
+  use mech9_composition, only: place_frames
+  use mech9_closure, only: closure_errors, closure_jacobian, closure_rates
+  use mech9_motion, only: spread_velocities, spread_accelerations
+  implicit none
+  private
+  public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, apply_change
+  public :: closed_enough, newton_outcome_type
+
+  !> A chain counts as closed when its independent equations hold to this many times round-off,
+  !> rotations in rad, translations in lengths of the mechanism: a sum over the steps of a loop
+  !> loses a few units.
+  real(wp), parameter :: closed_enough = 32.0_wp*epsilon(1.0_wp)
+  !> Once a correction is this small, the next error is its square: round-off.
+  real(wp), parameter :: last_correction = 1.0e-9_wp
+  integer, parameter :: most_iterations = 12
+
+  !> Scratch of one block, sized once.
+  type :: block_work_type
+    type(least_squares_type) :: equations      !< Jacobian and its factors
+    integer, allocatable :: column_of(:)       !< unknown of each of the block's steps, 0 for none
+    real(wp), allocatable :: right(:)          !< (equations)
+    real(wp), allocatable :: change(:)         !< (unknowns)
+  end type block_work_type
+
+  !> How Newton's method went.
+  type :: newton_outcome_type
+    logical :: converged = .false.
+    integer :: iterations = 0
+    real(wp) :: correction = 0.0_wp      !< of all iterations together, largest coordinate in its unit
+    real(wp) :: contraction = 0.0_wp     !< second correction against the first; 0 where one was enough
+  end type newton_outcome_type
+
+contains
+
+  !> Scratch for a block.
+  pure function new_block_work(block) result(work)
+    type(block_type), intent(in) :: block
+    type(block_work_type) :: work
+    integer :: i
+
+    call work%equations%create(block%equations, size(block%unknowns))
+    allocate (work%column_of(block%last_step - block%first_step + 1), source=0)
+    do i = 1, size(block%unknowns)
+      work%column_of(block%unknowns(i) - block%first_step + 1) = i
+    end do
+    allocate (work%right(block%equations), work%change(size(block%unknowns)), source=0.0_wp)
+  end function new_block_work
+
+  !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its
+  !> frames are in place. Whether it converged, and how, is in `outcome`. Fails only where a pair has no pose.
+  subroutine close_block(plan, block, state, work, outcome, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(newton_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: size_of_change, previous, lack
+
+    previous = 0.0_wp
+    do
+      call place_frames(plan, block%first_step, block%last_step, state, err)
+      if (allocated(err)) return
+      if (size(block%unknowns) == 0) then
+        outcome%converged = .true.
+        return
+      end if
+      call closure_errors(plan, block, state, work%right)
+      lack = maxval(abs(work%right))
+      outcome%converged = lack <= closed_enough .or. (outcome%iterations > 0 .and. previous <= last_correction)
+      if (outcome%converged) return
+      ! not a number, or no progress
+      if (outcome%iterations == most_iterations .or. .not. lack < huge(lack)) return
+      call factorize_block(plan, block, state, work)
+      work%right = -work%right
+      call work%equations%solve(work%right, work%change)
+      call apply_change(plan, block, work%change, state)
+      outcome%iterations = outcome%iterations + 1
+      size_of_change = maxval(abs(work%change))
+      outcome%correction = outcome%correction + size_of_change
+      if (outcome%iterations == 2) outcome%contraction = size_of_change/max(previous, tiny(previous))
+      previous = size_of_change
+    end do
+  end subroutine close_block
+
+  !> Jacobian of a block at the position in `state`, factorized.
+  subroutine factorize_block(plan, block, state, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(inout) :: work
+
+    call closure_jacobian(plan, block, state, work%column_of, work%equations%a)
+    call work%equations%factorize()
+  end subroutine factorize_block
+
+  !> Add a change, given in units of the coordinates, to the block's dependent coordinates.
+  pure subroutine apply_change(plan, block, change, state)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    real(wp), intent(in) :: change(:)
+    type(state_type), intent(inout) :: state
+    integer :: i, k
+
+    do i = 1, size(block%unknowns)
+      k = plan%steps(block%unknowns(i))%coordinate
+      state%q(k) = state%q(k) + change(i)*plan%unit_of(k)
+    end do
+  end subroutine apply_change
+
+  !> Rates of the block's dependent coordinates, J_d dq_d = -J_i dq_i, and velocities of its frames.
+  !> The Jacobian must be factorized at this position.
+  subroutine solve_rates(plan, block, state, work, remainder)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    real(wp), intent(out), optional :: remainder   !< what no rates of the unknowns can make up for
+    integer :: i, k
+
+    if (present(remainder)) remainder = 0.0_wp
+    do i = 1, size(block%unknowns)
+      state%dq(plan%steps(block%unknowns(i))%coordinate) = 0.0_wp
+    end do
+    call spread_velocities(plan, block%first_step, block%last_step, state)
+    if (block%equations == 0) return
+    call closure_rates(plan, block, state, velocity_known, work%right)
+    work%right = -work%right
+    if (present(remainder)) then
+      call work%equations%solve(work%right, work%change, remainder)
+    else
+      call work%equations%solve(work%right, work%change)
+    end if
+    do i = 1, size(block%unknowns)
+      k = plan%steps(block%unknowns(i))%coordinate
+      state%dq(k) = work%change(i)*plan%unit_of(k)
+    end do
+    call spread_velocities(plan, block%first_step, block%last_step, state)
+  end subroutine solve_rates
+
+  !> Accelerations of the block's dependent coordinates, J_d ddq_d = -J_i ddq_i - dJ/dt dq, and of its frames.
+  !> The Jacobian must be factorized at this position and the rates be known.
+  subroutine solve_accelerations(plan, block, state, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    integer :: i, k
+
+    do i = 1, size(block%unknowns)
+      state%ddq(plan%steps(block%unknowns(i))%coordinate) = 0.0_wp
+    end do
+    call spread_accelerations(plan, block%first_step, block%last_step, state)
+    if (size(block%unknowns) == 0) return
+    call closure_rates(plan, block, state, acceleration_known, work%right)
+    work%right = -work%right
+    call work%equations%solve(work%right, work%change)
+    do i = 1, size(block%unknowns)
+      k = plan%steps(block%unknowns(i))%coordinate
+      state%ddq(k) = work%change(i)*plan%unit_of(k)
+    end do
+    call spread_accelerations(plan, block%first_step, block%last_step, state)
+  end subroutine solve_accelerations
+end module mech9_solver

@@ -1,0 +1,53 @@
+!> The state of motion of a mechanism and what is known of it. Uses kinds, plan.
+module mech9_state
+  use mech9_kinds, only: wp
+  use mech9_plan, only: plan_type
+  implicit none
+  private
+  public :: state_type, new_state, nothing_known, position_known, velocity_known, acceleration_known
+
+  !> How far a state is worked out.
+  integer, parameter :: nothing_known = 0
+  integer, parameter :: position_known = 1
+  integer, parameter :: velocity_known = 2
+  integer, parameter :: acceleration_known = 3
+
+  !> All vectors in the axes of frame 0; positions from its origin. Index: the frame, or the step that
+  !> made it. `known` says which of the quantities below belong to the coordinates.
+  type :: state_type
+    real(wp) :: t = 0.0_wp                       !< [s]
+    integer :: known = nothing_known
+    real(wp), allocatable :: q(:)                !< coordinates [rad, m]
+    real(wp), allocatable :: dq(:)               !< rates
+    real(wp), allocatable :: ddq(:)              !< accelerations
+    real(wp), allocatable :: r(:, :, :)          !< (3,3,0:M) rotation of each frame
+    real(wp), allocatable :: p(:, :)             !< (3,0:M) origin of each frame [m]
+    real(wp), allocatable :: axis_w(:, :)        !< (3,M) angular velocity that each step gives per unit rate
+    real(wp), allocatable :: axis_v(:, :)        !< (3,M) velocity of the new origin per unit rate
+    real(wp), allocatable :: axis_w_rate(:, :)   !< (3,M) derivatives of both in q, at fixed departing link;
+    real(wp), allocatable :: axis_v_rate(:, :)   !<       zero but for user pairs
+    real(wp), allocatable :: omega(:, :)         !< (3,0:M) angular velocity [rad/s]
+    real(wp), allocatable :: v(:, :)             !< (3,0:M) velocity of the origin [m/s]
+    real(wp), allocatable :: alpha(:, :)         !< (3,0:M) angular acceleration [rad/s^2]
+    real(wp), allocatable :: a(:, :)             !< (3,0:M) acceleration of the origin [m/s^2]
+  end type state_type
+
+contains
+
+  !> A state with room for all frames of a plan, everything zero and nothing known.
+  pure function new_state(plan) result(state)
+    type(plan_type), intent(in) :: plan
+    type(state_type) :: state
+    integer :: m, i
+
+    m = plan%n_coordinates
+    allocate (state%q(m), state%dq(m), state%ddq(m), source=0.0_wp)
+    allocate (state%r(3, 3, 0:m), state%p(3, 0:m), source=0.0_wp)
+    allocate (state%axis_w(3, m), state%axis_v(3, m), source=0.0_wp)
+    allocate (state%axis_w_rate(3, m), state%axis_v_rate(3, m), source=0.0_wp)
+    allocate (state%omega(3, 0:m), state%v(3, 0:m), state%alpha(3, 0:m), state%a(3, 0:m), source=0.0_wp)
+    do i = 1, 3
+      state%r(i, i, :) = 1.0_wp
+    end do
+  end function new_state
+end module mech9_state

@@ -1,0 +1,214 @@
+!> Least squares by QR with column pivoting: factorized once, solved for several right-hand sides.
+!> Uses kinds, lapack.
+!>
+!> Small matrices, the rule in mechanisms, are factorized by a plain Householder loop of our own,
+!> which beats the call into LAPACK there; larger ones by LAPACK. Nothing is allocated after `create`.
+module mech9_least_squares
+  use mech9_kinds, only: wp
+  use mech9_lapack, only: dgeqp3, dormqr
+  implicit none
+  private
+  public :: least_squares_type
+
+  !> From this number of columns on LAPACK is called.
+  integer, parameter :: lapack_from = 24
+
+  type :: least_squares_type
+    integer :: m = 0                            !< equations
+    integer :: n = 0                            !< unknowns
+    real(wp), allocatable :: a(:, :)            !< (m,n): the matrix before, its factors after `factorize`
+    integer, allocatable :: pivot(:)            !< column of the matrix at each place
+    real(wp), allocatable, private :: tau(:)
+    real(wp), allocatable, private :: norms(:)
+    real(wp), allocatable, private :: work(:)
+  contains
+    procedure :: create
+    procedure :: factorize
+    procedure :: solve
+    procedure :: rank
+    procedure :: conditioning
+    procedure :: determinant_sign
+  end type least_squares_type
+
+contains
+
+  !> Make room for m equations in n unknowns.
+  pure subroutine create(self, m, n)
+    class(least_squares_type), intent(inout) :: self
+    integer, intent(in) :: m, n
+
+    self%m = m
+    self%n = n
+    if (allocated(self%a)) deallocate (self%a, self%pivot, self%tau, self%norms, self%work)
+    allocate (self%a(m, n), self%tau(n), self%norms(n), source=0.0_wp)
+    allocate (self%pivot(n), source=0)
+    allocate (self%work(max(m, 2*n + (n + 1)*32, 32*32)), source=0.0_wp)
+  end subroutine create
+
+  !> Factorize the matrix that stands in `a`.
+  subroutine factorize(self)
+    class(least_squares_type), intent(inout) :: self
+    integer :: info
+
+    if (self%n < lapack_from) then
+      call householder(self%m, self%n, self%a, self%pivot, self%tau, self%norms)
+    else
+      self%pivot = 0
+      call dgeqp3(self%m, self%n, self%a, self%m, self%pivot, self%tau, self%work, size(self%work), info)
+    end if
+  end subroutine factorize
+
+  !> x with |a x - b| least, and the length of what remains; columns at and beyond the numerical rank
+  !> are not used.
+  subroutine solve(self, b, x, remainder)
+    class(least_squares_type), intent(inout) :: self
+    real(wp), intent(inout) :: b(:)              !< (m); overwritten
+    real(wp), intent(out) :: x(:)                !< (n)
+    real(wp), intent(out), optional :: remainder
+    integer :: i, j, k, info, rank
+    real(wp) :: s
+
+    k = min(self%m, self%n)
+    if (self%n < lapack_from) then
+      do j = 1, k
+        s = b(j)
+        do i = j + 1, self%m
+          s = s + self%a(i, j)*b(i)
+        end do
+        s = s*self%tau(j)
+        b(j) = b(j) - s
+        do i = j + 1, self%m
+          b(i) = b(i) - s*self%a(i, j)
+        end do
+      end do
+    else
+      call dormqr('L', 'T', self%m, 1, k, self%a, self%m, self%tau, b, self%m, self%work, size(self%work), info)
+    end if
+    rank = self%rank()
+    if (present(remainder)) remainder = norm2(b(rank + 1:self%m))
+    do j = rank, 1, -1
+      b(j) = b(j)/self%a(j, j)
+      do i = 1, j - 1
+        b(i) = b(i) - self%a(i, j)*b(j)
+      end do
+    end do
+    x = 0.0_wp
+    do j = 1, rank
+      x(self%pivot(j)) = b(j)
+    end do
+  end subroutine solve
+
+  !> Number of columns that are independent beyond round-off.
+  pure integer function rank(self, tolerance)
+    class(least_squares_type), intent(in) :: self
+    real(wp), intent(in), optional :: tolerance   !< against the largest; round-off unless given
+    real(wp) :: least
+
+    least = 16.0_wp*epsilon(least)*max(self%m, self%n)
+    if (present(tolerance)) least = tolerance
+    if (min(self%m, self%n) > 0) least = least*abs(self%a(1, 1))
+    do rank = 0, min(self%m, self%n) - 1
+      if (.not. abs(self%a(rank + 1, rank + 1)) > least) return
+    end do
+  end function rank
+
+  !> Least against largest pivot: about the reciprocal condition number; 0 where columns depend on
+  !> each other, 1 where there are none.
+  pure real(wp) function conditioning(self)
+    class(least_squares_type), intent(in) :: self
+
+    conditioning = 1.0_wp
+    if (self%n == 0) return
+    conditioning = 0.0_wp
+    if (self%m < self%n) return
+    if (abs(self%a(1, 1)) > 0.0_wp) conditioning = abs(self%a(self%n, self%n)/self%a(1, 1))
+  end function conditioning
+
+  !> Sign of the determinant of a square matrix; 1 for others.
+  pure integer function determinant_sign(self) result(sign)
+    class(least_squares_type), intent(in) :: self
+    integer :: j, place, next, order(self%n)
+
+    sign = 1
+    if (self%m /= self%n) return
+    do j = 1, self%n
+      if (self%a(j, j) < 0.0_wp) sign = -sign
+      if (abs(self%tau(j)) > 0.0_wp) sign = -sign   ! a reflection
+    end do
+    ! sign of the permutation: undo it by exchanges
+    order = self%pivot
+    do j = 1, self%n
+      place = j
+      do while (order(place) /= j)
+        next = order(place)
+        order(place) = order(next)
+        order(next) = next
+        sign = -sign
+      end do
+    end do
+  end function determinant_sign
+
+  !> QR by Householder reflections with column pivoting; the layout of the factors is LAPACK's.
+  pure subroutine householder(m, n, a, pivot, tau, norms)
+    integer, intent(in) :: m, n
+    real(wp), intent(inout) :: a(m, n)
+    integer, intent(out) :: pivot(n)
+    real(wp), intent(out) :: tau(n)
+    real(wp), intent(out) :: norms(n)      !< squares of the lengths of what remains of each column
+    integer :: i, j, k, best
+    real(wp) :: s, beta, swap
+
+    do j = 1, n
+      pivot(j) = j
+      s = 0.0_wp
+      do i = 1, m
+        s = s + a(i, j)**2
+      end do
+      norms(j) = s
+    end do
+    tau = 0.0_wp
+    do k = 1, min(m, n)
+      best = k
+      do j = k + 1, n
+        if (norms(j) > norms(best)) best = j
+      end do
+      if (best /= k) then
+        do i = 1, m
+          swap = a(i, k)
+          a(i, k) = a(i, best)
+          a(i, best) = swap
+        end do
+        i = pivot(k)
+        pivot(k) = pivot(best)
+        pivot(best) = i
+        norms(best) = norms(k)
+      end if
+      s = 0.0_wp
+      do i = k + 1, m
+        s = s + a(i, k)**2
+      end do
+      if (.not. s > 0.0_wp) cycle
+      beta = -sign(sqrt(a(k, k)**2 + s), a(k, k))
+      tau(k) = (beta - a(k, k))/beta
+      s = 1.0_wp/(a(k, k) - beta)
+      do i = k + 1, m
+        a(i, k) = a(i, k)*s
+      end do
+      a(k, k) = beta
+      do j = k + 1, n
+        s = a(k, j)
+        do i = k + 1, m
+          s = s + a(i, k)*a(i, j)
+        end do
+        s = s*tau(k)
+        a(k, j) = a(k, j) - s
+        ! the columns are short: their remaining lengths are summed anew, free of cancellation
+        norms(j) = 0.0_wp
+        do i = k + 1, m
+          a(i, j) = a(i, j) - s*a(i, k)
+          norms(j) = norms(j) + a(i, j)**2
+        end do
+      end do
+    end do
+  end subroutine householder
+end module mech9_least_squares
