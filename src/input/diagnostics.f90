@@ -1,0 +1,298 @@
+!> What is wrong with an input: every error with its place, sorted, shown with its line of the file.
+!> Uses error, text, source.
+module mech9_diagnostics
+  use mech9_error, only: error_type, place_type, exit_done, exit_data, exit_structure, exit_file
+  use mech9_text, only: to_text
+  use mech9_source, only: source_type, span_type
+  implicit none
+  private
+  public :: diagnostics_type, printable
+
+  type :: diagnostic_type
+    type(span_type) :: span
+    character(len=:), allocatable :: message
+    integer :: code = exit_data
+  end type diagnostic_type
+
+  type :: diagnostics_type
+    !> The texts that spans point into; the first one is the data file.
+    type(source_type), allocatable :: sources(:)
+    integer :: count = 0               !< errors found, also those that are no longer kept
+    type(diagnostic_type), allocatable, private :: kept(:)
+    integer, private :: kept_count = 0
+  contains
+    procedure :: add
+    procedure :: add_error
+    procedure :: add_source
+    procedure :: failed
+    procedure :: code
+    procedure :: place
+    procedure :: text_of
+    procedure :: rendered
+    procedure :: report
+  end type diagnostics_type
+
+  integer, parameter :: most_kept = 1000     !< a file with more errors is no data file
+  integer, parameter :: most_shown = 20
+  integer, parameter :: window = 100         !< columns of a line that are shown
+  integer, parameter :: margin = 33          !< of them before the place
+  integer, parameter :: longest_quote = 40   !< of a text quoted in a message
+
+contains
+
+  !> Note an error. Without a span (source 0) it stands without a place.
+  pure subroutine add(self, span, message, code)
+    class(diagnostics_type), intent(inout) :: self
+    type(span_type), intent(in) :: span
+    character(len=*), intent(in) :: message
+    integer, intent(in), optional :: code     !< exit_data unless given
+
+    self%count = self%count + 1
+    if (.not. allocated(self%kept)) allocate (self%kept(16))
+    if (self%kept_count >= most_kept) return
+    if (self%kept_count == size(self%kept)) call grow(self%kept)
+    self%kept_count = self%kept_count + 1
+    associate (new => self%kept(self%kept_count))
+      new%span = span
+      new%message = message
+      if (present(code)) new%code = code
+    end associate
+  end subroutine add
+
+  !> Note a failure that came from elsewhere; its place is one in the data file.
+  pure subroutine add_error(self, err)
+    class(diagnostics_type), intent(inout) :: self
+    type(error_type), intent(in) :: err
+    type(span_type) :: span
+    integer :: byte
+
+    if (err%place%line > 0 .and. allocated(self%sources)) then
+      byte = self%sources(1)%byte_at(err%place)
+      if (byte > 0) span = span_type(1, byte, byte + word_length(self%sources(1)%text(byte:)) - 1)
+    end if
+    call self%add(span, err%message, err%code)
+  end subroutine add_error
+
+  !> Length of the word at the beginning of a text, for the carets under it; at least 1.
+  pure integer function word_length(text) result(length)
+    character(len=*), intent(in) :: text
+
+    length = scan(text(min(2, len(text)):), ' ,/=()'//achar(9)//achar(10)//achar(13))
+    if (length == 0) length = len(text)
+    length = max(length, 1)
+  end function word_length
+
+  pure subroutine grow(kept)
+    type(diagnostic_type), allocatable, intent(inout) :: kept(:)
+    type(diagnostic_type), allocatable :: grown(:)
+
+    allocate (grown(2*size(kept)))
+    grown(:size(kept)) = kept
+    call move_alloc(grown, kept)
+  end subroutine grow
+
+  !> Make a text known that spans will point into.
+  pure subroutine add_source(self, source, number)
+    class(diagnostics_type), intent(inout) :: self
+    type(source_type), intent(in) :: source
+    integer, intent(out) :: number            !< for `source` of the spans
+    type(source_type), allocatable :: grown(:)
+
+    number = 1
+    if (allocated(self%sources)) number = size(self%sources) + 1
+    allocate (grown(number))
+    if (number > 1) grown(:number - 1) = self%sources
+    grown(number) = source
+    call move_alloc(grown, self%sources)
+  end subroutine add_source
+
+  pure logical function failed(self)
+    class(diagnostics_type), intent(in) :: self
+
+    failed = self%count > 0
+  end function failed
+
+  !> The exit code that says it all: an unreadable file before wrong data before a wrong structure.
+  pure integer function code(self)
+    class(diagnostics_type), intent(in) :: self
+    integer, parameter :: order(3) = [exit_file, exit_data, exit_structure]
+    integer :: i
+
+    code = exit_done
+    if (self%kept_count == 0) return
+    do i = 1, size(order)
+      code = order(i)
+      if (any(self%kept(:self%kept_count)%code == code)) return
+    end do
+    code = self%kept(1)%code
+  end function code
+
+  !> Line and column of a span; line 0 for spans outside the data file.
+  pure type(place_type) function place(self, span)
+    class(diagnostics_type), intent(in) :: self
+    type(span_type), intent(in) :: span
+
+    if (span%source == 1) place = self%sources(1)%place(span%first)
+  end function place
+
+  !> A span as it is written, for messages: short and printable.
+  pure function text_of(self, span) result(text)
+    class(diagnostics_type), intent(in) :: self
+    type(span_type), intent(in) :: span
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (span%source == 0) return
+    text = printable(self%sources(span%source)%text(span%first:span%last), longest_quote)
+  end function text_of
+
+  !> Error number i in the order of the places, as it is shown: message, line, carets.
+  pure function rendered(self, i) result(text)
+    class(diagnostics_type), intent(in) :: self
+    integer, intent(in) :: i
+    character(len=:), allocatable :: text
+    type(diagnostic_type) :: this
+    integer, allocatable :: order(:)
+
+    order = sorted(self)
+    this = self%kept(order(i))
+    if (this%span%source == 0) then
+      text = this%message
+      if (allocated(self%sources)) text = printable(self%sources(1)%name)//': '//text
+      return
+    end if
+    associate (source => self%sources(this%span%source))
+      text = printable(source%name)//': '//this%message
+      if (this%span%first > 0) text = prefix(source, this%span)//this%message//excerpt(source, this%span)
+    end associate
+  end function rendered
+
+  !> Print the errors in the order of their places, at most twenty of them.
+  subroutine report(self, unit)
+    class(diagnostics_type), intent(in) :: self
+    integer, intent(in) :: unit
+    integer :: i
+
+    do i = 1, min(self%kept_count, most_shown)
+      write (unit, '(a)') self%rendered(i)
+    end do
+    if (self%count > most_shown) &
+      write (unit, '(3a)') 'and ', to_text(self%count - most_shown), ' more'
+  end subroutine report
+
+  !> Positions of the kept errors by source, then by place; those without a place come last.
+  pure function sorted(self) result(order)
+    type(diagnostics_type), intent(in) :: self
+    integer, allocatable :: order(:)
+    integer :: i, j, new
+
+    allocate (order(self%kept_count))
+    do i = 1, self%kept_count
+      new = i
+      j = i - 1
+      do while (j >= 1)
+        if (.not. before(self%kept(new)%span, self%kept(order(j))%span)) exit
+        order(j + 1) = order(j)
+        j = j - 1
+      end do
+      order(j + 1) = new
+    end do
+  end function sorted
+
+  pure logical function before(a, b)
+    type(span_type), intent(in) :: a, b
+
+    if (a%source == b%source) then
+      before = a%first < b%first
+    else
+      before = a%source > 0 .and. (a%source < b%source .or. b%source == 0)
+    end if
+  end function before
+
+  pure function prefix(source, span) result(text)
+    type(source_type), intent(in) :: source
+    type(span_type), intent(in) :: span
+    character(len=:), allocatable :: text
+    type(place_type) :: position
+
+    text = printable(source%name)//':'
+    if (source%is_file) then
+      position = source%place(span%first)
+      text = text//to_text(position%line)//':'//to_text(position%column)//':'
+    end if
+    text = text//' '
+  end function prefix
+
+  !> The line of a span with carets under the span; of a long line, a window around it.
+  pure function excerpt(source, span) result(text)
+    type(source_type), intent(in) :: source
+    type(span_type), intent(in) :: span
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: line, carets
+    type(place_type) :: position
+    integer :: first, last, from, to, i
+
+    position = source%place(span%first)
+    call source%line_bounds(position%line, first, last)
+    from = first
+    to = last
+    if (to - from + 1 > window) then
+      from = max(first, min(span%first - margin, last - window + 1))
+      to = from + window - 1
+      from = character_start(source%text, from, first)
+      to = character_start(source%text, to + 1, first) - 1
+    end if
+    line = printable(source%text(from:to))
+    carets = repeat(' ', count_characters(source%text(from:span%first - 1)))
+    do i = 1, min(len(carets), len(line))
+      if (line(i:i) == achar(9)) carets(i:i) = achar(9)   ! tabs above blanks would shift the carets
+    end do
+    carets = carets//repeat('^', max(1, count_characters(source%text(span%first:min(span%last, to)))))
+    if (from > first) then
+      line = '...'//line
+      carets = '   '//carets
+    end if
+    if (to < last) line = line//'...'
+    text = new_line('a')//line//new_line('a')//carets
+  end function excerpt
+
+  !> The first byte of the character that byte `at` belongs to.
+  pure integer function character_start(text, at, least) result(start)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: at, least
+
+    start = at
+    if (at > len(text)) return
+    do while (start > least)
+      if (iachar(text(start:start)) < 128 .or. iachar(text(start:start)) >= 192) exit
+      start = start - 1
+    end do
+  end function character_start
+
+  pure integer function count_characters(text) result(n)
+    character(len=*), intent(in) :: text
+    integer :: i
+
+    n = 0
+    do i = 1, len(text)
+      if (iachar(text(i:i)) < 128 .or. iachar(text(i:i)) >= 192) n = n + 1
+    end do
+  end function count_characters
+
+  !> A text that may come from anywhere, safe to print: control bytes become question marks
+  !> (tabs stay), and a text longer than `longest` bytes is cut.
+  pure function printable(text, longest) result(shown)
+    character(len=*), intent(in) :: text
+    integer, intent(in), optional :: longest
+    character(len=:), allocatable :: shown
+    integer :: i
+
+    shown = text
+    if (present(longest)) then
+      if (len(text) > longest) shown = text(:character_start(text, longest, 1) - 1)//'...'
+    end if
+    do i = 1, len(shown)
+      if ((iachar(shown(i:i)) < 32 .and. shown(i:i) /= achar(9)) .or. iachar(shown(i:i)) == 127) shown(i:i) = '?'
+    end do
+  end function printable
+end module mech9_diagnostics

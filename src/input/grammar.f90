@@ -1,0 +1,270 @@
+!> The data file's language as one constant table: which groups there are, which names each has,
+!> and what each name takes. Reader, help, documentation and conversation all come from it. Uses text.
+module mech9_grammar
+  use mech9_text, only: lower
+  implicit none
+  private
+  public :: group_row_type, item_row_type, group_table, item_table, unlimited
+  public :: find_group_row, rows_of_group, find_item_rows, item_row_for_kind, takes_kind, words_of
+
+  type :: group_row_type
+    character(len=9) :: name
+    logical :: repeats             !< may stand more than once
+    character(len=10) :: key       !< the name whose value tells its groups apart; empty: none does
+    character(len=6) :: program    !< which program uses it: both, mech9k or mech9d
+    character(len=120) :: help
+  end type group_row_type
+
+  !> One name of a group. Several rows may share a name where its meaning depends on the kind.
+  type :: item_row_type
+    character(len=9) :: group
+    character(len=18) :: name
+    character(len=7) :: type       !< integer, real, text or logical
+    integer :: low                 !< fewest values
+    integer :: high                !< most values; more than one makes a list
+    !> Empty for pure numbers. `angle` is rad or degrees, as angle_unit says; `q` is the unit of
+    !> the coordinate meant: an angle, a length, or the user's own.
+    character(len=12) :: unit
+    logical :: needed              !< must be given wherever its kind allows it
+    character(len=22) :: default   !< as it would be written; in parentheses where it is a rule
+    character(len=4) :: range      !< empty, >0, >=0 or >=1
+    character(len=60) :: words     !< the texts allowed, with blanks between; empty: any
+    character(len=40) :: kinds     !< the kinds of the group it belongs to; empty: all
+    character(len=120) :: help
+    character(len=44) :: example   !< a value as it would be written
+  end type item_row_type
+
+  integer, parameter :: unlimited = huge(1)
+  logical, parameter :: needed = .true., optional = .false.
+  character(len=*), parameter :: screws = 'revolute prismatic helical'
+
+  type(group_row_type), parameter :: group_table(*) = [ &
+    group_row_type('mechanism', .false., '', 'both', 'title, numbers of links and coordinates, unit of angles'), &
+    group_row_type('structure', .false., '', 'both', &
+                   'which links meet, which coordinates are independent: first set (c, cq) or second (nrg, nws, rdw, nrw)'), &
+    group_row_type('pair', .true., 'coordinate', 'both', &
+                   'a joint with one degree of freedom: which links, what kind, where'), &
+    group_row_type('initial', .true., 'coordinate', 'both', &
+                   'a coordinate at the start: a guess of a dependent one, the value of an independent one'), &
+    group_row_type('point', .true., 'name', 'both', 'a point of a link whose motion is recorded'), &
+    group_row_type('drive', .true., 'coordinate', 'mech9k', 'an independent coordinate as a function of time'), &
+    group_row_type('body', .true., 'link', 'mech9d', 'mass, centre and inertia of a link; links without a body are massless'), &
+    group_row_type('gravity', .false., '', 'mech9d', 'the acceleration of gravity'), &
+    group_row_type('load', .true., '', 'mech9d', 'a force, torque, spring or damper, or a user''s own'), &
+    group_row_type('time', .false., '', 'both', &
+                   'when results are given: at start + (end - start) i/intervals, i = 0 .. intervals'), &
+    group_row_type('solver', .false., '', 'mech9d', 'how to integrate'), &
+    group_row_type('output', .false., '', 'both', 'which files to write'), &
+    group_row_type('user', .false., '', 'both', 'numbers handed to the user''s own procedures')]
+
+  type(item_row_type), parameter :: general_items(*) = [ &
+    item_row_type('mechanism', 'title', 'text', 1, 1, '', optional, '''''', '', '', '', &
+                  'one line that says what it is', '''Four-bar'''), &
+    item_row_type('mechanism', 'links', 'integer', 1, 1, '', optional, '(counted)', '>=1', '', '', &
+                  'number of links, the frame included, which is link 1', '6'), &
+    item_row_type('mechanism', 'coordinates', 'integer', 1, 1, '', optional, '(counted)', '>=1', '', '', &
+                  'number of coordinates: one for each pair', '7'), &
+    item_row_type('mechanism', 'angle_unit', 'text', 1, 1, '', optional, '''rad''', '', 'rad deg', '', &
+                  'unit of all angles in this file and in its results', '''deg'''), &
+    item_row_type('structure', 'c', 'integer', 1, unlimited, '', optional, '(from the pairs)', '>=0', '', '', &
+                  'coincidence matrix by rows: element i,j is the number of the pair between links i and j, or 0', &
+                  'c(1,:) = 0, 1, 2'), &
+    item_row_type('structure', 'cq', 'integer', 1, unlimited, '', optional, '(from rdw)', '>=1', '', '', &
+                  'numbers of the independent coordinates', '5'), &
+    item_row_type('structure', 'nrg', 'integer', 1, unlimited, '', optional, '(from c and cq)', '>=1', '', '', &
+                  'second set: links in the order of computation', '1, 2, 3, 1'), &
+    item_row_type('structure', 'nws', 'integer', 1, unlimited, '', optional, '(from c and cq)', '>=0', '', '', &
+                  'second set: the coordinate that leads to each link of nrg; 0 where a chain starts', '0, 1, 2, 3'), &
+    item_row_type('structure', 'rdw', 'integer', 1, unlimited, '', optional, '(from c and cq)', '>=0', '', '', &
+                  'second set: 1 where that coordinate is independent or a chain starts, else 0', '1, 1, 0, 0'), &
+    item_row_type('structure', 'nrw', 'integer', 1, unlimited, '', optional, '(from c and cq)', '>=0', '', '', &
+                  'second set: how many chains are closed up to each link of nrg', '0, 0, 0, 1')]
+
+  type(item_row_type), parameter :: pair_items(*) = [ &
+    item_row_type('pair', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of its coordinate', '5'), &
+    item_row_type('pair', 'links', 'integer', 2, 2, '', needed, '', '>=1', '', '', &
+                  'the reference link and the moving link', '1, 2'), &
+    item_row_type('pair', 'kind', 'text', 1, 1, '', needed, '', '', screws//' user', '', &
+                  'turns, slides, does both as a screw, or moves as a user''s procedure says', '''revolute'''), &
+    item_row_type('pair', 'point', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', screws, &
+                  'a point of the axis, in the reference link', '0, 0, 0'), &
+    item_row_type('pair', 'axis', 'real', 3, 3, '', optional, '(needed unless dh)', '', '', screws, &
+                  'direction of the axis, in the reference link; of any length', '0, 0, 1'), &
+    item_row_type('pair', 'zero', 'real', 3, 3, '', optional, '(x, y or z axis)', '', '', screws, &
+                  'direction from which q is counted, in the reference link; by default the first axis at 45 degrees or more', &
+                  '1, 0, 0'), &
+    item_row_type('pair', 'moving_point', 'real', 3, 3, 'm', optional, '(as point)', '', '', screws, &
+                  'the same point in the moving link', '-1.2, 0, 0'), &
+    item_row_type('pair', 'moving_axis', 'real', 3, 3, '', optional, '(as axis)', '', '', screws, &
+                  'the same axis in the moving link', '0, 0, 1'), &
+    item_row_type('pair', 'moving_zero', 'real', 3, 3, '', optional, '(as zero)', '', '', screws, &
+                  'direction in the moving link that stands at zero when q = 0', '1, 0, 0'), &
+    item_row_type('pair', 'pitch', 'real', 1, 1, 'm', needed, '', '', '', 'helical', &
+                  'advance per turn', '0.005'), &
+    item_row_type('pair', 'dh', 'real', 4, 4, 'm, angle', optional, '(point, axis, ...)', '', '', screws, &
+                  'Denavit-Hartenberg a, alpha, d, theta instead of point, axis and so on; q adds to theta or d', &
+                  '0.3, 1.57, 0, 0')]
+
+  type(item_row_type), parameter :: motion_items(*) = [ &
+    item_row_type('initial', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the coordinate', '4'), &
+    item_row_type('initial', 'position', 'real', 1, 1, 'q', optional, '0', '', '', '', &
+                  'its value, or a guess of it', '0.2'), &
+    item_row_type('initial', 'velocity', 'real', 1, 1, 'q/s', optional, '0', '', '', '', &
+                  'its rate (independent coordinates in mech9d)', '1.5'), &
+    item_row_type('point', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'heads the columns of the table; letters, digits and _', '''P'''), &
+    item_row_type('point', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', 'the link it is part of', '3'), &
+    item_row_type('point', 'position', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', '', &
+                  'where it is, in the link', '1.0, 0.3, 0'), &
+    item_row_type('drive', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the independent coordinate', '5'), &
+    item_row_type('drive', 'kind', 'text', 1, 1, '', needed, '', '', 'polynomial harmonic table user', '', &
+                  'the form of the function', '''polynomial'''), &
+    item_row_type('drive', 'coefficients', 'real', 1, unlimited, 'q, q/s, ...', needed, '', '', '', 'polynomial', &
+                  'c0, c1, c2, ... of q = c0 + c1 t + c2 t^2 + ...', '0.5, 2.0'), &
+    item_row_type('drive', 'mean', 'real', 1, 1, 'q', optional, '0', '', '', 'harmonic', &
+                  'of q = mean + amplitude sin(angular_frequency t + phase)', '0.1'), &
+    item_row_type('drive', 'amplitude', 'real', 1, 1, 'q', needed, '', '', '', 'harmonic', 'see mean', '0.3'), &
+    item_row_type('drive', 'angular_frequency', 'real', 1, 1, 'angle/s', needed, '', '', '', 'harmonic', &
+                  'see mean', '6.28'), &
+    item_row_type('drive', 'phase', 'real', 1, 1, 'angle', optional, '0', '', '', 'harmonic', 'see mean', '1.57'), &
+    item_row_type('drive', 'file', 'text', 1, 1, 's, q', needed, '', '', '', 'table', &
+                  'a text file with t and q in each line, beside the data file; a smooth curve runs through them', &
+                  '''motion.dat''')]
+
+  type(item_row_type), parameter :: body_items(*) = [ &
+    item_row_type('body', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', 'the link it belongs to', '3'), &
+    item_row_type('body', 'mass', 'real', 1, 1, 'kg', needed, '', '>=0', '', '', 'its mass', '2.0'), &
+    item_row_type('body', 'centre', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', '', &
+                  'its mass centre, in the link', '1.6, 0.4, 0'), &
+    item_row_type('body', 'inertia', 'real', 6, 6, 'kg m^2', optional, '0, 0, 0, 0, 0, 0', '', '', '', &
+                  'xx, yy, zz, xy, xz, yz of its tensor about the centre, in link axes; xy is minus the integral of x y dm', &
+                  '0.1, 0.1, 0.2, 0, 0, 0'), &
+    item_row_type('gravity', 'acceleration', 'real', 3, 3, 'm/s^2', needed, '', '', '', '', &
+                  'its components along the axes of link 1', '0, -9.81, 0')]
+
+  type(item_row_type), parameter :: load_items(*) = [ &
+    item_row_type('load', 'kind', 'text', 1, 1, '', needed, '', '', 'force torque spring coordinate user', '', &
+                  'force or torque on a link, spring between two points, load on a coordinate, or a user''s procedure', &
+                  '''force'''), &
+    item_row_type('load', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', 'force torque', 'the link it acts on', '5'), &
+    item_row_type('load', 'links', 'integer', 2, 2, '', needed, '', '>=1', '', 'spring', 'the two links it joins', '1, 5'), &
+    item_row_type('load', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', 'coordinate', &
+                  'number of the coordinate it acts on', '6'), &
+    item_row_type('load', 'position', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', 'force spring', &
+                  'the point of the (first) link it acts on, in the link', '1.0, 0, 0'), &
+    item_row_type('load', 'second_position', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', 'spring', &
+                  'the point of the second link', '0, 0.3, 0'), &
+    item_row_type('load', 'force', 'real', 3, 3, 'N', needed, '', '', '', 'force', 'its components; see frame', '0, -10, 0'), &
+    item_row_type('load', 'force', 'real', 1, 1, 'N or N m', optional, '0', '', '', 'coordinate', &
+                  'a constant part of the load', '2.5'), &
+    item_row_type('load', 'torque', 'real', 3, 3, 'N m', needed, '', '', '', 'torque', &
+                  'its components; see frame', '0, 0, 4'), &
+    item_row_type('load', 'frame', 'text', 1, 1, '', optional, '''fixed''', '', 'fixed link', 'force torque', &
+                  'along the axes of link 1, or turning with the link', '''link'''), &
+    item_row_type('load', 'stiffness', 'real', 1, 1, 'N/m', optional, '0', '>=0', '', 'spring', &
+                  'force per length of stretch', '200'), &
+    item_row_type('load', 'stiffness', 'real', 1, 1, 'N/m, N m/rad', optional, '0', '', '', 'coordinate', &
+                  'in -stiffness (q - rest) - damping dq/dt + force; per rad for angles, whatever angle_unit says', '200'), &
+    item_row_type('load', 'free_length', 'real', 1, 1, 'm', optional, '0', '>=0', '', 'spring', &
+                  'length at which it does not pull', '0.5'), &
+    item_row_type('load', 'rest', 'real', 1, 1, 'q', optional, '0', '', '', 'coordinate', &
+                  'value at which the spring is at rest', '0.5'), &
+    item_row_type('load', 'damping', 'real', 1, 1, 'N s/m', optional, '0', '>=0', '', 'spring', &
+                  'force per rate of its length', '1.5'), &
+    item_row_type('load', 'damping', 'real', 1, 1, 'N s/m, N m s', optional, '0', '', '', 'coordinate', &
+                  'see stiffness', '1.5')]
+
+  type(item_row_type), parameter :: run_items(*) = [ &
+    item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &
+    item_row_type('time', 'end', 'real', 1, 1, 's', optional, '1', '', '', '', 'time of the last result', '2.5'), &
+    item_row_type('time', 'intervals', 'integer', 1, 1, '', optional, '100', '>=0', '', '', &
+                  'number of steps between results; 0 for the start alone', '200'), &
+    item_row_type('solver', 'method', 'text', 1, 1, '', optional, '(chosen)', '', &
+                  'dormand-prince verner fehlberg merson adams bdf', '', 'the integrator', '''adams'''), &
+    item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0', '', '', &
+                  'error allowed in a step, relative to the coordinates and their rates', '1e-8'), &
+    item_row_type('solver', 'absolute_tolerance', 'real', 1, 1, '', optional, '1e-10', '>0', '', '', &
+                  'error allowed in a step, in rad, m and their rates', '1e-10'), &
+    item_row_type('solver', 'maximum_steps', 'integer', 1, 1, '', optional, '1000000', '>=1', '', '', &
+                  'most steps between two results', '10000'), &
+    item_row_type('output', 'table', 'text', 1, 1, '', optional, '''''', '', '', '', &
+                  'file for the table of results', '''fig1.dat'''), &
+    item_row_type('output', 'hdf5', 'text', 1, 1, '', optional, '''''', '', '', '', &
+                  'HDF5 file for the results', '''fig1.h5'''), &
+    item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
+                  'numbers that every user procedure receives', '0.1, 2.0')]
+
+  type(item_row_type), parameter :: item_table(*) = &
+    [general_items, pair_items, motion_items, body_items, load_items, run_items]
+
+contains
+
+  !> Row of a group in group_table; 0 where there is no such group.
+  pure integer function find_group_row(name) result(row)
+    character(len=*), intent(in) :: name
+
+    do row = size(group_table), 1, -1
+      if (group_table(row)%name == lower(name)) return
+    end do
+  end function find_group_row
+
+  !> Rows of a group's names in item_table.
+  pure function rows_of_group(group) result(rows)
+    character(len=*), intent(in) :: group
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    rows = pack([(i, i=1, size(item_table))], item_table%group == lower(group))
+  end function rows_of_group
+
+  !> Rows of one name of a group: none where it is unknown, several where its kinds differ.
+  pure function find_item_rows(group, name) result(rows)
+    character(len=*), intent(in) :: group, name
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    rows = pack([(i, i=1, size(item_table))], item_table%group == lower(group) .and. item_table%name == lower(name))
+  end function find_item_rows
+
+  !> Row of a name of a group of this kind; 0 where the name does not belong to the kind.
+  pure integer function item_row_for_kind(group, name, kind) result(row)
+    character(len=*), intent(in) :: group, name, kind
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    row = 0
+    rows = find_item_rows(group, name)
+    do i = 1, size(rows)
+      if (takes_kind(item_table(rows(i)), kind)) row = rows(i)
+    end do
+  end function item_row_for_kind
+
+  !> Whether a name belongs to groups of this kind; where no kind is known, to groups of any kind.
+  pure logical function takes_kind(row, kind)
+    type(item_row_type), intent(in) :: row
+    character(len=*), intent(in) :: kind
+
+    takes_kind = row%kinds == ''
+    if (kind /= '' .and. .not. takes_kind) takes_kind = index(' '//row%kinds//' ', ' '//trim(kind)//' ') > 0
+  end function takes_kind
+
+  !> The words of a list with blanks between.
+  pure function words_of(list) result(words)
+    character(len=*), intent(in) :: list
+    character(len=len(list)), allocatable :: words(:)
+    integer :: first, last
+
+    allocate (words(0))
+    first = verify(list, ' ')
+    do while (first > 0)
+      last = index(list(first:)//' ', ' ') + first - 2
+      words = [character(len=len(list)) :: words, list(first:last)]
+      first = verify(list(min(last + 1, len(list)):), ' ')
+      if (last == len(list)) exit
+      if (first > 0) first = first + last
+    end do
+  end function words_of
+end module mech9_grammar

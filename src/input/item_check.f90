@@ -1,0 +1,203 @@
+!> The values under one name, held against its row of the grammar: type, count, range, words.
+!> Uses kinds, text, source, grammar, document, diagnostics.
+module mech9_item_check
+  use mech9_kinds, only: wp, long
+  use mech9_text, only: to_text, lower, nearest_name
+  use mech9_source, only: span_type
+  use mech9_grammar, only: item_row_type, unlimited, words_of, find_item_rows
+  use mech9_document, only: item_type, value_type, value_null, value_integer, value_real, value_logical, value_text, &
+                            value_word, value_bad
+  use mech9_diagnostics, only: diagnostics_type, printable
+  implicit none
+  private
+  public :: check_item, known_word, is_sensible
+
+contains
+
+  !> Report all that is wrong with the values of an item whose repeats are written out.
+  pure subroutine check_item(item, row, diagnostics)
+    type(item_type), intent(in) :: item
+    type(item_row_type), intent(in) :: row
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: i, found
+
+    found = diagnostics%count
+    do i = 1, size(item%values)
+      if (equals_is_missing(item%values(i), row)) then
+        call diagnostics%add(item%values(i)%span, 'an = is missing after '''//lower(item%values(i)%text)//'''')
+        return
+      end if
+      call check_type(item%values(i), i, item%name, row, diagnostics)
+    end do
+    if (diagnostics%count > found) return
+    call check_count(item, row, diagnostics)
+    do i = 1, min(size(item%values), row%high)
+      call check_range(item%values(i), item%name, row, diagnostics)
+      if (row%words /= '') call check_word(item%values(i), item%name, row, diagnostics)
+    end do
+  end subroutine check_item
+
+  !> "point = 0,0,0 axis 0,0,1": a word among the values that is a name of the group.
+  pure logical function equals_is_missing(value, row)
+    type(value_type), intent(in) :: value
+    type(item_row_type), intent(in) :: row
+
+    equals_is_missing = .false.
+    if (value%kind == value_word) equals_is_missing = size(find_item_rows(row%group, value%text)) > 0
+  end function equals_is_missing
+
+  pure subroutine check_type(value, number, name, row, diagnostics)
+    type(value_type), intent(in) :: value
+    integer, intent(in) :: number            !< of the value in its list
+    character(len=*), intent(in) :: name
+    type(item_row_type), intent(in) :: row
+    type(diagnostics_type), intent(inout) :: diagnostics
+    character(len=:), allocatable :: written
+
+    if (value%kind == value_bad) return
+    written = diagnostics%text_of(value%span)
+    if (value%kind == value_null) then
+      call diagnostics%add(value%span, 'value '//to_text(number)//' of '''//name//''' is left empty; write every value')
+      return
+    end if
+    select case (row%type)
+    case ('integer')
+      if (value%kind == value_integer) then
+        if (abs(value%whole) > int(huge(1), long)) call diagnostics%add(value%span, written//' is too large for '''//name//'''')
+      else
+        call diagnostics%add(value%span, ''''//name//''' takes whole numbers, and '//written//' is none')
+      end if
+    case ('real')
+      if (value%kind /= value_integer .and. value%kind /= value_real) then
+        call diagnostics%add(value%span, ''''//name//''' takes numbers, and '//written//' is none')
+      else if (.not. is_sensible(value%number)) then
+        call diagnostics%add(value%span, written//' is beyond any mechanism; numbers are 0 or between 1e-100 and 1e100')
+      end if
+    case ('text')
+      if (value%kind == value_word .or. value%kind == value_logical) then
+        call diagnostics%add(value%span, ''''//name//''' takes a text in quotes: '//name//' = '''//written//'''')
+      else if (value%kind /= value_text) then
+        call diagnostics%add(value%span, ''''//name//''' takes a text in quotes, and '//written//' is none')
+      end if
+    case ('logical')
+      if (value%kind /= value_logical) &
+        call diagnostics%add(value%span, ''''//name//''' is .true. or .false., and '//written//' is neither')
+    end select
+  end subroutine check_type
+
+  !> Numbers whose squares and products with others stay within the range of floating point.
+  pure logical function is_sensible(number)
+    real(wp), intent(in) :: number
+
+    is_sensible = abs(number) <= 1.0e100_wp .and. (abs(number) >= 1.0e-100_wp .or. .not. abs(number) > 0.0_wp)
+  end function is_sensible
+
+  pure subroutine check_count(item, row, diagnostics)
+    type(item_type), intent(in) :: item
+    type(item_row_type), intent(in) :: row
+    type(diagnostics_type), intent(inout) :: diagnostics
+    character(len=:), allocatable :: message
+    integer :: n
+
+    n = size(item%values)
+    if (n >= row%low .and. n <= row%high) return
+    message = to_text(n)//merge(' value ', ' values', n == 1)
+    message = trim(message)//' for '''//item%name//''' where '//expected_count(row)
+    if (n > row%high) then
+      if (n == 2*row%high .and. decimal_commas(item, diagnostics)) then
+        message = message//'; a decimal comma? write '//diagnostics%text_of(item%values(1)%span)//'.'// &
+                  diagnostics%text_of(item%values(2)%span)
+      end if
+      call diagnostics%add(cover(item%values(row%high + 1), item%values(n)), message)
+    else
+      call diagnostics%add(item%span, message)
+    end if
+  end subroutine check_count
+
+  pure function expected_count(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    text = to_text(row%low)//' is expected'
+    if (row%low > 1) text = to_text(row%low)//' are expected'
+    if (row%high > row%low) text = 'at least '//text
+    if (row%high > row%low .and. row%high < unlimited) text = to_text(row%low)//' to '//to_text(row%high)//' are expected'
+  end function expected_count
+
+  !> All values are whole numbers in pairs joined by a comma without a blank: 1,5.
+  pure logical function decimal_commas(item, diagnostics)
+    type(item_type), intent(in) :: item
+    type(diagnostics_type), intent(in) :: diagnostics
+    integer :: i
+
+    decimal_commas = .false.
+    do i = 1, size(item%values) - 1, 2
+      associate (whole => item%values(i), part => item%values(i + 1))
+        if (whole%kind /= value_integer .or. part%kind /= value_integer) return
+        if (whole%span%source /= part%span%source .or. part%span%first /= whole%span%last + 2) return
+        if (verify(diagnostics%text_of(part%span), '0123456789') > 0) return
+      end associate
+    end do
+    decimal_commas = .true.
+  end function decimal_commas
+
+  !> The stretch from one value to another, where both stand in one text and in order.
+  pure type(span_type) function cover(first, last)
+    type(value_type), intent(in) :: first, last
+
+    cover = first%span
+    if (last%span%source == cover%source .and. last%span%last > cover%last) cover%last = last%span%last
+  end function cover
+
+  pure subroutine check_range(value, name, row, diagnostics)
+    type(value_type), intent(in) :: value
+    character(len=*), intent(in) :: name
+    type(item_row_type), intent(in) :: row
+    type(diagnostics_type), intent(inout) :: diagnostics
+    logical :: inside
+
+    select case (row%range)
+    case ('>0')
+      inside = value%number > 0.0_wp
+    case ('>=0')
+      inside = value%number >= 0.0_wp
+    case ('>=1')
+      inside = value%number >= 1.0_wp
+    case default
+      inside = .true.
+    end select
+    if (.not. inside) call diagnostics%add(value%span, ''''//name//''' must be '//trim(row%range)//', not '// &
+                                           diagnostics%text_of(value%span))
+  end subroutine check_range
+
+  pure subroutine check_word(value, name, row, diagnostics)
+    type(value_type), intent(in) :: value
+    character(len=*), intent(in) :: name
+    type(item_row_type), intent(in) :: row
+    type(diagnostics_type), intent(inout) :: diagnostics
+    character(len=:), allocatable :: hint, word
+
+    if (known_word(value%text, row)) return
+    word = printable(value%text, 40)
+    hint = nearest_name(word, words_of(row%words))
+    if (hint == '') then
+      hint = '; it is one of: '//trim(row%words)
+    else
+      hint = '; did you mean '''//hint//'''?'
+    end if
+    if (name == 'kind') then
+      call diagnostics%add(value%span, 'unknown '//trim(row%group)//' kind '''//word//''''//hint)
+    else
+      call diagnostics%add(value%span, 'unknown '//name//' '''//word//''''//hint)
+    end if
+  end subroutine check_word
+
+  !> Whether a text is one of the words of its row, in whatever case.
+  pure logical function known_word(text, row)
+    character(len=*), intent(in) :: text
+    type(item_row_type), intent(in) :: row
+
+    known_word = text /= '' .and. index(trim(text), ' ') == 0 .and. &
+                 index(' '//row%words//' ', ' '//lower(trim(text))//' ') > 0
+  end function known_word
+end module mech9_item_check

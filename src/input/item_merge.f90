@@ -1,0 +1,162 @@
+!> One plain list of values from all that a group says under one name: repeats written out,
+!> subscripts put in their places. Uses text, source, document, diagnostics.
+module mech9_item_merge
+  use mech9_text, only: to_text
+  use mech9_source, only: span_type
+  use mech9_document, only: item_type, value_type, value_null
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: merge_items, expand_repeats
+
+  !> More values than this under one name is no data of a mechanism.
+  integer, parameter :: most_values = 10000000
+
+contains
+
+  !> Merge items of one name, in the order they are written. What does not fit together is reported;
+  !> the merged item then holds what was understood.
+  pure subroutine merge_items(items, merged, diagnostics)
+    type(item_type), intent(in) :: items(:)          !< at least one, all of the same name
+    type(item_type), intent(out) :: merged
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(value_type), allocatable :: values(:)
+    logical, allocatable :: filled(:)
+    integer :: i, first
+
+    merged%name = items(1)%name
+    merged%span = items(size(items))%span
+    allocate (merged%subscripts(0))
+    if (size(items) == 1 .and. size(items(1)%subscripts) == 0) then
+      call expand_repeats(items(1), merged%values, diagnostics)
+      return
+    end if
+    allocate (merged%values(0), filled(0))
+    do i = 1, size(items)
+      call check_subscripts(items(i), items(1), i, first, diagnostics)
+      if (first == 0) cycle
+      call expand_repeats(items(i), values, diagnostics)
+      call place_values(items(i), values, first, merged%values, filled, diagnostics)
+    end do
+    if (.not. all(filled)) &
+      call diagnostics%add(merged%span, ''''//merged%name//'('//to_text(findloc(filled, .false., dim=1))//')'' is missing')
+  end subroutine merge_items
+
+  !> The position of an item's first value; 0, with a report, where its subscripts do not serve.
+  pure subroutine check_subscripts(item, first_item, number, first, diagnostics)
+    type(item_type), intent(in) :: item, first_item
+    integer, intent(in) :: number                    !< of the item among those of its name
+    integer, intent(out) :: first
+    type(diagnostics_type), intent(inout) :: diagnostics
+
+    first = 0
+    select case (size(item%subscripts))
+    case (0)
+      if (number == 1) then
+        first = 1
+      else
+        call diagnostics%add(item%span, ''''//item%name//''' is given twice in this group'// &
+                             line_of_first(first_item%span, diagnostics))
+      end if
+    case (1)
+      first = max(item%subscripts(1)%first, 1)
+    case default
+      call diagnostics%add(item%span, ''''//item%name//''' is a list and takes one subscript, as in '// &
+                           item%name//'(2)')
+    end select
+  end subroutine check_subscripts
+
+  pure function line_of_first(span, diagnostics) result(text)
+    type(span_type), intent(in) :: span
+    type(diagnostics_type), intent(in) :: diagnostics
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (span%source /= 1) return
+    associate (position => diagnostics%place(span))
+      text = '; first in line '//to_text(position%line)
+    end associate
+  end function line_of_first
+
+  !> Put values at their positions.
+  pure subroutine place_values(item, new, first, values, filled, diagnostics)
+    type(item_type), intent(in) :: item
+    type(value_type), intent(in) :: new(:)
+    integer, intent(in) :: first
+    type(value_type), allocatable, intent(inout) :: values(:)
+    logical, allocatable, intent(inout) :: filled(:)
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: i, last
+
+    last = first + size(new) - 1
+    if (last > most_values) then
+      call diagnostics%add(item%span, 'the subscript of '''//item%name//''' is too large')
+      return
+    end if
+    if (size(item%subscripts) == 1) then
+      if (item%subscripts(1)%last > 0 .and. item%subscripts(1)%last /= last) then
+        call diagnostics%add(item%span, to_text(size(new))//' values for '''//item%name//''' where its subscripts mean '// &
+                             to_text(max(item%subscripts(1)%last - first + 1, 0)))
+        return
+      end if
+    end if
+    if (last > size(values)) call lengthen(values, filled, last)
+    do i = first, last
+      if (new(i - first + 1)%kind == value_null) cycle
+      if (filled(i) .and. .not. item%overrides) then
+        call diagnostics%add(item%span, ''''//item%name//'('//to_text(i)//')'' is given twice in this group')
+        return
+      end if
+      values(i) = new(i - first + 1)
+      filled(i) = .true.
+    end do
+  end subroutine place_values
+
+  pure subroutine lengthen(values, filled, length)
+    type(value_type), allocatable, intent(inout) :: values(:)
+    logical, allocatable, intent(inout) :: filled(:)
+    integer, intent(in) :: length
+    type(value_type), allocatable :: more(:)
+    logical, allocatable :: more_filled(:)
+    integer :: n
+
+    n = size(values)
+    allocate (more(length))
+    allocate (more_filled(length), source=.false.)
+    more(:n) = values
+    more_filled(:n) = filled
+    call move_alloc(more, values)
+    call move_alloc(more_filled, filled)
+  end subroutine lengthen
+
+  !> Write out r*value. Too long a list is reported and left empty.
+  pure subroutine expand_repeats(item, values, diagnostics)
+    type(item_type), intent(in) :: item
+    type(value_type), allocatable, intent(out) :: values(:)
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: i, n, times
+
+    n = 0
+    do i = 1, size(item%values)
+      times = item%values(i)%times
+      if (times > most_values - n) then
+        call diagnostics%add(item%values(i)%span, 'there are too many values for '''//item%name//'''')
+        allocate (values(0))
+        return
+      end if
+      n = n + times
+    end do
+    if (n == size(item%values)) then
+      values = item%values
+      return
+    end if
+    allocate (values(n))
+    n = 0
+    do i = 1, size(item%values)
+      times = item%values(i)%times
+      values(n + 1:n + times) = item%values(i)
+      values(n + 1:n + times)%times = 1
+      n = n + times
+    end do
+  end subroutine expand_repeats
+end module mech9_item_merge

@@ -1,0 +1,172 @@
+!> What a checked document says: values by group and name, with the defaults of the grammar.
+!> Uses kinds, error, source, numeral, grammar, document, diagnostics.
+!>
+!> Only for sound groups: mechanisms are read after mech9_checker has passed them.
+module mech9_lookup
+  use mech9_kinds, only: wp
+  use mech9_text, only: lower
+  use mech9_source, only: span_type
+  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_grammar, only: item_table, item_row_for_kind
+  use mech9_document, only: document_type, group_type
+  implicit none
+  private
+  public :: groups_named, has_unsound, has_name, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  public :: find_item
+
+contains
+
+  !> Numbers of the sound groups of a name, in the order of the file.
+  pure function groups_named(document, name) result(numbers)
+    type(document_type), intent(in) :: document
+    character(len=*), intent(in) :: name
+    integer, allocatable :: numbers(:)
+    integer :: i, n, pass
+
+    do pass = 1, 2
+      n = 0
+      do i = 1, size(document%groups)
+        if (.not. document%groups(i)%sound .or. document%groups(i)%name /= name) cycle
+        n = n + 1
+        if (pass == 2) numbers(n) = i
+      end do
+      if (pass == 1) allocate (numbers(n))
+    end do
+  end function groups_named
+
+  !> Whether something was wrong with a group of this name, so that what it means is unknown.
+  pure logical function has_unsound(document, name)
+    type(document_type), intent(in) :: document
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    has_unsound = .true.
+    do i = 1, size(document%groups)
+      if (document%groups(i)%name == name .and. .not. document%groups(i)%sound) return
+    end do
+    has_unsound = .false.
+  end function has_unsound
+
+  !> Number of an item in its group; 0 where the name is not given.
+  pure integer function find_item(group, name) result(number)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+
+    do number = size(group%items), 1, -1
+      if (group%items(number)%name == name) return
+    end do
+  end function find_item
+
+  pure logical function has_name(group, name)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+
+    has_name = find_item(group, name) > 0
+  end function has_name
+
+  !> Place of a value; of the name where no value is asked for; of the group where it is not given.
+  pure type(span_type) function span_of(group, name, value_number) result(span)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    integer, intent(in), optional :: value_number
+    integer :: i
+
+    span = group%span
+    i = find_item(group, name)
+    if (i == 0) return
+    span = group%items(i)%span
+    if (.not. present(value_number)) return
+    if (value_number >= 1 .and. value_number <= size(group%items(i)%values)) &
+      span = group%items(i)%values(value_number)%span
+  end function span_of
+
+  pure function get_reals(group, name) result(numbers)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    real(wp), allocatable :: numbers(:)
+    integer :: i
+
+    i = find_item(group, name)
+    if (i > 0) then
+      numbers = group%items(i)%values%number
+    else
+      numbers = default_numbers(group, name)
+    end if
+  end function get_reals
+
+  pure real(wp) function get_real(group, name)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    real(wp), allocatable :: numbers(:)
+
+    numbers = get_reals(group, name)
+    get_real = numbers(1)
+  end function get_real
+
+  pure function get_integers(group, name) result(numbers)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    integer, allocatable :: numbers(:)
+
+    numbers = nint(get_reals(group, name))
+  end function get_integers
+
+  pure integer function get_integer(group, name)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+
+    get_integer = nint(get_real(group, name))
+  end function get_integer
+
+  !> A text without blanks at its end; words of a list in lower case.
+  pure function get_text(group, name) result(text)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: text
+    integer :: i, row
+
+    text = ''
+    i = find_item(group, name)
+    row = row_of(group, name)
+    if (i > 0) then
+      text = trim(group%items(i)%values(1)%text)
+      if (item_table(row)%words /= '') text = lower(text)
+    else if (index(item_table(row)%default, '''') == 1) then
+      text = trim(item_table(row)%default)
+      text = text(2:len(text) - 1)
+    end if
+  end function get_text
+
+  !> The numbers of the grammar's default; none where the default is a rule in parentheses.
+  pure function default_numbers(group, name) result(numbers)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    real(wp), allocatable :: numbers(:)
+    type(numeral_type) :: numeral
+    character(len=:), allocatable :: rest
+    integer :: comma
+
+    allocate (numbers(0))
+    rest = trim(item_table(row_of(group, name))%default)
+    if (index(rest, '(') == 1) return
+    do while (rest /= '')
+      comma = index(rest//',', ',')
+      call read_numeral(trim(adjustl(rest(:comma - 1))), numeral)
+      numbers = [numbers, numeral%number]
+      rest = rest(min(comma, len(rest)) + 1:)
+    end do
+  end function default_numbers
+
+  !> Row of a name, for the kind of its group where it has one.
+  pure integer function row_of(group, name) result(row)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: kind
+    integer :: i
+
+    kind = ''
+    i = find_item(group, 'kind')
+    if (i > 0 .and. name /= 'kind') kind = lower(trim(group%items(i)%values(1)%text))
+    row = item_row_for_kind(group%name, name, kind)
+  end function row_of
+end module mech9_lookup

@@ -1,0 +1,301 @@
+!> The small pieces of namelist text: blanks, names, subscripts, values. Uses kinds, text, numeral,
+!> source, document, diagnostics.
+!>
+!> Each procedure starts at byte `at` of the text and leaves `at` on the first byte it did not take.
+module mech9_scanner
+  use mech9_kinds, only: wp
+  use mech9_text, only: lower
+  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_source, only: span_type
+  use mech9_document, only: value_type, subscript_type, value_null, value_integer, value_real, value_logical, &
+                            value_text, value_word, value_bad
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: skip_blanks, skip_line, next_is_name, scan_word, scan_subscripts, scan_value, is_letter, blanks
+
+  character(len=*), parameter :: line_ends = achar(10)//achar(13)
+  character(len=*), parameter :: blanks = ' '//achar(9)//achar(11)//achar(12)//line_ends
+  character(len=*), parameter :: digits = '0123456789'
+  character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
+  character(len=*), parameter :: name_letters = letters//digits//'_'
+  !> What ends a value that is not in quotes.
+  character(len=*), parameter :: separators = blanks//',;/!&()="'''
+
+contains
+
+  pure logical function is_letter(text, at)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: at
+
+    is_letter = .false.
+    if (at <= len(text)) is_letter = index(letters, text(at:at)) > 0
+  end function is_letter
+
+  !> Go on over blanks, line ends and comments.
+  pure subroutine skip_blanks(text, at)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+
+    do while (at <= len(text))
+      if (text(at:at) == '!') then
+        call skip_line(text, at)
+      else if (index(blanks, text(at:at)) > 0) then
+        at = at + 1
+      else
+        return
+      end if
+    end do
+  end subroutine skip_blanks
+
+  !> Go on to the end of the line.
+  pure subroutine skip_line(text, at)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+
+    do while (at <= len(text))
+      if (index(line_ends, text(at:at)) > 0) return
+      at = at + 1
+    end do
+  end subroutine skip_line
+
+  !> Take letters, digits and underscores.
+  pure subroutine scan_word(text, at)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+
+    do while (at <= len(text))
+      if (index(name_letters, text(at:at)) == 0) return
+      at = at + 1
+    end do
+  end subroutine scan_word
+
+  !> Whether a name stands here: a word, perhaps with subscripts, before an equals sign.
+  pure logical function next_is_name(text, start)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: start
+    integer :: at, closing
+
+    next_is_name = .false.
+    if (.not. is_letter(text, start)) return
+    at = start
+    call scan_word(text, at)
+    call skip_blanks(text, at)
+    if (at > len(text)) return
+    if (text(at:at) == '(') then
+      closing = verify(text(at + 1:), digits//':,'//blanks)
+      if (closing == 0) return
+      at = at + closing
+      if (text(at:at) /= ')') return
+      at = at + 1
+      call skip_blanks(text, at)
+      if (at > len(text)) return
+    end if
+    next_is_name = text(at:at) == '='
+  end function next_is_name
+
+  !> Take "(2)", "(1,:)", "(2:4)"; `ok` is false where it is something else.
+  pure subroutine scan_subscripts(text, at, subscripts, ok)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at                   !< on the parenthesis
+    type(subscript_type), allocatable, intent(out) :: subscripts(:)
+    logical, intent(out) :: ok
+    type(subscript_type) :: one
+
+    allocate (subscripts(0))
+    ok = .true.
+    do
+      at = at + 1
+      one = subscript_type()
+      call scan_index(text, at, one%first, ok)
+      if (at > len(text)) ok = .false.
+      if (.not. ok) return
+      if (text(at:at) == ':') then
+        one%section = .true.
+        at = at + 1
+        call scan_index(text, at, one%last, ok)
+        if (at > len(text)) ok = .false.
+        if (.not. ok) return
+      end if
+      ok = one%section .or. one%first > 0
+      subscripts = [subscripts, one]
+      if (.not. ok .or. text(at:at) /= ',') exit
+    end do
+    ok = ok .and. text(at:at) == ')' .and. size(subscripts) <= 2
+    if (ok) at = at + 1
+  end subroutine scan_subscripts
+
+  !> Take a positive whole number with blanks around it, if there is one.
+  pure subroutine scan_index(text, at, index_value, ok)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+    integer, intent(out) :: index_value
+    logical, intent(inout) :: ok
+    integer :: first
+
+    index_value = 0
+    call skip_blanks(text, at)
+    first = at
+    do while (at <= len(text))
+      if (index(digits, text(at:at)) == 0) exit
+      if (at - first >= 9) ok = .false.
+      if (ok) index_value = 10*index_value + index(digits, text(at:at)) - 1
+      at = at + 1
+    end do
+    if (at > first .and. index_value == 0) ok = .false.   ! subscripts begin at 1
+    call skip_blanks(text, at)
+  end subroutine scan_index
+
+  !> Take one value; what cannot be one is reported and becomes a bad value.
+  pure subroutine scan_value(text, at, source, value, diagnostics)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+    integer, intent(in) :: source                 !< number of the text among the sources
+    type(value_type), intent(out) :: value
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: first, star
+
+    first = at
+    do while (at <= len(text))
+      if (index(separators, text(at:at)) > 0) exit
+      at = at + 1
+    end do
+    star = index(text(first:at - 1), '*')
+    if (star > 1) then
+      if (verify(text(first:first + star - 2), digits) == 0) then
+        call read_repeat(text(first:first + star - 2), value%times)
+        if (value%times == 0) then
+          value%kind = value_bad
+          value%span = span_type(source, first, at - 1)
+          call diagnostics%add(value%span, '''r*'' repeats a value r times; r must be a positive whole number')
+          return
+        end if
+        first = first + star
+      end if
+    end if
+
+    value%span = span_type(source, first, at - 1)
+    if (first < at) then
+      call classify(text(first:at - 1), value, diagnostics)
+    else if (at <= len(text)) then
+      if (scan(text(at:at), '"''') > 0) then
+        call scan_text(text, at, source, value, diagnostics)
+      else if (star > 1) then
+        value%span = span_type(source, first - star, at - 1)   ! "3*" alone: nulls
+      else
+        value%span = span_type(source, at, at)
+        value%kind = value_bad
+        call diagnostics%add(value%span, 'unexpected '''//text(at:at)//''''//advice(text(at:at)))
+        at = at + 1
+      end if
+    end if
+  end subroutine scan_value
+
+  pure function advice(mark) result(text)
+    character, intent(in) :: mark
+    character(len=:), allocatable :: text
+
+    select case (mark)
+    case (';')
+      text = '; values are separated by commas or blanks'
+    case ('(')
+      text = '; write values one after the other, without parentheses'
+    case ('=')
+      text = '; write name = value'
+    case default
+      text = ''
+    end select
+  end function advice
+
+  !> The r of r*value; 0 where it is zero or beyond any list.
+  pure subroutine read_repeat(text, times)
+    character(len=*), intent(in) :: text
+    integer, intent(out) :: times
+    type(numeral_type) :: numeral
+
+    times = 0
+    call read_numeral(text, numeral)
+    if (allocated(numeral%problem)) return
+    if (numeral%number <= 1.0e9_wp) times = int(numeral%whole)
+  end subroutine read_repeat
+
+  !> Tell what a value without quotes is.
+  pure subroutine classify(word, value, diagnostics)
+    character(len=*), intent(in) :: word
+    type(value_type), intent(inout) :: value
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(numeral_type) :: numeral
+
+    select case (lower(word))
+    case ('t', 'true', '.t.', '.true.', '.true', '.t')
+      value%kind = value_logical
+      value%truth = .true.
+      return
+    case ('f', 'false', '.f.', '.false.', '.false', '.f')
+      value%kind = value_logical
+      return
+    end select
+    call read_numeral(word, numeral)
+    if (.not. allocated(numeral%problem)) then
+      value%kind = merge(value_integer, value_real, numeral%is_integer)
+      value%whole = numeral%whole
+      value%number = numeral%number
+    else if (is_letter(word, 1) .and. index(numeral%problem, 'finite') == 0) then
+      value%kind = value_word
+      value%text = word
+    else
+      value%kind = value_bad
+      call diagnostics%add(value%span, ''''//diagnostics%text_of(value%span)//''' '//numeral%problem)
+    end if
+  end subroutine classify
+
+  !> Take a text in quotes; a doubled quote stands for one. It must end on its line: a forgotten
+  !> quote would otherwise swallow the rest of the file.
+  pure subroutine scan_text(text, at, source, value, diagnostics)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+    integer, intent(in) :: source
+    type(value_type), intent(inout) :: value
+    type(diagnostics_type), intent(inout) :: diagnostics
+    character :: quote
+    integer :: first, line_end, n
+    character(len=:), allocatable :: content
+
+    first = at
+    quote = text(at:at)
+    line_end = at
+    call skip_line(text, line_end)
+    allocate (character(len=line_end - first) :: content)
+    n = 0
+    do
+      at = at + 1
+      if (at >= line_end) exit
+      if (text(at:at) == quote) then
+        if (at + 1 >= line_end) exit
+        if (text(at + 1:at + 1) /= quote) exit
+        at = at + 1
+      end if
+      n = n + 1
+      content(n:n) = text(at:at)
+    end do
+    if (at >= line_end) then
+      value%kind = value_bad
+      value%span = span_type(source, first, line_end - 1)
+      call diagnostics%add(span_type(source, first, first), 'the text that begins here has no closing '//quote)
+      if (closes_group(text(first:line_end - 1))) at = first + len_trim(text(first:line_end - 1)) - 1
+    else
+      value%kind = value_text
+      value%text = content(:n)
+      value%span = span_type(source, first, at)
+      at = at + 1
+    end if
+  end subroutine scan_text
+
+  !> A line with a forgotten quote whose last mark is a slash: that slash most likely ends the group.
+  pure logical function closes_group(line)
+    character(len=*), intent(in) :: line
+
+    closes_group = .false.
+    if (len_trim(line) > 1) closes_group = line(len_trim(line):len_trim(line)) == '/'
+  end function closes_group
+end module mech9_scanner

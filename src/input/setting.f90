@@ -1,0 +1,165 @@
+!> Changes to a document from the command line: --set group.name=value. Uses text, source, grammar,
+!> document, scanner, parser, diagnostics.
+module mech9_setting
+  use mech9_text, only: lower, to_text
+  use mech9_source, only: source_type, span_type, source_from_text
+  use mech9_grammar, only: item_table, find_item_rows
+  use mech9_document, only: document_type, group_type, item_type, value_type, subscript_type, value_text, &
+                            add_group, add_item, trim_document
+  use mech9_scanner, only: scan_word, scan_subscripts, next_is_name, is_letter
+  use mech9_parser, only: parse_item
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: apply_setting
+
+contains
+
+  !> Give a name another value than the data file says: "time.intervals=200", "pair(3).axis=1,0,0",
+  !> where pair(3) is the third &pair. A group or a name that the file does not have is added. Texts
+  !> need no quotes. What is wrong stands in the diagnostics, now or when the document is checked.
+  pure subroutine apply_setting(document, setting, diagnostics)
+    type(document_type), intent(inout) :: document
+    character(len=*), intent(in) :: setting
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(source_type) :: source
+    type(span_type) :: group_span
+    type(item_type) :: item
+    integer :: number, occurrence, at, found, i
+
+    source = source_from_text('--set', setting, is_file=.false.)
+    call diagnostics%add_source(source, number)
+    found = diagnostics%count
+    call read_group_name(setting, at, number, group_span, occurrence, diagnostics)
+    if (diagnostics%count > found) return
+    call read_item(setting, at, number, lower(setting(group_span%first:group_span%last)), item, diagnostics)
+    if (diagnostics%count > found) return
+    call find_or_add_group(document, setting, group_span, occurrence, i, diagnostics)
+    if (i > 0) call replace_item(document%groups(i), item)
+  end subroutine apply_setting
+
+  !> "group." or "group(2)."; `occurrence` is 0 where no number is given.
+  pure subroutine read_group_name(text, at, source, span, occurrence, diagnostics)
+    character(len=*), intent(in) :: text
+    integer, intent(out) :: at                      !< after the point
+    integer, intent(in) :: source
+    type(span_type), intent(out) :: span
+    integer, intent(out) :: occurrence
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(subscript_type), allocatable :: subscripts(:)
+    logical :: ok
+
+    occurrence = 0
+    at = 1
+    if (len(text) > 0) at = max(verify(text, ' '), 1)
+    span = span_type(source, at, at)
+    ok = is_letter(text, at)
+    if (ok) then
+      call scan_word(text, at)
+      span%last = at - 1
+      if (index(text(at:), '(') == 1) then
+        call scan_subscripts(text, at, subscripts, ok)
+        if (ok) ok = size(subscripts) == 1
+        if (ok) ok = .not. subscripts(1)%section
+        if (ok) occurrence = subscripts(1)%first
+      end if
+    end if
+    if (ok) ok = index(text(at:), '.') == 1
+    if (ok) ok = next_is_name(text, at + 1)
+    if (.not. ok) call diagnostics%add(span_type(source, 1, max(len(text), 1)), &
+                                       'write --set group.name=value, or group(2).name=value for the second group')
+    at = at + 1
+  end subroutine read_group_name
+
+  !> The name and its values; the whole setting must be used up.
+  pure subroutine read_item(text, start, source, group, item, diagnostics)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: start
+    integer, intent(in) :: source
+    character(len=*), intent(in) :: group
+    type(item_type), intent(out) :: item
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: at, equals
+
+    at = start
+    equals = start + index(text(start:), '=') - 1
+    call scan_word(text, at)
+    if (takes_text(group, text(start:at - 1)) .and. is_unquoted(text(equals + 1:))) then
+      item%name = lower(text(start:at - 1))
+      item%span = span_type(source, start, at - 1)
+      allocate (item%subscripts(0), item%values(1))
+      item%values(1) = value_type(kind=value_text, text=trim(adjustl(text(equals + 1:))), &
+                                  span=span_type(source, equals + 1, len(text)))
+    else
+      at = start
+      call parse_item(text, at, source, item, diagnostics)
+      if (at <= len(text)) &
+        call diagnostics%add(span_type(source, at, len(text)), 'the setting ends before this; give one --set for each name')
+    end if
+    item%overrides = .true.
+  end subroutine read_item
+
+  pure logical function takes_text(group, name)
+    character(len=*), intent(in) :: group, name
+    integer, allocatable :: rows(:)
+
+    rows = find_item_rows(group, name)
+    takes_text = .false.
+    if (size(rows) > 0) takes_text = item_table(rows(1))%type == 'text'
+  end function takes_text
+
+  pure logical function is_unquoted(value)
+    character(len=*), intent(in) :: value
+
+    is_unquoted = len_trim(value) > 0 .and. scan(trim(adjustl(value)), '''"') /= 1
+  end function is_unquoted
+
+  !> The group a setting means; 0, with a report, where that is unclear.
+  pure subroutine find_or_add_group(document, text, span, occurrence, number, diagnostics)
+    type(document_type), intent(inout) :: document
+    character(len=*), intent(in) :: text
+    type(span_type), intent(in) :: span
+    integer, intent(in) :: occurrence
+    integer, intent(out) :: number
+    type(diagnostics_type), intent(inout) :: diagnostics
+    character(len=:), allocatable :: name
+    type(group_type) :: group
+    integer, allocatable :: same(:)
+    integer :: i, count
+
+    name = lower(text(span%first:span%last))
+    same = pack([(i, i=1, size(document%groups))], [(document%groups(i)%name == name, i=1, size(document%groups))])
+    number = 0
+    if (occurrence == 0 .and. size(same) > 1) then
+      call diagnostics%add(span, 'there are '//to_text(size(same))//' groups &'//name//'; say which one: '//name//'(2)')
+    else if (max(occurrence, 1) <= size(same)) then
+      number = same(max(occurrence, 1))
+    else if (occurrence > size(same) + 1) then
+      call diagnostics%add(span, 'there are only '//to_text(size(same))//' groups &'//name)
+    else
+      group%name = name
+      group%span = span
+      allocate (group%items(0))
+      count = size(document%groups)
+      call add_group(document%groups, count, group)
+      call trim_document(document%groups, count)
+      number = count
+    end if
+  end subroutine find_or_add_group
+
+  !> Put an item in the place of what the group said under its name; one with subscripts is added.
+  pure subroutine replace_item(group, item)
+    type(group_type), intent(inout) :: group
+    type(item_type), intent(inout) :: item
+    type(item_type), allocatable :: items(:)
+    integer :: i, count
+
+    count = 0
+    do i = 1, size(group%items)
+      if (group%items(i)%name == item%name .and. size(item%subscripts) == 0) cycle
+      call add_item(items, count, group%items(i))
+    end do
+    call add_item(items, count, item)
+    group%items = items(:count)
+  end subroutine replace_item
+end module mech9_setting

@@ -1,0 +1,271 @@
+!> The text of an input, and where its lines begin. Uses error, text.
+!>
+!> Everything read from an input carries a span of it, so that a message can point there.
+module mech9_source
+  use mech9_error, only: error_type, place_type, raise, exit_data, exit_file
+  use mech9_text, only: to_text
+  implicit none
+  private
+  public :: source_type, span_type, read_source, source_from_text
+
+  !> Bytes first..last of one of several sources; source 0 means no place at all.
+  type :: span_type
+    integer :: source = 0
+    integer :: first = 0
+    integer :: last = 0
+  end type span_type
+
+  type :: source_type
+    character(len=:), allocatable :: name       !< a path as the user wrote it, or '--set'
+    character(len=:), allocatable :: text       !< without a byte order mark
+    integer, allocatable :: line_start(:)       !< first byte of each line
+    logical :: is_file = .true.                 !< lines and columns mean something to the user
+    logical :: is_ascii = .true.                !< every byte is a character
+  contains
+    procedure :: place
+    procedure :: line_bounds
+    procedure :: byte_at
+  end type source_type
+
+  !> More than this is no description of a mechanism; byte positions stay default integers.
+  integer, parameter :: largest_size = 1000000000
+  integer, parameter :: largest_pipe = 100000000
+  character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
+
+contains
+
+  !> Read a whole file, or a pipe. Fails with exit_file where it cannot be read, and with exit_data
+  !> where it is empty or no text.
+  subroutine read_source(path, source, err)
+    character(len=*), intent(in) :: path
+    type(source_type), intent(out) :: source
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: text
+
+    call read_bytes(path, text, err)
+    if (.not. allocated(err)) call refuse_no_text(text, err)
+    if (allocated(err)) then
+      source = source_from_text(path, '')
+      return
+    end if
+    if (len(text) >= 3) then
+      if (text(:3) == char(239)//char(187)//char(191)) text = text(4:)   ! the mark of UTF-8
+    end if
+    source = source_from_text(path, text)
+  end subroutine read_source
+
+  !> A source whose text is at hand.
+  pure function source_from_text(name, text, is_file) result(source)
+    character(len=*), intent(in) :: name, text
+    logical, intent(in), optional :: is_file   !< true unless given
+    type(source_type) :: source
+
+    source%name = name
+    source%text = text
+    if (present(is_file)) source%is_file = is_file
+    source%is_ascii = all_ascii(text)
+    call find_lines(source)
+  end function source_from_text
+
+  subroutine read_bytes(path, text, err)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable, intent(out) :: text
+    type(error_type), allocatable, intent(out) :: err
+    character(len=256) :: reason
+    integer :: unit, status
+    logical :: there
+
+    inquire (file=path, exist=there)
+    if (len_trim(path) == 0 .or. .not. there) then
+      call raise(err, exit_file, 'cannot be read: there is no such file')
+      return
+    end if
+    reason = ''
+    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
+          iostat=status, iomsg=reason)
+    if (status == 0) then
+      call read_open_unit(unit, text, status, reason)
+      close (unit)
+    end if
+    if (status /= 0) call raise(err, exit_file, 'cannot be read: '//trim(reason(index(reason, ': ', back=.true.) + 1:)))
+  end subroutine read_bytes
+
+  subroutine read_open_unit(unit, text, status, reason)
+    integer, intent(in) :: unit
+    character(len=:), allocatable, intent(out) :: text
+    integer, intent(out) :: status
+    character(len=*), intent(inout) :: reason
+    integer :: size_of_file
+
+    status = 0
+    inquire (unit=unit, size=size_of_file)
+    if (size_of_file > largest_size) then
+      status = 1
+      reason = 'it is too large for a data file'
+    else if (size_of_file > 0) then
+      allocate (character(len=size_of_file) :: text)
+      read (unit, iostat=status, iomsg=reason) text
+    else
+      call read_pipe(unit, text, status, reason)
+    end if
+  end subroutine read_open_unit
+
+  !> Pipes and devices have no size: read byte by byte until they end.
+  subroutine read_pipe(unit, text, status, reason)
+    integer, intent(in) :: unit
+    character(len=:), allocatable, intent(out) :: text
+    integer, intent(out) :: status
+    character(len=*), intent(inout) :: reason
+    character(len=:), allocatable :: grown
+    character :: byte
+    integer :: n
+
+    allocate (character(len=4096) :: text)
+    n = 0
+    do
+      read (unit, iostat=status, iomsg=reason) byte
+      if (is_iostat_end(status)) exit
+      if (status /= 0) return
+      if (n == len(text)) then
+        if (n >= largest_pipe) then
+          status = 1
+          reason = 'it is too large for a data file'
+          return
+        end if
+        allocate (character(len=2*n) :: grown)
+        grown(:n) = text
+        call move_alloc(grown, text)
+      end if
+      n = n + 1
+      text(n:n) = byte
+      if (byte == achar(0)) exit   ! no text: an endless device ends here too
+    end do
+    status = 0
+    text = text(:n)
+  end subroutine read_pipe
+
+  !> Say so where the bytes are not a text that could be a data file.
+  pure subroutine refuse_no_text(text, err)
+    character(len=*), intent(in) :: text
+    type(error_type), allocatable, intent(out) :: err
+    integer :: at
+
+    if (len(text) == 0) then
+      call raise(err, exit_data, 'the file is empty')
+      return
+    end if
+    if (len(text) >= 2) then
+      if (text(:2) == char(255)//char(254) .or. text(:2) == char(254)//char(255)) then
+        call raise(err, exit_data, 'the file is written in UTF-16; save it as UTF-8 or plain text')
+        return
+      end if
+    end if
+    at = index(text, achar(0))
+    if (at > 0) call raise(err, exit_data, 'this is a binary file, not a text (its byte '//to_text(at)//' is zero)')
+  end subroutine refuse_no_text
+
+  !> Lines end with LF, CR LF or CR alone.
+  pure subroutine find_lines(self)
+    type(source_type), intent(inout) :: self
+    integer :: i, n, pass
+
+    do pass = 1, 2
+      n = 1
+      if (pass == 2) self%line_start(1) = 1
+      do i = 1, len(self%text)
+        if (.not. ends_line(self%text, i)) cycle
+        n = n + 1
+        if (pass == 2) self%line_start(n) = i + 1
+      end do
+      if (pass == 1) allocate (self%line_start(n))
+    end do
+  end subroutine find_lines
+
+  pure logical function ends_line(text, i)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: i
+
+    ends_line = text(i:i) == line_feed
+    if (text(i:i) == carriage_return) then
+      ends_line = .true.
+      if (i < len(text)) ends_line = text(i + 1:i + 1) /= line_feed
+    end if
+  end function ends_line
+
+  !> Line of a byte, and its column counted in characters (a UTF-8 character counts once).
+  pure type(place_type) function place(self, byte)
+    class(source_type), intent(in) :: self
+    integer, intent(in) :: byte
+    integer :: low, high, middle, i
+
+    low = 1
+    high = size(self%line_start)
+    do while (low < high)
+      middle = (low + high + 1)/2
+      if (self%line_start(middle) <= byte) then
+        low = middle
+      else
+        high = middle - 1
+      end if
+    end do
+    place%line = low
+    place%column = 1 + byte - self%line_start(low)
+    if (self%is_ascii) return
+    place%column = 1
+    do i = self%line_start(low), min(byte, len(self%text) + 1) - 1
+      if (.not. continues_character(self%text(i:i))) place%column = place%column + 1
+    end do
+    if (byte <= len(self%text)) then
+      if (continues_character(self%text(byte:byte))) place%column = max(place%column - 1, 1)
+    end if
+  end function place
+
+  !> First and last byte of a line, without its end; first > last where it is empty.
+  pure subroutine line_bounds(self, line, first, last)
+    class(source_type), intent(in) :: self
+    integer, intent(in) :: line
+    integer, intent(out) :: first, last
+
+    first = self%line_start(line)
+    last = len(self%text)
+    if (line < size(self%line_start)) last = self%line_start(line + 1) - 1
+    do while (last >= first)
+      if (scan(self%text(last:last), line_feed//carriage_return) == 0) exit
+      last = last - 1
+    end do
+  end subroutine line_bounds
+
+  !> The byte of a place; 0 where the text has no such place.
+  pure integer function byte_at(self, position) result(byte)
+    class(source_type), intent(in) :: self
+    type(place_type), intent(in) :: position
+    integer :: first, last, column
+
+    byte = 0
+    if (position%line < 1 .or. position%line > size(self%line_start)) return
+    call self%line_bounds(position%line, first, last)
+    column = 0
+    do byte = first, last
+      if (.not. continues_character(self%text(byte:byte))) column = column + 1
+      if (column >= position%column) return
+    end do
+  end function byte_at
+
+  pure logical function all_ascii(text)
+    character(len=*), intent(in) :: text
+    integer :: i
+
+    all_ascii = .false.
+    do i = 1, len(text)
+      if (iachar(text(i:i)) > 127) return
+    end do
+    all_ascii = .true.
+  end function all_ascii
+
+  !> Not the first byte of a UTF-8 character.
+  pure logical function continues_character(byte)
+    character, intent(in) :: byte
+
+    continues_character = iachar(byte) >= 128 .and. iachar(byte) < 192
+  end function continues_character
+end module mech9_source
