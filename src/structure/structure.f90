@@ -128,7 +128,10 @@ contains
                     to_text(size(links, 2))//' pairs')
       return
     end if
-    group = [(i, i=1, n_links)]
+    allocate (group(max(n_links, 0)))
+    do i = 1, n_links
+      group(i) = i
+    end do
     do k = 1, size(links, 2)
       if (any(links(:, k) < 1 .or. links(:, k) > n_links)) cycle
       call find_group(group, links(1, k), a)

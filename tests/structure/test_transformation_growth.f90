@@ -1,0 +1,70 @@
+!> The transformation stays near-linear: valid at 10,000 links of every kind of structure, and the
+!> work for ten times the links is not much more than ten times the work.
+program test_transformation_growth
+  use mech9_kinds, only: wp, long
+  use mech9_text, only: to_text
+  use mech9_structure, only: structure_type
+  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_transformation, only: transform
+  use mech9_testing, only: tester_type
+  use random_structures, only: random_structure, n_kinds, kind_names
+  use vector_definition, only: what_is_wrong
+  implicit none
+  type(tester_type) :: tester
+  integer :: kind
+
+  do kind = 1, n_kinds
+    call check_growth(tester, kind)
+  end do
+  call tester%finish()
+
+contains
+
+  subroutine check_growth(tester, kind)
+    type(tester_type), intent(inout) :: tester
+    integer, intent(in) :: kind
+    real(wp) :: work_small, work_large, time_small, time_large
+    integer(long) :: pairs_small, pairs_large
+
+    call measure(tester, kind, 1000, 10, work_small, time_small, pairs_small)
+    call measure(tester, kind, 10000, 3, work_large, time_large, pairs_large)
+    print '(a20,2(a,f8.1),2(a,f9.3),a)', kind_names(kind), 'operations a pair:', work_small/pairs_small, &
+      ' and', work_large/pairs_large, '   ms:', 1000*time_small, ' and', 1000*time_large, ''
+    ! ten times the links: n log n gives a factor 13, n**1.5 would give 32, and n**2 gives 100
+    call tester%is_true(work_large < 25.0_wp*work_small, trim(kind_names(kind))//': operations grow near-linearly')
+    ! time is only a rough witness on a busy machine; half a millisecond of slack for the clock
+    call tester%is_true(time_large < 40.0_wp*(time_small + 5.0e-4_wp), trim(kind_names(kind))//': time grows near-linearly')
+  end subroutine check_growth
+
+  !> Mean operations and least time of some structures.
+  subroutine measure(tester, kind, n, seeds, work, time, pairs)
+    type(tester_type), intent(inout) :: tester
+    integer, intent(in) :: kind, n, seeds
+    real(wp), intent(out) :: work     !< operations
+    real(wp), intent(out) :: time     !< [s]
+    integer(long), intent(out) :: pairs
+    type(structure_type) :: structure
+    type(structural_vectors_type) :: vectors
+    character(len=:), allocatable :: wrong
+    integer(long) :: operations
+    real(wp) :: began, ended
+    integer :: seed
+
+    work = 0.0_wp
+    pairs = 0
+    time = huge(time)
+    do seed = 1, seeds
+      structure = random_structure(kind, n, seed)
+      call cpu_time(began)
+      call transform(structure, vectors, operations)
+      call cpu_time(ended)
+      work = work + real(operations, wp)/seeds
+      pairs = pairs + structure%n_coordinates
+      time = min(time, ended - began)
+      wrong = what_is_wrong(structure, vectors)
+      call tester%is_true(wrong == '', 'vectors as defined: '//trim(kind_names(kind))//', '//to_text(n)// &
+                          ' links, seed '//to_text(seed)//': '//wrong)
+    end do
+    pairs = pairs/seeds
+  end subroutine measure
+end program test_transformation_growth
