@@ -9,7 +9,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 import data_file
-from mech9_cases import REFERENCE, Checks, read_csv, run, read_table, table_of, tolerance_of
+from mech9_cases import REFERENCE, Checks, read_csv, table_of, tolerance_of
 
 
 def size_of(path):

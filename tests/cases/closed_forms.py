@@ -1,0 +1,160 @@
+"""Mechanisms whose motion is known in closed form, through the whole program: each kind of pair and drive.
+
+usage: closed_forms.py MECH9K
+"""
+import os
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+import data_file
+from jets import Jet, arctan, check_coordinate, check_point, cos, sin
+from mech9_cases import POSITION, REFERENCE, Checks, run, table_of, tolerance_of
+
+HARMONIC = "kind='harmonic', mean=0.2, amplitude=0.7, angular_frequency=3.0, phase=0.4"
+
+
+def harmonic(t):
+    """The motion of HARMONIC."""
+    return 0.2 + 0.7 * sin(Jet(3.0 * t + 0.4, 3.0, 0.0))
+
+
+class Cases:
+    def __init__(self, program, folder):
+        self.program, self.folder, self.checks = program, folder, Checks()
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        return path
+
+    def table(self, text):
+        return table_of(self.program, self.write('case.nml', text))
+
+
+def helix(s):
+    """A point beside the axis of a helical pair: it turns by q and advances by pitch q/(2 pi)."""
+    table = s.table(f"""
+&mechanism links=2, coordinates=1 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='helical', point=0.1,0,0, axis=0,0,2, pitch=0.3 /
+&point name='P', link=2, position=0.6,0,0.2 /
+&drive coordinate=1, {HARMONIC} /
+&time start=0, end=2, intervals=40 /
+""")
+    q = harmonic(table['t'])
+    check_coordinate(s.checks, table, 1, q, 'helix')
+    check_point(s.checks, table, 'P', (0.1 + 0.5 * cos(q), 0.5 * sin(q), 0.2 + 0.3 / (2 * np.pi) * q), 'helix')
+
+
+def denavit_hartenberg(s):
+    """Three pairs in Denavit-Hartenberg form, against the product of their matrices with jets as entries."""
+    rows = [('revolute', (0.3, 0.5, 0.1, 0.2)), ('prismatic', (0.2, -1.1, 0.4, 0.7)), ('helical', (0.1, 0.3, 0.2, -0.4))]
+    pairs = ''.join(f"&pair coordinate={k}, links={k},{k + 1}, kind='{kind}', dh={a},{alpha},{d},{theta}"
+                    + (', pitch=0.25' if kind == 'helical' else '') + ' /\n'
+                    for k, (kind, (a, alpha, d, theta)) in enumerate(rows, 1))
+    table = s.table(f"""
+&mechanism links=4, coordinates=3 /
+&structure cq=1,2,3 /
+{pairs}&point name='P', link=4, position=0.3,-0.2,0.1 /
+&drive coordinate=1, {HARMONIC} /
+&drive coordinate=2, kind='polynomial', coefficients=0.1, 0.3, -0.2 /
+&drive coordinate=3, kind='polynomial', coefficients=0.5, -1.0 /
+&time start=0, end=1, intervals=20 /
+""")
+    t = table['t']
+    q = [harmonic(t), Jet(0.1 + 0.3 * t - 0.2 * t ** 2, 0.3 - 0.4 * t, -0.4), Jet(0.5 - t, -1.0, 0.0)]
+    x, y, z = 0.3, -0.2, 0.1
+    for (kind, (a, alpha, d, theta)), qk in list(zip(rows, q))[::-1]:
+        angle = theta + qk if kind != 'prismatic' else Jet(theta)
+        slide = {'revolute': d, 'prismatic': d + qk, 'helical': d + 0.25 / (2 * np.pi) * qk}[kind]
+        # T = Rz(angle) Tz(slide) Tx(a) Rx(alpha)
+        x, y, z = x + a, np.cos(alpha) * y - np.sin(alpha) * z, np.sin(alpha) * y + np.cos(alpha) * z
+        x, y, z = x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z + slide
+    for k in range(3):
+        check_coordinate(s.checks, table, k + 1, q[k], 'Denavit-Hartenberg')
+    check_point(s.checks, table, 'P', (x, y, z), 'Denavit-Hartenberg')
+
+
+def universal_joint(s):
+    """Cardan's joint, a spherical chain: tan q4 = cos(beta) tan q1 for shafts at the angle beta."""
+    beta = 0.6
+    c, n = float(np.cos(beta)), float(np.sin(beta))
+    table = s.table(f"""
+&mechanism links=4, coordinates=4 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', point=0.2,0.1,0, axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.2,0.1,0, axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', point=0.2,0.1,0, axis={-n!r},{c!r},0 /
+&pair coordinate=4, links=1,4, kind='revolute', point=0.2,0.1,0, axis={c!r},{n!r},0 /
+&drive coordinate=1, kind='polynomial', coefficients=-1.2, 2.4 /
+&time start=0, end=1, intervals=24 /
+""")
+    q = Jet(-1.2 + 2.4 * table['t'], 2.4, 0.0)
+    check_coordinate(s.checks, table, 4, arctan(c * (sin(q) / cos(q))), 'universal joint')
+
+
+def table_drive(s):
+    """A table of few points: met at its times, and smooth: between rows close to a knot nothing jumps."""
+    times = np.linspace(0.0, 2.0, 9)
+    values = np.sin(1.7 * times) + 0.1 * times
+    s.write('drive.txt', '# t q\n' + ''.join(f'{t!r} {q!r}\n' for t, q in zip(times.tolist(), values.tolist())))
+    text = """
+&mechanism links=2, coordinates=1 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', point=0,0,0, axis=0,0,1 /
+&drive coordinate=1, kind='table', file='drive.txt' /
+&time start={start!r}, end={end!r}, intervals={intervals} /
+"""
+    table = s.table(text.format(start=0.0, end=2.0, intervals=8))
+    s.checks.near(table['q1'], values, POSITION, 'the table drive goes through its points')
+    step = 1e-6
+    for knot in times[1:-1].tolist():
+        near = s.table(text.format(start=knot - step, end=knot + step, intervals=2))
+        # a continuous piecewise linear ddq changes by slope*step; slopes of this curve are below 20
+        s.checks.near(near['ddq1'], near['ddq1'][1], 20 * step, f'ddq1 is continuous at t = {knot}')
+        s.checks.near((near['q1'][2] - near['q1'][0]) / (2 * step), near['dq1'][1], 1e-8,
+                      f'dq1 is the slope of q1 at t = {knot}')   # differences: eps/step = 2e-10, curvature step^2
+
+
+def second_set(s):
+    """The structural vectors given as data make the same motion as the coincidence matrix."""
+    for name, vectors in (('kinematics_slider_crank', 'nrg=1,2,3,4,1 nws=0,1,2,3,4 rdw=1,1,0,0,0 nrw=0,0,0,0,1'),
+                          ('kinematics_fig1', 'nrg=1,2,3,4,1,1,6,5,3 nws=0,5,4,7,6,0,1,2,3 rdw=1,1,0,0,0,1,0,0,0')):
+        path = os.path.join(REFERENCE, name + '.nml')
+        with open(path, encoding='utf-8') as file:
+            groups = data_file.parse(file.read())
+        words = dict(item.split('=') for item in vectors.split())
+        given = {key: [int(number) for number in value.split(',')] for key, value in words.items()}
+        text = data_file.write([(group, given if group == 'structure' else items) for group, items in groups])
+        first, second = table_of(s.program, path), s.table(text)
+        for column in first:
+            if column != 'closure':
+                s.checks.near(second[column], first[column], tolerance_of(column), f'{name} by the second set: {column}')
+
+
+def not_linked(s):
+    """A user pair without a user's procedure is a mistake that is explained."""
+    path = s.write('user.nml', """
+&mechanism links=2, coordinates=1 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='user' /
+&drive coordinate=1, kind='polynomial', coefficients=0.0, 1.0 /
+""")
+    done = run(s.program, path, '--no-write', folder=s.folder)
+    s.checks.equal(done.returncode, 3, 'a user pair without a procedure: exit code 3')
+    s.checks.true('none is linked' in done.stderr, 'the message says that none is linked', done.stderr)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        s = Cases(os.path.abspath(sys.argv[1]), folder)
+        for case in (helix, denavit_hartenberg, universal_joint, table_drive, second_set, not_linked):
+            case(s)
+        s.checks.finish()
+
+
+main()
