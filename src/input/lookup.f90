@@ -11,8 +11,8 @@ module mech9_lookup
   use mech9_document, only: document_type, group_type
   implicit none
   private
-  public :: groups_named, has_unsound, has_name, get_integer, get_integers, get_real, get_reals, get_text, span_of
-  public :: find_item
+  public :: groups_named, has_group, has_unsound, has_name, find_item, span_of
+  public :: get_integer, get_integers, get_real, get_reals, get_text
 
 contains
 
@@ -33,6 +33,19 @@ contains
       if (pass == 1) allocate (numbers(n))
     end do
   end function groups_named
+
+  !> Whether the file has a group of this name, sound or not.
+  pure logical function has_group(document, name)
+    type(document_type), intent(in) :: document
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    has_group = .true.
+    do i = 1, size(document%groups)
+      if (document%groups(i)%name == name) return
+    end do
+    has_group = .false.
+  end function has_group
 
   !> Whether something was wrong with a group of this name, so that what it means is unknown.
   pure logical function has_unsound(document, name)

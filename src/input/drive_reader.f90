@@ -1,0 +1,176 @@
+!> Drives from the groups &drive of a checked document. Uses kinds, error, text, the drives of the model
+!> and of the user, spline, structure, source, document, lookup, table_file, diagnostics.
+module mech9_drive_reader
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text, starts_with
+  use mech9_spline, only: build_spline
+  use mech9_structure, only: structure_type
+  use mech9_pair, only: pair_slot_type
+  use mech9_drive, only: drive_type, drive_slot_type
+  use mech9_polynomial_drive, only: polynomial_drive_type
+  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_table_drive, only: table_drive_type
+  use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
+  use mech9_source, only: span_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_unsound, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  use mech9_table_file, only: read_table_file
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_drives, unit_of_coordinate
+
+contains
+
+  !> Make the drives of all sound groups.
+  subroutine read_drives(document, structure, pairs, angle_unit, start, parameters, needed, drives, diagnostics)
+    type(document_type), intent(in) :: document
+    type(structure_type), intent(in) :: structure           !< without coordinates where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)
+    real(wp), intent(in) :: angle_unit                      !< radians in one unit of angle of the file
+    real(wp), intent(in) :: start                           !< time of the first result [s]
+    real(wp), intent(in) :: parameters(:)                   !< for the user's procedures
+    logical, intent(in) :: needed                           !< every independent coordinate must have one
+    type(drive_slot_type), allocatable, intent(out) :: drives(:)
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, allocatable :: numbers(:)
+    integer :: i, n, k
+
+    numbers = groups_named(document, 'drive')
+    allocate (drives(size(numbers)))
+    n = 0
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)), slot => drives(n + 1))
+        call read_drive(document, group, angle_unit, unit_of_coordinate(group, pairs, angle_unit), start, parameters, &
+                        slot, diagnostics)
+        call check_coordinate(group, structure, diagnostics)
+        if (.not. allocated(slot%drive)) cycle
+        k = get_integer(group, 'coordinate')
+        slot%drive%coordinate = k
+        slot%drive%place = diagnostics%place(group%span)
+        n = n + 1
+      end associate
+    end do
+    if (needed .and. .not. has_unsound(document, 'drive')) call check_complete(document, structure, diagnostics)
+  end subroutine read_drives
+
+  !> What a number of a group about a coordinate is multiplied with to become rad or m.
+  pure real(wp) function unit_of_coordinate(group, pairs, angle_unit) result(unit)
+    type(group_type), intent(in) :: group                   !< with a name `coordinate`
+    type(pair_slot_type), intent(in) :: pairs(:)
+    real(wp), intent(in) :: angle_unit
+    integer :: k
+
+    unit = 1.0_wp
+    k = get_integer(group, 'coordinate')
+    if (k > size(pairs)) return
+    if (.not. allocated(pairs(k)%pair)) return
+    if (pairs(k)%pair%angular) unit = angle_unit
+  end function unit_of_coordinate
+
+  pure subroutine check_coordinate(group, structure, diagnostics)
+    type(group_type), intent(in) :: group
+    type(structure_type), intent(in) :: structure
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: k
+
+    if (structure%n_coordinates == 0) return
+    k = get_integer(group, 'coordinate')
+    if (k > structure%n_coordinates) then
+      call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(k)//'; they are 1 to '// &
+                           to_text(structure%n_coordinates))
+    else if (.not. structure%independent(k)) then
+      call diagnostics%add(span_of(group, 'coordinate', 1), 'coordinate '//to_text(k)//' is dependent and cannot be '// &
+                           'driven; drive an independent one (see cq)')
+    end if
+  end subroutine check_coordinate
+
+  !> Report independent coordinates without a drive.
+  pure subroutine check_complete(document, structure, diagnostics)
+    type(document_type), intent(in) :: document
+    type(structure_type), intent(in) :: structure
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, allocatable :: numbers(:), cq(:)
+    type(span_type) :: span
+    logical :: driven(structure%n_coordinates)
+    integer :: i, k
+
+    driven = .false.
+    numbers = groups_named(document, 'drive')
+    do i = 1, size(numbers)
+      k = get_integer(document%groups(numbers(i)), 'coordinate')
+      if (k <= size(driven)) driven(k) = .true.
+    end do
+    numbers = groups_named(document, 'structure')
+    do k = 1, structure%n_coordinates
+      if (driven(k) .or. .not. structure%independent(k)) cycle
+      if (size(numbers) > 0) then
+        cq = get_integers(document%groups(numbers(1)), 'cq')
+        span = span_of(document%groups(numbers(1)), 'cq', findloc(cq, k, dim=1))
+      end if
+      call diagnostics%add(span, 'the independent coordinate '//to_text(k)//' has no drive; give it a &drive')
+    end do
+  end subroutine check_complete
+
+  !> One drive, in rad, m and s; the slot stays empty where something was reported.
+  subroutine read_drive(document, group, angle_unit, unit, start, parameters, slot, diagnostics)
+    type(document_type), intent(in) :: document
+    type(group_type), intent(in) :: group
+    real(wp), intent(in) :: angle_unit
+    real(wp), intent(in) :: unit                            !< of the coordinate
+    real(wp), intent(in) :: start, parameters(:)
+    type(drive_slot_type), intent(out) :: slot
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(procedure_drive_type) :: user_drive
+    type(error_type), allocatable :: err
+
+    select case (get_text(group, 'kind'))
+    case ('polynomial')
+      allocate (slot%drive, source=polynomial_drive_type(coefficients=unit*get_reals(group, 'coefficients')))
+    case ('harmonic')
+      allocate (slot%drive, source=harmonic_drive_type(mean=unit*get_real(group, 'mean'), &
+                                                       amplitude=unit*get_real(group, 'amplitude'), &
+                                                       angular_frequency=angle_unit*get_real(group, 'angular_frequency'), &
+                                                       phase=angle_unit*get_real(group, 'phase')))
+    case ('table')
+      call read_table_drive(document, group, unit, slot, diagnostics)
+    case ('user')
+      call make_procedure_drive(get_integer(group, 'coordinate'), start, parameters, user_drive, err)
+      if (.not. allocated(err)) allocate (slot%drive, source=user_drive)
+    end select
+    if (allocated(err)) call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
+  end subroutine read_drive
+
+  subroutine read_table_drive(document, group, unit, slot, diagnostics)
+    type(document_type), intent(in) :: document
+    type(group_type), intent(in) :: group
+    real(wp), intent(in) :: unit
+    type(drive_slot_type), intent(inout) :: slot
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(table_drive_type) :: drive
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: t(:), q(:)
+    type(span_type) :: span
+    logical :: ok
+
+    span = span_of(group, 'file', 1)
+    call read_table_file(beside(document%source%name, get_text(group, 'file')), span, t, q, ok, diagnostics)
+    if (.not. ok) return
+    call build_spline(t, unit*q, drive%spline, err)
+    if (allocated(err)) then
+      call diagnostics%add(span, err%message, err%code)
+    else
+      allocate (slot%drive, source=drive)
+    end if
+  end subroutine read_table_drive
+
+  !> Path of a file named in a data file: relative names start from the data file's folder.
+  pure function beside(data_file, name) result(path)
+    character(len=*), intent(in) :: data_file, name
+    character(len=:), allocatable :: path
+
+    path = name
+    if (.not. starts_with(name, '/')) path = data_file(:index(data_file, '/', back=.true.))//name
+  end function beside
+end module mech9_drive_reader

@@ -1,0 +1,112 @@
+!> What is known at the start, and which points are recorded: the groups &initial and &point of a checked
+!> document. Uses kinds, text, structure, point, document, lookup, drive_reader, diagnostics.
+module mech9_motion_reader
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_structure, only: structure_type
+  use mech9_pair, only: pair_slot_type
+  use mech9_point, only: point_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_reals, get_text, span_of
+  use mech9_drive_reader, only: unit_of_coordinate
+  use mech9_diagnostics, only: diagnostics_type, printable
+  implicit none
+  private
+  public :: initial_type, read_initial, read_points, check_link
+
+  !> Coordinates and rates at the start [rad, m, per s], and whether they were given.
+  type :: initial_type
+    real(wp), allocatable :: position(:), velocity(:)
+    logical, allocatable :: position_given(:), velocity_given(:)
+  end type initial_type
+
+  character(len=*), parameter :: name_letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
+  integer, parameter :: longest_name = 40
+
+contains
+
+  pure subroutine read_initial(document, structure, pairs, angle_unit, initial, diagnostics)
+    type(document_type), intent(in) :: document
+    type(structure_type), intent(in) :: structure            !< without coordinates where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)
+    real(wp), intent(in) :: angle_unit                       !< radians in one unit of angle of the file
+    type(initial_type), intent(out) :: initial
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, allocatable :: numbers(:)
+    real(wp) :: unit
+    integer :: i, k
+
+    allocate (initial%position(structure%n_coordinates), initial%velocity(structure%n_coordinates), source=0.0_wp)
+    allocate (initial%position_given(structure%n_coordinates), &
+              initial%velocity_given(structure%n_coordinates), source=.false.)
+    if (structure%n_coordinates == 0) return
+    numbers = groups_named(document, 'initial')
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)))
+        k = get_integer(group, 'coordinate')
+        if (k > structure%n_coordinates) then
+          call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(k)// &
+                               '; they are 1 to '//to_text(structure%n_coordinates))
+          cycle
+        end if
+        if (has_name(group, 'velocity') .and. .not. structure%independent(k)) &
+          call diagnostics%add(span_of(group, 'velocity'), 'coordinate '//to_text(k)//' is dependent: its velocity '// &
+                               'follows from the others; leave it out')
+        unit = unit_of_coordinate(group, pairs, angle_unit)
+        initial%position(k) = unit*get_real(group, 'position')
+        initial%velocity(k) = unit*get_real(group, 'velocity')
+        initial%position_given(k) = has_name(group, 'position')
+        initial%velocity_given(k) = has_name(group, 'velocity')
+      end associate
+    end do
+  end subroutine read_initial
+
+  pure subroutine read_points(document, n_links, points, diagnostics)
+    type(document_type), intent(in) :: document
+    integer, intent(in) :: n_links                           !< 0 where it is not known
+    type(point_type), allocatable, intent(out) :: points(:)
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, allocatable :: numbers(:)
+    integer :: i
+
+    numbers = groups_named(document, 'point')
+    allocate (points(size(numbers)))
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)))
+        points(i)%name = get_text(group, 'name')
+        points(i)%link = get_integer(group, 'link')
+        points(i)%position = get_reals(group, 'position')
+        points(i)%place = diagnostics%place(group%span)
+        call check_name(group, points(i)%name, diagnostics)
+        call check_link(group, 'link', 1, n_links, diagnostics)
+      end associate
+    end do
+  end subroutine read_points
+
+  !> Names of points become names of columns, such as P.x.
+  pure subroutine check_name(group, name, diagnostics)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    type(diagnostics_type), intent(inout) :: diagnostics
+
+    if (len(name) > 0 .and. len(name) <= longest_name .and. verify(name, name_letters) == 0) return
+    call diagnostics%add(span_of(group, 'name', 1), '''name'' must be of letters (a to z), digits and _, at most '// &
+                         to_text(longest_name)//' of them, not '''//printable(name, longest_name)//'''')
+  end subroutine check_name
+
+  !> Report the number of a link that is not there.
+  pure subroutine check_link(group, name, position, n_links, diagnostics)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: position                          !< of the number in the list
+    integer, intent(in) :: n_links                           !< 0 where it is not known
+    type(diagnostics_type), intent(inout) :: diagnostics
+    real(wp), allocatable :: numbers(:)
+
+    if (n_links == 0) return
+    numbers = get_reals(group, name)
+    if (nint(numbers(position)) <= n_links) return
+    call diagnostics%add(span_of(group, name, position), 'there is no link '//to_text(nint(numbers(position)))// &
+                         '; they are 1 to '//to_text(n_links))
+  end subroutine check_link
+end module mech9_motion_reader

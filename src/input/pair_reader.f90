@@ -1,0 +1,188 @@
+!> Pairs from the groups &pair of a checked document. Uses kinds, error, text, pose, the pairs of the
+!> model and of the user, source, document, lookup, diagnostics.
+module mech9_pair_reader
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_pose, only: pose_type, pose_from_axis, default_zero
+  use mech9_pair, only: pair_slot_type
+  use mech9_screw_pair, only: screw_pair_type, revolute_pair, prismatic_pair, helical_pair, &
+                              revolute_pair_dh, prismatic_pair_dh, helical_pair_dh
+  use mech9_procedure_pair, only: procedure_pair_type, make_procedure_pair
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_name, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_pairs
+
+contains
+
+  !> Make the pairs of all sound groups. Coordinates without one keep an empty slot: mechanisms with
+  !> such holes are refused when the structure is read.
+  subroutine read_pairs(document, n_coordinates, angle_unit, parameters, pairs, diagnostics)
+    type(document_type), intent(in) :: document
+    integer, intent(in) :: n_coordinates               !< 0 where it is not known
+    real(wp), intent(in) :: angle_unit                 !< radians in one unit of angle of the file
+    real(wp), intent(in) :: parameters(:)              !< for the user's procedures
+    type(pair_slot_type), allocatable, intent(out) :: pairs(:)
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(pair_slot_type) :: slot
+    integer, allocatable :: numbers(:)
+    integer :: i, k
+
+    allocate (pairs(n_coordinates))
+    numbers = groups_named(document, 'pair')
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)))
+        call read_pair(group, angle_unit, parameters, slot, diagnostics)
+        k = get_integer(group, 'coordinate')
+        if (k <= n_coordinates .and. allocated(slot%pair)) call move_alloc(slot%pair, pairs(k)%pair)
+      end associate
+    end do
+  end subroutine read_pairs
+
+  !> One pair; the slot stays empty where something was reported.
+  subroutine read_pair(group, angle_unit, parameters, slot, diagnostics)
+    type(group_type), intent(in) :: group
+    real(wp), intent(in) :: angle_unit, parameters(:)
+    type(pair_slot_type), intent(out) :: slot
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(screw_pair_type) :: screw
+    type(procedure_pair_type) :: procedure_pair
+    type(error_type), allocatable :: err
+    integer :: links(2), found
+
+    found = diagnostics%count
+    if (get_text(group, 'kind') == 'user') then
+      call make_procedure_pair(get_integer(group, 'coordinate'), parameters, procedure_pair, err)
+      if (allocated(err)) then
+        call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
+        return
+      end if
+      allocate (slot%pair, source=procedure_pair)
+    else
+      if (has_name(group, 'dh')) then
+        call read_dh(group, angle_unit, screw, diagnostics)
+      else
+        call read_frames(group, screw, diagnostics)
+      end if
+      if (diagnostics%count > found) return
+      allocate (slot%pair, source=screw)
+    end if
+    links = get_integers(group, 'links')
+    slot%pair%coordinate = get_integer(group, 'coordinate')
+    slot%pair%reference = links(1)
+    slot%pair%moving = links(2)
+    slot%pair%place = diagnostics%place(group%span)
+  end subroutine read_pair
+
+  !> A pair in Denavit-Hartenberg form.
+  pure subroutine read_dh(group, angle_unit, pair, diagnostics)
+    type(group_type), intent(in) :: group
+    real(wp), intent(in) :: angle_unit
+    type(screw_pair_type), intent(out) :: pair
+    type(diagnostics_type), intent(inout) :: diagnostics
+    character(len=12), parameter :: others(6) = [character(len=12) :: 'point', 'axis', 'zero', 'moving_point', &
+                                                 'moving_axis', 'moving_zero']
+    real(wp) :: dh(4)
+    integer :: i
+
+    do i = 1, size(others)
+      if (has_name(group, trim(others(i)))) &
+        call diagnostics%add(span_of(group, trim(others(i))), ''''//trim(others(i))// &
+                             ''' cannot stand beside ''dh'', which says where the pair is; leave one of them out')
+    end do
+    dh = get_reals(group, 'dh')
+    associate (a => dh(1), alpha => angle_unit*dh(2), d => dh(3), theta => angle_unit*dh(4))
+      select case (get_text(group, 'kind'))
+      case ('revolute')
+        pair = revolute_pair_dh(a, alpha, d, theta)
+      case ('prismatic')
+        pair = prismatic_pair_dh(a, alpha, d, theta)
+      case ('helical')
+        pair = helical_pair_dh(a, alpha, d, theta, get_real(group, 'pitch'))
+      end select
+    end associate
+  end subroutine read_dh
+
+  !> A pair between a frame in its reference link and one in its moving link.
+  pure subroutine read_frames(group, pair, diagnostics)
+    type(group_type), intent(in) :: group
+    type(screw_pair_type), intent(out) :: pair
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(pose_type) :: reference, moving
+    real(wp) :: axis(3), zero(3)
+    integer :: found
+
+    found = diagnostics%count
+    if (.not. has_name(group, 'axis')) then
+      call diagnostics%add(group%span, '&pair needs ''axis'': direction of the axis, in the reference link (or ''dh'')')
+      return
+    end if
+    axis = get_reals(group, 'axis')
+    zero = default_zero(axis)
+    if (has_name(group, 'zero')) zero = get_reals(group, 'zero')
+    call make_frame(group, '', real_or(group, 'point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, reference, diagnostics)
+
+    ! each is equal to its counterpart, but a new axis comes with its own zero
+    if (has_name(group, 'moving_axis')) zero = default_zero(get_reals(group, 'moving_axis'))
+    axis = real_or(group, 'moving_axis', axis)
+    zero = real_or(group, 'moving_zero', zero)
+    if (diagnostics%count == found) &
+      call make_frame(group, 'moving_', real_or(group, 'moving_point', reference%p), axis, zero, moving, diagnostics)
+    if (diagnostics%count > found) return
+    select case (get_text(group, 'kind'))
+    case ('revolute')
+      pair = revolute_pair(reference, moving)
+    case ('prismatic')
+      pair = prismatic_pair(reference, moving)
+    case ('helical')
+      pair = helical_pair(reference, moving, get_real(group, 'pitch'))
+    end select
+  end subroutine read_frames
+
+  !> Three numbers that are given, or others in their place.
+  pure function real_or(group, name, otherwise) result(vector)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: otherwise(3)
+    real(wp) :: vector(3)
+
+    vector = otherwise
+    if (has_name(group, name)) vector = get_reals(group, name)
+  end function real_or
+
+  !> The frame of an axis, with a report where its vectors do not serve.
+  pure subroutine make_frame(group, prefix, point, axis, zero, frame, diagnostics)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: prefix            !< of the names: '' or 'moving_'
+    real(wp), intent(in) :: point(3), axis(3), zero(3)
+    type(pose_type), intent(out) :: frame
+    type(diagnostics_type), intent(inout) :: diagnostics
+    logical :: ok
+
+    call pose_from_axis(point, axis, zero, frame, ok)
+    if (ok) return
+    if (.not. any(abs(axis) > 0.0_wp)) then
+      call diagnostics%add(span_of(group, prefix//'axis', 1), 'the '//prefix//'axis of pair '//number_of(group)// &
+                           ' is zero; it must have a direction')
+    else if (.not. any(abs(zero) > 0.0_wp)) then
+      call diagnostics%add(span_of(group, prefix//'zero', 1), 'the '//prefix//'zero of pair '//number_of(group)// &
+                           ' is zero; it must have a direction')
+    else if (has_name(group, prefix//'zero') .or. prefix == '') then
+      call diagnostics%add(span_of(group, prefix//'zero'), 'the '//prefix//'zero of pair '//number_of(group)// &
+                           ' lies along the axis; it must point away from it')
+    else
+      call diagnostics%add(span_of(group, 'zero'), 'the zero of pair '//number_of(group)// &
+                           ' lies along its moving_axis; give a moving_zero too')
+    end if
+  end subroutine make_frame
+
+  pure function number_of(group) result(text)
+    type(group_type), intent(in) :: group
+    character(len=:), allocatable :: text
+
+    text = to_text(get_integer(group, 'coordinate'))
+  end function number_of
+end module mech9_pair_reader

@@ -1,0 +1,162 @@
+!> From a document to a mechanism with everything checked. Uses kinds, structure, mechanism, settings,
+!> document, checker, lookup, the readers of the parts, diagnostics.
+module mech9_reader
+  use mech9_kinds, only: wp, radians_per_degree
+  use mech9_structure, only: structure_type
+  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_settings, only: time_grid_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_document, only: document_type, group_type
+  use mech9_checker, only: check_document
+  use mech9_lookup, only: groups_named, has_group, has_name, get_integer, get_real, get_reals, get_text, span_of
+  use mech9_structure_reader, only: read_structure
+  use mech9_pair_reader, only: read_pairs
+  use mech9_drive_reader, only: read_drives
+  use mech9_motion_reader, only: initial_type, read_initial, read_points
+  use mech9_body_reader, only: read_bodies, read_gravity, check_loads
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_structure_only, read_mechanism
+
+contains
+
+  !> The structure alone. The mechanism's geometry need not be given; whatever is given is checked
+  !> against the grammar. Of use only where the diagnostics are without errors afterwards.
+  pure subroutine read_structure_only(document, structure, vectors, diagnostics)
+    type(document_type), intent(in) :: document
+    type(structure_type), intent(out) :: structure
+    type(structural_vectors_type), intent(out) :: vectors
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(document_type) :: checked
+    logical :: known
+
+    checked = document
+    call check_document(checked, diagnostics)
+    call read_structure(checked, structure, vectors, known, diagnostics)
+  end subroutine read_structure_only
+
+  !> The mechanism, in m, rad, kg, s. All errors are collected in the diagnostics; the mechanism is of
+  !> use only where there are none.
+  subroutine read_mechanism(document, mechanism, diagnostics, needs_drives)
+    type(document_type), intent(in) :: document
+    type(mechanism_type), intent(out) :: mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics
+    !> Every independent coordinate must be driven, as in kinematics; true unless given.
+    logical, intent(in), optional :: needs_drives
+    type(document_type) :: checked
+    logical :: known, all_driven
+
+    all_driven = .true.
+    if (present(needs_drives)) all_driven = needs_drives
+    checked = document
+    call check_document(checked, diagnostics)
+    call read_settings(checked, mechanism, diagnostics)
+    call read_structure(checked, mechanism%structure, mechanism%vectors, known, diagnostics)
+    if (.not. known) call forget(mechanism%structure)
+    call read_parts(checked, all_driven, mechanism, diagnostics)
+  end subroutine read_mechanism
+
+  !> A structure that is not known has no links and no coordinates.
+  pure subroutine forget(structure)
+    type(structure_type), intent(out) :: structure
+
+    allocate (structure%links(2, 0), structure%independent(0))
+  end subroutine forget
+
+  !> Everything whose numbers refer to the structure.
+  subroutine read_parts(document, all_driven, mechanism, diagnostics)
+    type(document_type), intent(in) :: document
+    logical, intent(in) :: all_driven
+    type(mechanism_type), intent(inout) :: mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(initial_type) :: initial
+
+    associate (m => mechanism, n_links => mechanism%structure%n_links, n_coordinates => mechanism%structure%n_coordinates)
+      call read_pairs(document, n_coordinates, m%angle_unit, m%parameters, m%pairs, diagnostics)
+      call read_initial(document, m%structure, m%pairs, m%angle_unit, initial, diagnostics)
+      call move_alloc(initial%position, m%initial_position)
+      call move_alloc(initial%velocity, m%initial_velocity)
+      call move_alloc(initial%position_given, m%position_given)
+      call move_alloc(initial%velocity_given, m%velocity_given)
+      call read_points(document, n_links, m%points, diagnostics)
+      call read_drives(document, m%structure, m%pairs, m%angle_unit, m%time%start, m%parameters, all_driven, m%drives, &
+                       diagnostics)
+      call read_bodies(document, n_links, m%bodies, diagnostics)
+      m%gravity = read_gravity(document)
+      call check_loads(document, n_links, n_coordinates, diagnostics)
+      call check_pairs_given(document, m, diagnostics)
+    end associate
+  end subroutine read_parts
+
+  !> A structure may be known without pairs, but a mechanism is more than that.
+  pure subroutine check_pairs_given(document, mechanism, diagnostics)
+    type(document_type), intent(in) :: document
+    type(mechanism_type), intent(in) :: mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, allocatable :: numbers(:)
+
+    if (mechanism%structure%n_coordinates == 0 .or. has_group(document, 'pair')) return
+    numbers = groups_named(document, 'structure')
+    call diagnostics%add(document%groups(numbers(1))%span, 'there are no pairs; give a &pair for each coordinate '// &
+                         '(--structure shows the structure alone)')
+  end subroutine check_pairs_given
+
+  !> What does not refer to the structure: title, units, time, how to compute, what to write.
+  pure subroutine read_settings(document, mechanism, diagnostics)
+    type(document_type), intent(in) :: document
+    type(mechanism_type), intent(inout) :: mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(group_type) :: group
+
+    group = group_or_empty(document, 'mechanism')
+    mechanism%title = get_text(group, 'title')
+    if (get_text(group, 'angle_unit') == 'deg') mechanism%angle_unit = radians_per_degree
+    group = group_or_empty(document, 'user')
+    mechanism%parameters = get_reals(group, 'parameters')
+    group = group_or_empty(document, 'output')
+    mechanism%output%table = get_text(group, 'table')
+    mechanism%output%hdf5 = get_text(group, 'hdf5')
+    group = group_or_empty(document, 'solver')
+    mechanism%solver%method = get_text(group, 'method')
+    mechanism%solver%relative_tolerance = get_real(group, 'relative_tolerance')
+    mechanism%solver%absolute_tolerance = get_real(group, 'absolute_tolerance')
+    mechanism%solver%maximum_steps = get_integer(group, 'maximum_steps')
+    call read_time(group_or_empty(document, 'time'), mechanism%time, diagnostics)
+  end subroutine read_settings
+
+  !> The sound group of a name, or one that leaves everything to the defaults.
+  pure function group_or_empty(document, name) result(group)
+    type(document_type), intent(in) :: document
+    character(len=*), intent(in) :: name
+    type(group_type) :: group
+    integer, allocatable :: numbers(:)
+
+    numbers = groups_named(document, name)
+    if (size(numbers) > 0) then
+      group = document%groups(numbers(1))
+    else
+      group%name = name
+      allocate (group%items(0))
+    end if
+  end function group_or_empty
+
+  pure subroutine read_time(group, time, diagnostics)
+    type(group_type), intent(in) :: group
+    type(time_grid_type), intent(out) :: time
+    type(diagnostics_type), intent(inout) :: diagnostics
+
+    time%start = get_real(group, 'start')
+    time%end = get_real(group, 'end')
+    time%intervals = get_integer(group, 'intervals')
+    if (time%intervals == 0) then
+      if (has_name(group, 'end') .and. abs(time%end - time%start) > 0.0_wp) &
+        call diagnostics%add(span_of(group, 'intervals', 1), 'intervals=0 gives the start alone; leave ''end'' out, or give '// &
+                             'at least one interval')
+      time%end = time%start
+    else if (.not. abs(time%end - time%start) > 0.0_wp) then
+      call diagnostics%add(span_of(group, 'end', 1), 'the end is the same time as the start; for a single position give '// &
+                           'intervals=0')
+    end if
+  end subroutine read_time
+end module mech9_reader

@@ -1,0 +1,341 @@
+!> The structure of a mechanism from a checked document: first set, second set, or the links of the
+!> pairs; what is wrong with it is shown at the very number. Uses error, text, source, document,
+!> lookup, matrix_items, diagnostics and the structure floor.
+module mech9_structure_reader
+  use mech9_error, only: exit_structure
+  use mech9_text, only: to_text
+  use mech9_source, only: span_type
+  use mech9_finding, only: finding_type
+  use mech9_structure, only: structure_type, structure_from_pairs, structure_from_matrix, check_pair_links
+  use mech9_structural_vectors, only: structural_vectors_type, structure_from_vectors
+  use mech9_transformation, only: transform
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_unsound, has_name, get_integer, get_integers, span_of, find_item
+  use mech9_matrix_items, only: matrix_type, read_matrix
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_structure
+
+  !> What the groups say, gathered.
+  type :: source_data_type
+    type(group_type) :: structure              !< the group &structure, empty where there is none
+    integer :: n_links = 0                     !< as &mechanism says; 0: it does not
+    integer :: n_coordinates = 0
+    type(span_type) :: n_links_span, n_coordinates_span
+    integer, allocatable :: pairs(:)           !< numbers of the sound groups &pair
+    logical :: all_pairs = .false.             !< no pair is unsound
+    type(matrix_type) :: matrix
+    integer, allocatable :: links(:, :)        !< (2,M) of each pair; 0 where it has none
+    integer, allocatable :: group_of_pair(:)   !< (M) number of its group; 0 where it has none
+  end type source_data_type
+
+contains
+
+  !> Read the structure, and the order of computation where the file gives it; else it is made.
+  !> `known` is false where something was reported that leaves the structure unknown.
+  pure subroutine read_structure(document, structure, vectors, known, diagnostics)
+    type(document_type), intent(in) :: document              !< checked
+    type(structure_type), intent(out) :: structure
+    type(structural_vectors_type), intent(out) :: vectors
+    logical, intent(out) :: known
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(source_data_type) :: data
+    integer :: found
+    logical :: has_vectors
+
+    known = .false.
+    found = diagnostics%count
+    if (has_unsound(document, 'mechanism') .or. has_unsound(document, 'structure')) return
+    call gather(document, data)
+    has_vectors = any([has_name(data%structure, 'nrg'), has_name(data%structure, 'nws'), &
+                       has_name(data%structure, 'rdw'), has_name(data%structure, 'nrw')])
+    if (.not. has_vectors .and. .not. has_name(data%structure, 'cq')) &
+      call diagnostics%add(data%structure%span, 'the independent coordinates are missing: give &structure cq = ... '// &
+                           '(or nrg, nws and rdw)')
+    if (has_name(data%structure, 'c')) then
+      call from_matrix(document, data, structure, diagnostics)
+    else if (.not. has_vectors) then
+      call from_pairs(document, data, structure, known, diagnostics)
+      if (.not. known) return
+    end if
+    if (has_vectors) call from_vectors(document, data, structure, vectors, diagnostics)
+    known = diagnostics%count == found
+    if (.not. known) return
+    call compare_with_pairs(document, data, structure, diagnostics)
+    known = diagnostics%count == found
+    if (known .and. .not. has_vectors) call transform(structure, vectors)
+  end subroutine read_structure
+
+  pure subroutine gather(document, data)
+    type(document_type), intent(in) :: document
+    type(source_data_type), intent(out) :: data
+    integer, allocatable :: numbers(:)
+
+    data%structure%name = 'structure'
+    allocate (data%structure%items(0))
+    numbers = groups_named(document, 'structure')
+    if (size(numbers) > 0) data%structure = document%groups(numbers(1))
+    numbers = groups_named(document, 'mechanism')
+    if (size(numbers) > 0) then
+      associate (group => document%groups(numbers(1)))
+        data%n_links_span = span_of(group, 'links', 1)
+        data%n_coordinates_span = span_of(group, 'coordinates', 1)
+        if (has_name(group, 'links')) data%n_links = get_integer(group, 'links')
+        if (has_name(group, 'coordinates')) data%n_coordinates = get_integer(group, 'coordinates')
+      end associate
+    end if
+    data%pairs = groups_named(document, 'pair')
+    data%all_pairs = .not. has_unsound(document, 'pair')
+  end subroutine gather
+
+  pure subroutine from_matrix(document, data, structure, diagnostics)
+    type(document_type), intent(in) :: document
+    type(source_data_type), intent(inout) :: data
+    type(structure_type), intent(inout) :: structure
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(finding_type), allocatable :: findings(:)
+    integer :: m, n
+    logical :: ok
+
+    call read_matrix(data%structure, data%n_links, data%matrix, ok, diagnostics)
+    if (.not. ok) return
+    n = size(data%matrix%c, 1)
+    m = data%n_coordinates
+    if (m == 0) m = max(maxval(data%matrix%c), 0)
+    if (m > n*(n - 1)/2) then
+      call diagnostics%add(data%n_coordinates_span, 'a matrix c of '//to_text(n)//' links holds at most '// &
+                           to_text(n*(n - 1)/2)//' coordinates, not '//to_text(m), exit_structure)
+      return
+    end if
+    call structure_from_matrix(data%matrix%c, m, cq_of(data), structure, findings)
+    call report(findings, document, data, diagnostics)
+  end subroutine from_matrix
+
+  pure subroutine from_pairs(document, data, structure, known, diagnostics)
+    type(document_type), intent(in) :: document
+    type(source_data_type), intent(inout) :: data
+    type(structure_type), intent(inout) :: structure
+    logical, intent(out) :: known
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(finding_type), allocatable :: findings(:)
+    integer :: n
+
+    known = .false.
+    if (size(data%pairs) == 0 .and. data%all_pairs) then
+      call diagnostics%add(span_type(), 'nothing says which links meet: give &structure c and cq, or nrg, nws and rdw, '// &
+                           'or &pair groups', exit_structure)
+      return
+    end if
+    n = data%n_coordinates
+    if (n == 0) n = size(data%pairs)
+    call take_pairs(document, n, data, diagnostics)
+    if (.not. data%all_pairs .or. any(data%group_of_pair == 0)) return
+    n = data%n_links
+    if (n == 0) n = min(maxval(data%links), size(data%links, 2) + 1)
+    call structure_from_pairs(n, data%links, cq_of(data), structure, findings)
+    call report(findings, document, data, diagnostics)
+    known = size(findings) == 0
+  end subroutine from_pairs
+
+  pure subroutine from_vectors(document, data, structure, vectors, diagnostics)
+    type(document_type), intent(in) :: document
+    type(source_data_type), intent(in) :: data
+    type(structure_type), intent(inout) :: structure       !< of the first set, where there is one
+    type(structural_vectors_type), intent(inout) :: vectors
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(structure_type) :: second
+    type(finding_type), allocatable :: findings(:)
+    integer, allocatable :: n, m      ! not allocated: not given
+    logical :: has_first
+
+    has_first = allocated(structure%links)
+    vectors%nrg = get_integers(data%structure, 'nrg')
+    vectors%nws = get_integers(data%structure, 'nws')
+    vectors%rdw = get_integers(data%structure, 'rdw')
+    vectors%nrw = get_integers(data%structure, 'nrw')
+    if (data%n_links > 0) n = data%n_links
+    if (data%n_coordinates > 0) m = data%n_coordinates
+    call structure_from_vectors(vectors, second, findings, n, m)
+    call report(findings, document, data, diagnostics)
+    if (size(findings) > 0) return
+    if (has_first) then
+      call compare_sets(data, structure, second, diagnostics)
+    else
+      call compare_independent(data, cq_of(data), second, diagnostics)
+      structure = second
+    end if
+  end subroutine from_vectors
+
+  !> The independent coordinates; none where cq is not given.
+  pure function cq_of(data) result(cq)
+    type(source_data_type), intent(in) :: data
+    integer, allocatable :: cq(:)
+
+    cq = get_integers(data%structure, 'cq')
+  end function cq_of
+
+  !> First and second set must describe the same structure.
+  pure subroutine compare_sets(data, first, second, diagnostics)
+    type(source_data_type), intent(in) :: data
+    type(structure_type), intent(in) :: first, second
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(finding_type), allocatable :: findings(:)
+    integer :: i
+
+    if (first%n_links /= second%n_links .or. first%n_coordinates /= second%n_coordinates) then
+      call diagnostics%add(span_of(data%structure, 'nrg'), 'first and second set disagree: c has '// &
+                           to_text(first%n_links)//' links and '//to_text(first%n_coordinates)//' coordinates, nrg and nws '// &
+                           to_text(second%n_links)//' and '//to_text(second%n_coordinates), exit_structure)
+      return
+    end if
+    call check_pair_links(first, second%links, findings)
+    do i = 1, size(findings)
+      call diagnostics%add(span_of(data%structure, 'nws', findloc_value(data, findings(i)%index(1))), &
+                           'first and second set disagree: '//findings(i)%message, exit_structure)
+    end do
+    if (has_name(data%structure, 'cq')) call compare_independent(data, cq_of(data), second, diagnostics)
+  end subroutine compare_sets
+
+  !> Position of a coordinate in nws.
+  pure integer function findloc_value(data, coordinate) result(position)
+    type(source_data_type), intent(in) :: data
+    integer, intent(in) :: coordinate
+
+    position = findloc(get_integers(data%structure, 'nws'), coordinate, dim=1)
+  end function findloc_value
+
+  pure subroutine compare_independent(data, cq, second, diagnostics)
+    type(source_data_type), intent(in) :: data
+    integer, intent(in) :: cq(:)
+    type(structure_type), intent(in) :: second
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: k
+    logical :: in_cq
+
+    if (.not. has_name(data%structure, 'cq')) return
+    do k = 1, second%n_coordinates
+      in_cq = any(cq == k)
+      if (in_cq .eqv. second%independent(k)) cycle
+      call diagnostics%add(span_of(data%structure, 'rdw', findloc_value(data, k)), 'cq and rdw disagree about coordinate '// &
+                           to_text(k)//': by cq it is '//kind_word(in_cq)//', by rdw '//kind_word(.not. in_cq), exit_structure)
+    end do
+    do k = 1, size(cq)
+      if (cq(k) > second%n_coordinates) &
+        call diagnostics%add(span_of(data%structure, 'cq', k), 'cq names coordinate '//to_text(cq(k))// &
+                             '; the coordinates are 1 to '//to_text(second%n_coordinates), exit_structure)
+    end do
+  end subroutine compare_independent
+
+  pure function kind_word(independent) result(word)
+    logical, intent(in) :: independent
+    character(len=:), allocatable :: word
+
+    word = 'dependent'
+    if (independent) word = 'independent'
+  end function kind_word
+
+  !> Where the structure comes from elsewhere, the pairs must agree with it, one for each coordinate.
+  pure subroutine compare_with_pairs(document, data, structure, diagnostics)
+    type(document_type), intent(in) :: document
+    type(source_data_type), intent(inout) :: data
+    type(structure_type), intent(in) :: structure
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(finding_type), allocatable :: findings(:)
+    integer, allocatable :: links(:, :)
+    integer :: k
+
+    if (allocated(data%links)) return                   ! they are where it comes from
+    if (size(data%pairs) == 0) return
+    call take_pairs(document, structure%n_coordinates, data, diagnostics)
+    links = data%links
+    do k = 1, size(links, 2)
+      if (data%group_of_pair(k) == 0) links(:, k) = structure%links(:, k)
+    end do
+    call check_pair_links(structure, links, findings)
+    call report(findings, document, data, diagnostics)
+  end subroutine compare_with_pairs
+
+  !> Links of the pairs by coordinate, with a report where a coordinate has no pair or is none.
+  pure subroutine take_pairs(document, n_coordinates, data, diagnostics)
+    type(document_type), intent(in) :: document
+    integer, intent(in) :: n_coordinates
+    type(source_data_type), intent(inout) :: data
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, allocatable :: missing(:)
+    integer :: i, k, m
+
+    m = n_coordinates
+    if (m > 10*size(data%pairs) + 1000) then
+      call diagnostics%add(data%n_coordinates_span, to_text(m)//' coordinates need as many pairs, and there are '// &
+                           to_text(size(data%pairs)), exit_structure)
+      m = size(data%pairs)
+    end if
+    allocate (data%links(2, m), source=0)
+    allocate (data%group_of_pair(m), source=0)
+    do i = 1, size(data%pairs)
+      associate (group => document%groups(data%pairs(i)))
+        k = get_integer(group, 'coordinate')
+        if (k > m) then
+          call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(k)// &
+                               '; they are 1 to '//to_text(m), exit_structure)
+        else
+          data%links(:, k) = get_integers(group, 'links')
+          data%group_of_pair(k) = data%pairs(i)
+        end if
+      end associate
+    end do
+    if (.not. data%all_pairs .or. m /= n_coordinates) return
+    missing = pack([(k, k=1, m)], data%group_of_pair == 0)
+    if (size(missing) > 0) &
+      call diagnostics%add(data%n_coordinates_span, 'no &pair is given for coordinate'//plural(missing), exit_structure)
+  end subroutine take_pairs
+
+  !> " 3", "s 3, 5", at most eight of them.
+  pure function plural(numbers) result(text)
+    integer, intent(in) :: numbers(:)
+    character(len=:), allocatable :: text
+    integer, parameter :: most = 8
+
+    text = ' '//to_text(numbers(:min(size(numbers), most)))
+    if (size(numbers) > 1) text = 's'//text
+    if (size(numbers) > most) text = text//' and '//to_text(size(numbers) - most)//' more'
+  end function plural
+
+  !> Report findings of the structure floor where the numbers stand.
+  pure subroutine report(findings, document, data, diagnostics)
+    type(finding_type), intent(in) :: findings(:)
+    type(document_type), intent(in) :: document
+    type(source_data_type), intent(in) :: data
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: i
+
+    do i = 1, size(findings)
+      call diagnostics%add(span_of_finding(findings(i), document, data), findings(i)%message, exit_structure)
+    end do
+  end subroutine report
+
+  pure type(span_type) function span_of_finding(finding, document, data) result(span)
+    type(finding_type), intent(in) :: finding
+    type(document_type), intent(in) :: document
+    type(source_data_type), intent(in) :: data
+
+    span = data%structure%span
+    associate (i => finding%index(1), j => finding%index(2))
+      if (finding%name == 'links') then
+        if (i > 0) then
+          span = span_of(document%groups(data%group_of_pair(i)), 'links', j)
+        else if (data%n_links > 0) then
+          span = data%n_links_span
+        end if
+        return
+      end if
+      if (find_item(data%structure, trim(finding%name)) > 0) span = span_of(data%structure, trim(finding%name), i)
+      if (finding%name == 'c' .and. i > 0) then
+        if (data%matrix%spans(i, j)%source > 0) span = data%matrix%spans(i, j)
+      else if (finding%name == 'c') then
+        span = span_of(data%structure, 'c')
+      end if
+    end associate
+  end function span_of_finding
+end module mech9_structure_reader

@@ -1,0 +1,122 @@
+!> The file of a table drive: lines with t and q. Uses kinds, error, text, source, numeral,
+!> item_check, diagnostics.
+!>
+!> Two numbers in each line, with blanks or a comma between; `#` begins a comment.
+module mech9_table_file
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_source, only: source_type, span_type, read_source
+  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_item_check, only: is_sensible
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_table_file
+
+  character(len=*), parameter :: gaps = ' ,'//achar(9)//achar(13)
+  integer, parameter :: fewest_points = 4     !< of a cubic spline
+
+contains
+
+  !> Read the points of a table. What is wrong is reported with its place in that file; `ok` tells.
+  subroutine read_table_file(path, asked_at, t, q, ok, diagnostics)
+    character(len=*), intent(in) :: path
+    type(span_type), intent(in) :: asked_at               !< where the data file asks for it
+    real(wp), allocatable, intent(out) :: t(:), q(:)      !< [s], [as in the file]
+    logical, intent(out) :: ok
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(source_type) :: source
+    type(error_type), allocatable :: err
+    integer :: number, line, n, found
+
+    ok = .false.
+    allocate (t(0), q(0))
+    call read_source(path, source, err)
+    if (allocated(err)) then
+      call diagnostics%add(asked_at, 'the table '//err%message, err%code)
+      return
+    end if
+    call diagnostics%add_source(source, number)
+    found = diagnostics%count
+    deallocate (t, q)
+    allocate (t(size(source%line_start)), q(size(source%line_start)))
+    n = 0
+    do line = 1, size(source%line_start)
+      call read_point(source, number, line, t, q, n, diagnostics)
+    end do
+    t = t(:n)
+    q = q(:n)
+    if (diagnostics%count == found .and. n < fewest_points) &
+      call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
+                           ' points, and here are '//to_text(n))
+    ok = diagnostics%count == found
+  end subroutine read_table_file
+
+  !> Take the point of a line, if there is one.
+  pure subroutine read_point(source, number, line, t, q, n, diagnostics)
+    type(source_type), intent(in) :: source
+    integer, intent(in) :: number, line
+    real(wp), intent(inout) :: t(:), q(:)
+    integer, intent(inout) :: n                            !< points so far
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(span_type) :: fields(2)
+    type(numeral_type) :: numerals(2)
+    integer :: first, last, count, i
+
+    call source%line_bounds(line, first, last)
+    call split(source%text, first, last, number, fields, count)
+    if (count == 0) return
+    if (count /= 2) then
+      call diagnostics%add(span_type(number, first, max(first, last)), 'each line holds two numbers, t and q; here are '// &
+                           to_text(count))
+      return
+    end if
+    do i = 1, 2
+      call read_numeral(source%text(fields(i)%first:fields(i)%last), numerals(i))
+      if (.not. allocated(numerals(i)%problem)) then
+        if (is_sensible(numerals(i)%number)) cycle
+        numerals(i)%problem = 'is beyond any mechanism; numbers are 0 or between 1e-100 and 1e100'
+      end if
+      call diagnostics%add(fields(i), ''''//diagnostics%text_of(fields(i))//''' '//numerals(i)%problem)
+      return
+    end do
+    if (n > 0) then
+      ! nearer than this, slopes are only round-off
+      if (numerals(1)%number - t(n) <= 1.0e-13_wp*max(abs(numerals(1)%number), abs(t(n)))) then
+        call diagnostics%add(fields(1), 't must increase from line to line')
+        return
+      end if
+    end if
+    n = n + 1
+    t(n) = numerals(1)%number
+    q(n) = numerals(2)%number
+  end subroutine read_point
+
+  !> The words of a line up to its comment; of more than two only the number is told.
+  pure subroutine split(text, first, last, source, fields, count)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: first, last, source
+    type(span_type), intent(out) :: fields(2)
+    integer, intent(out) :: count
+    integer :: at, start
+
+    count = 0
+    at = first
+    do
+      do while (at <= last)
+        if (index(gaps, text(at:at)) == 0) exit
+        at = at + 1
+      end do
+      if (at > last) return
+      if (text(at:at) == '#') return
+      start = at
+      do while (at <= last)
+        if (index(gaps//'#', text(at:at)) > 0) exit
+        at = at + 1
+      end do
+      count = count + 1
+      if (count <= 2) fields(count) = span_type(source, start, at - 1)
+    end do
+  end subroutine split
+end module mech9_table_file
