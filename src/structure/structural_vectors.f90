@@ -167,10 +167,11 @@ contains
     type(structural_vectors_type), intent(in) :: vectors
     type(structure_type), intent(inout) :: structure
     type(finding_list_type), intent(inout) :: list
-    logical :: known(structure%n_links)
+    logical :: known(structure%n_links), used(structure%n_coordinates)
     logical :: may_go_on       ! false after a step that closed its chain
     integer :: i
 
+    used = .false.
     known = .false.
     known(1) = .true.
     may_go_on = .true.
@@ -178,6 +179,7 @@ contains
       if (.not. is_link(vectors%nrg(i), structure%n_links)) then
         call list%add('nrg', [i, 0], 'nrg('//to_text(i)//') = '//to_text(vectors%nrg(i))// &
                       ' is no link; the links are 1 to '//to_text(structure%n_links))
+        if (vectors%nws(i) /= 0) call take_step(vectors, structure, used, i, list)
         may_go_on = .true.
       else if (vectors%nws(i) == 0) then
         call check_restart(vectors, known, i, list)
@@ -186,12 +188,12 @@ contains
         if (.not. may_go_on) &
           call list%add('nws', [i, 0], 'position '//to_text(i)//' goes on after link '//to_text(vectors%nrg(i - 1))// &
                         ' has closed the chain; restart there with a known link and nws = 0')
-        call take_step(vectors, structure, i, list)
+        call take_step(vectors, structure, used, i, list)
         may_go_on = .not. known(vectors%nrg(i))
       end if
       if (is_link(vectors%nrg(i), structure%n_links)) known(vectors%nrg(i)) = .true.
     end do
-    call check_complete(known, structure, list)
+    call check_complete(known, used, list)
   end subroutine walk
 
   pure subroutine check_restart(vectors, known, i, list)
@@ -210,10 +212,11 @@ contains
     call list%add('nws', [i, 0], 'the chain that starts at position '//to_text(i)//' has no step; leave it out')
   end subroutine check_restart
 
-  pure subroutine take_step(vectors, structure, i, list)
+  pure subroutine take_step(vectors, structure, used, i, list)
     type(structural_vectors_type), intent(in) :: vectors
     type(structure_type), intent(inout) :: structure
-    integer, intent(in) :: i                        !< a position with nws /= 0 and a right link
+    logical, intent(inout) :: used(:)               !< coordinates met so far
+    integer, intent(in) :: i                        !< a position with nws /= 0
     type(finding_list_type), intent(inout) :: list
     integer :: k
 
@@ -221,10 +224,11 @@ contains
     if (k < 1 .or. k > structure%n_coordinates) then
       call list%add('nws', [i, 0], 'nws('//to_text(i)//') = '//to_text(k)// &
                     ' is no coordinate; they are 1 to '//to_text(structure%n_coordinates))
-    else if (structure%links(2, k) /= 0) then
+    else if (used(k)) then
       call list%add('nws', [i, 0], 'coordinate '//to_text(k)//' is used a second time at position '//to_text(i)// &
                     '; each coordinate stands once in nws')
     else
+      used(k) = .true.
       structure%links(:, k) = vectors%nrg(i - 1:i)
       structure%independent(k) = vectors%rdw(i) == 1
     end if
@@ -240,16 +244,15 @@ contains
   end function is_link
 
   !> Every link must be reached and every coordinate used.
-  pure subroutine check_complete(known, structure, list)
-    logical, intent(in) :: known(:)
-    type(structure_type), intent(in) :: structure
+  pure subroutine check_complete(known, used, list)
+    logical, intent(in) :: known(:), used(:)
     type(finding_list_type), intent(inout) :: list
     integer, allocatable :: missing(:)
     integer :: i
 
     missing = pack([(i, i=1, size(known))], .not. known)
     if (size(missing) > 0) call list%add('nrg', [0, 0], 'no chain reaches these links: '//listed(missing))
-    missing = pack([(i, i=1, structure%n_coordinates)], structure%links(2, :) == 0)
+    missing = pack([(i, i=1, size(used))], .not. used)
     if (size(missing) > 0) call list%add('nws', [0, 0], 'these coordinates are missing in nws: '//listed(missing))
   end subroutine check_complete
 

@@ -6,10 +6,11 @@ module random_structures
   private
   public :: random_type, random_structure, n_kinds, kind_names
 
-  integer, parameter :: n_kinds = 12
+  integer, parameter :: n_kinds = 15
   character(len=20), parameter :: kind_names(n_kinds) = [character(len=20) :: &
     'tree', 'ladder', 'theta', 'hanging parts', 'tree with chords', 'dense', 'parallel pairs', &
-    'grid', 'three pairs a link', 'rings on a path', 'star of rings', 'one ring']
+    'grid', 'three pairs a link', 'rings on a path', 'star of rings', 'one ring', &
+    'wheel', 'ladder in a ring', 'long rungs']
 
   !> Random numbers that are the same with every compiler (Lehmer's generator, x <- 48271 x mod 2^31-1).
   type :: random_type
@@ -85,8 +86,14 @@ contains
       call add_three_a_link(pairs, n, random)
     case (10, 11)
       call add_rings(pairs, n, kind == 10, random)
-    case default
+    case (12)
       call add_ring(pairs, n)
+    case (13)
+      call add_wheel(pairs, n)
+    case (14)
+      call add_ladder_in_ring(pairs, n)
+    case default
+      call add_long_rungs(pairs, n)
     end select
     if (kind == 5) call add_chords(pairs, n, max(1, n/3), random)
     if (kind == 6) call add_chords(pairs, n, n, random)
@@ -243,6 +250,56 @@ contains
     end do
     call pairs%join(n, 1)
   end subroutine add_ring
+
+  !> A ring, and a hub that is joined to each of its links.
+  subroutine add_wheel(pairs, n)
+    type(pairs_type), intent(inout) :: pairs
+    integer, intent(in) :: n
+    integer :: i
+
+    call add_ring(pairs, n - 1)
+    do i = 1, n - 1
+      call pairs%join(i, n)
+    end do
+  end subroutine add_wheel
+
+  !> A ring of half of the links, and a ladder of the others across it.
+  subroutine add_ladder_in_ring(pairs, n)
+    type(pairs_type), intent(inout) :: pairs
+    integer, intent(in) :: n
+    integer :: i, half
+
+    half = max(3, n/2)
+    call add_ring(pairs, half)
+    call pairs%join(1, half + 1)
+    do i = half + 2, max(n, half + 2)
+      call pairs%join(i - 1, i)
+      if (i - 3 > half) call pairs%join(i - 3, i)
+    end do
+    call pairs%join(max(n, half + 2), half/2 + 1)
+  end subroutine add_ladder_in_ring
+
+  !> A ladder whose rungs have about as many links as it has rungs.
+  subroutine add_long_rungs(pairs, n)
+    type(pairs_type), intent(inout) :: pairs
+    integer, intent(in) :: n
+    integer :: rungs, i, j, last
+
+    rungs = max(2, int(sqrt(real(n))))
+    do i = 2, rungs
+      call pairs%join(2*i - 3, 2*i - 1)
+      call pairs%join(2*i - 2, 2*i)
+    end do
+    last = 2*rungs
+    do i = 1, rungs
+      call pairs%join(2*i - 1, last + 1)
+      do j = 2, rungs
+        call pairs%join(last + j - 1, last + j)
+      end do
+      last = last + rungs
+      call pairs%join(last, 2*i)
+    end do
+  end subroutine add_long_rungs
 
   !> New numbers for links and coordinates, and the links of a pair in either order.
   subroutine renumber(structure, random)
