@@ -31,30 +31,29 @@ contains
     type(document_type) :: checked
     logical :: known
 
+    if (size(document%groups) == 0) return          ! why, was told when it was read
     checked = document
     call check_document(checked, diagnostics)
     call read_structure(checked, structure, vectors, known, diagnostics)
   end subroutine read_structure_only
 
-  !> The mechanism, in m, rad, kg, s. All errors are collected in the diagnostics; the mechanism is of
-  !> use only where there are none.
-  subroutine read_mechanism(document, mechanism, diagnostics, needs_drives)
+  !> The mechanism, in m, rad, kg, s. All errors are collected in the diagnostics, which may hold some from
+  !> reading the document already; the mechanism is of use only where there are none.
+  subroutine read_mechanism(document, needs_drives, mechanism, diagnostics)
     type(document_type), intent(in) :: document
+    logical, intent(in) :: needs_drives             !< every independent coordinate must be driven, as in kinematics
     type(mechanism_type), intent(out) :: mechanism
     type(diagnostics_type), intent(inout) :: diagnostics
-    !> Every independent coordinate must be driven, as in kinematics; true unless given.
-    logical, intent(in), optional :: needs_drives
     type(document_type) :: checked
-    logical :: known, all_driven
+    logical :: known
 
-    all_driven = .true.
-    if (present(needs_drives)) all_driven = needs_drives
+    if (size(document%groups) == 0) return          ! why, was told when it was read
     checked = document
     call check_document(checked, diagnostics)
     call read_settings(checked, mechanism, diagnostics)
     call read_structure(checked, mechanism%structure, mechanism%vectors, known, diagnostics)
     if (.not. known) call forget(mechanism%structure)
-    call read_parts(checked, all_driven, mechanism, diagnostics)
+    call read_parts(checked, needs_drives, mechanism, diagnostics)
   end subroutine read_mechanism
 
   !> A structure that is not known has no links and no coordinates.
@@ -65,9 +64,9 @@ contains
   end subroutine forget
 
   !> Everything whose numbers refer to the structure.
-  subroutine read_parts(document, all_driven, mechanism, diagnostics)
+  subroutine read_parts(document, needs_drives, mechanism, diagnostics)
     type(document_type), intent(in) :: document
-    logical, intent(in) :: all_driven
+    logical, intent(in) :: needs_drives
     type(mechanism_type), intent(inout) :: mechanism
     type(diagnostics_type), intent(inout) :: diagnostics
     type(initial_type) :: initial
@@ -80,8 +79,8 @@ contains
       call move_alloc(initial%position_given, m%position_given)
       call move_alloc(initial%velocity_given, m%velocity_given)
       call read_points(document, n_links, m%points, diagnostics)
-      call read_drives(document, m%structure, m%pairs, m%angle_unit, m%time%start, m%parameters, all_driven, m%drives, &
-                       diagnostics)
+      call read_drives(document, m%structure, m%pairs, m%angle_unit, m%time%start, m%parameters, needs_drives, &
+                       m%drives, diagnostics)
       call read_bodies(document, n_links, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
       call check_loads(document, n_links, n_coordinates, diagnostics)
