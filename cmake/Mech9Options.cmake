@@ -17,7 +17,7 @@ set(MECH9_FORTRAN77_OPTIONS -std=legacy -fno-implicit-none -w)
 
 set(CMAKE_Fortran_FLAGS_RELEASE "-O3")
 set(CMAKE_Fortran_FLAGS_DEBUG
-  "-g -Og -fcheck=all -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
+  "-g -Og -fcheck=all,no-array-temps -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
 set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
 foreach(language C Fortran)
   set(CMAKE_${language}_FLAGS_SANITIZE "-g -O1 ${mech9_sanitizers}")

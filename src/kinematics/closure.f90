@@ -42,7 +42,7 @@ contains
     type(state_type), intent(in) :: state
     integer, intent(in) :: column_of(:)       !< column of each of the block's steps; 0: not an unknown
     real(wp), intent(out) :: jacobian(:, :)
-    real(wp) :: place(3), w(3), v(3), unit
+    real(wp) :: place(3), arm(3), w(3), v(3), unit
     integer :: c, i, s, row, column
 
     jacobian = 0.0_wp
@@ -57,7 +57,8 @@ contains
           if (column == 0) cycle
           unit = closure%path%signs(i)*plan%unit_of(plan%steps(s)%coordinate)
           w = unit*state%axis_w(:, s)
-          v = unit*state%axis_v(:, s) + cross(w, place - state%p(:, s))
+          arm = place - state%p(:, s)
+          v = unit*state%axis_v(:, s) + cross(w, arm)
           call reduce(plan, closure, state, w, v, place, jacobian(row + 1:row + closure%rank, column))
         end do
         row = row + closure%rank
@@ -147,9 +148,10 @@ contains
     type(closure_type), intent(in) :: closure
     type(state_type), intent(in) :: state
     real(wp), intent(in) :: w(3), v(3), place(3)
-    real(wp) :: screw(6), v_base(3)
+    real(wp) :: screw(6), v_base(3), arm(3)
 
-    v_base = (v + cross(w, state%p(:, closure%base) - place))/plan%length
+    arm = state%p(:, closure%base) - place
+    v_base = (v + cross(w, arm))/plan%length
     if (closure%base == 0) then
       screw(1:3) = w
       screw(4:6) = v_base

@@ -19,13 +19,14 @@ contains
     integer, intent(in) :: first, last
     type(state_type), intent(inout) :: state
     integer :: s, i
-    real(wp) :: rate
+    real(wp) :: rate, arm(3)
 
     do s = first, last
       i = plan%steps(s)%parent
       rate = state%dq(plan%steps(s)%coordinate)
+      arm = state%p(:, s) - state%p(:, i)
       state%omega(:, s) = state%omega(:, i) + rate*state%axis_w(:, s)
-      state%v(:, s) = state%v(:, i) + cross(state%omega(:, i), state%p(:, s) - state%p(:, i)) + rate*state%axis_v(:, s)
+      state%v(:, s) = state%v(:, i) + cross(state%omega(:, i), arm) + rate*state%axis_v(:, s)
     end do
   end subroutine spread_velocities
 

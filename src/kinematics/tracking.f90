@@ -30,13 +30,19 @@ module mech9_tracking
   !> Steps below this part of the interval are given up.
   real(wp), parameter :: least_step = 1.0e-11_wp
 
+  !> Where a step starts from.
+  type :: departure_type
+    real(wp) :: t = 0.0_wp
+    real(wp), allocatable :: q(:), dq(:), ddq(:)
+    real(wp), allocatable :: jerk(:)              !< third derivatives, from the last two positions
+  end type departure_type
+
   !> What is followed, and counts for the report.
   type :: tracker_type
-    type(state_type) :: state                     !< the last accepted position
-    type(state_type) :: trial
+    type(state_type) :: state                     !< during a step the trial, then the accepted position
+    type(departure_type) :: departure             !< the position accepted last
     type(block_work_type), allocatable :: work(:)
     integer, allocatable :: signs(:)              !< of the blocks' determinants
-    real(wp), allocatable :: jerk(:)              !< third derivatives, from the last two positions
     integer(long) :: positions = 0                !< that were asked for
     integer(long) :: steps = 0                    !< taken
     integer(long) :: halvings = 0                 !< steps refused
@@ -72,16 +78,15 @@ contains
     type(error_type), allocatable, intent(out) :: err
     integer :: b
 
-    tracker%trial = assembled
-    tracker%trial%t = t
+    tracker%state = assembled
+    tracker%state%t = t
     allocate (tracker%work(size(plan%blocks)), tracker%signs(size(plan%blocks)))
-    allocate (tracker%jerk(plan%n_coordinates), source=0.0_wp)
-    call set_inputs(mechanism, t, tracker%trial%q, tracker%trial%dq, tracker%trial%ddq, err)
+    call set_inputs(mechanism, t, tracker%state%q, tracker%state%dq, tracker%state%ddq, err)
     if (allocated(err)) return
     do b = 1, size(plan%blocks)
       tracker%work(b) = new_block_work(plan%blocks(b))
       associate (block => plan%blocks(b), work => tracker%work(b))
-        if (size(block%unknowns) > 0) call factorize_block(plan, block, tracker%trial, work)
+        if (size(block%unknowns) > 0) call factorize_block(plan, block, tracker%state, work)
         tracker%signs(b) = work%equations%determinant_sign()
         call note_conditioning(work, tracker)
         if (work%equations%conditioning() < singular) then
@@ -89,11 +94,13 @@ contains
                      ': rates are not determined there; start a little beside it')
           return
         end if
-        call solve_rates(plan, block, tracker%trial, work)
-        call solve_accelerations(plan, block, tracker%trial, work)
+        call solve_rates(plan, block, tracker%state, work)
+        call solve_accelerations(plan, block, tracker%state, work)
       end associate
     end do
-    call accept(tracker)
+    tracker%state%known = acceleration_known
+    tracker%departure = departure_type(t, tracker%state%q, tracker%state%dq, tracker%state%ddq, &
+                                       0.0_wp*tracker%state%q)
     call record(plan, tracker)
   end subroutine start_tracking
 
@@ -109,32 +116,33 @@ contains
     integer :: refused_by
     logical :: accepted
 
-    interval = t - tracker%state%t
+    interval = t - tracker%departure%t
     step = interval
-    do while (abs(t - tracker%state%t) > 0.0_wp)
-      if (abs(step) >= abs(t - tracker%state%t)) then
-        tracker%trial%t = t
-      else
-        tracker%trial%t = tracker%state%t + step
-      end if
+    do while (abs(t - tracker%departure%t) > 0.0_wp)
+      tracker%state%t = tracker%departure%t + step
+      if (abs(step) >= abs(t - tracker%departure%t)) tracker%state%t = t
       call try_step(mechanism, plan, tracker, accepted, refused_by, err)
-      if (allocated(err)) return
+      if (allocated(err)) exit
       if (accepted) then
         call accept(tracker)
         step = 2.0_wp*step
       else
         tracker%halvings = tracker%halvings + 1
-        step = 0.5_wp*(tracker%trial%t - tracker%state%t)
+        step = 0.5_wp*(tracker%state%t - tracker%departure%t)
         if (abs(step) <= least_step*abs(interval)) then
-          call refuse(mechanism, plan, tracker, refused_by, err)
-          return
+          call refuse(mechanism, plan, tracker%departure, refused_by, err)
+          exit
         end if
       end if
     end do
-    call record(plan, tracker)
+    if (allocated(err)) then
+      call go_back(tracker)
+    else
+      call record(plan, tracker)
+    end if
   end subroutine advance
 
-  !> Predict, correct and judge one step of all blocks, from tracker%state to tracker%trial.
+  !> Predict, correct and judge one step of all blocks, from tracker%departure to tracker%state.
   subroutine try_step(mechanism, plan, tracker, accepted, refused_by, err)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
@@ -148,62 +156,75 @@ contains
 
     refused_by = 0
     accepted = .false.
-    call set_inputs(mechanism, tracker%trial%t, tracker%trial%q, tracker%trial%dq, tracker%trial%ddq, err)
+    call set_inputs(mechanism, tracker%state%t, tracker%state%q, tracker%state%dq, tracker%state%ddq, err)
     if (allocated(err)) return
     do b = 1, size(plan%blocks)
       refused_by = b
       associate (block => plan%blocks(b), work => tracker%work(b))
-        call predict(plan, block, tracker, predicted)
-        call close_block(plan, block, tracker%trial, work, newton, err)
+        call predict(plan, block, tracker%departure, tracker%state, predicted)
+        call close_block(plan, block, tracker%state, work, newton, err)
         if (allocated(err)) return
         tracker%iterations = tracker%iterations + newton%iterations
         if (.not. newton%converged) return
         if (newton%correction > max(trusted_size, trusted_part*predicted)) return
         if (newton%contraction > trusted_contraction .and. newton%correction > 1.0e-6_wp) return
         if (size(block%unknowns) > 0) then
-          call factorize_block(plan, block, tracker%trial, work)
+          call factorize_block(plan, block, tracker%state, work)
           if (work%equations%conditioning() < singular) return
           if (work%equations%determinant_sign() /= tracker%signs(b)) return
         end if
-        call solve_rates(plan, block, tracker%trial, work)
-        call solve_accelerations(plan, block, tracker%trial, work)
+        call solve_rates(plan, block, tracker%state, work)
+        call solve_accelerations(plan, block, tracker%state, work)
       end associate
     end do
     accepted = .true.
   end subroutine try_step
 
   !> Taylor prediction of a block's dependent coordinates, and the largest change, in units of the coordinates.
-  pure subroutine predict(plan, block, tracker, largest)
+  pure subroutine predict(plan, block, departure, state, largest)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
-    type(tracker_type), intent(inout) :: tracker
+    type(departure_type), intent(in) :: departure
+    type(state_type), intent(inout) :: state
     real(wp), intent(out) :: largest
     real(wp) :: h, change
     integer :: i, k
 
-    h = tracker%trial%t - tracker%state%t
+    h = state%t - departure%t
     largest = 0.0_wp
     do i = 1, size(block%unknowns)
       k = plan%steps(block%unknowns(i))%coordinate
-      change = h*(tracker%state%dq(k) + h*(tracker%state%ddq(k)/2.0_wp + h*tracker%jerk(k)/6.0_wp))
-      tracker%trial%q(k) = tracker%state%q(k) + change
+      change = h*(departure%dq(k) + h*(departure%ddq(k)/2.0_wp + h*departure%jerk(k)/6.0_wp))
+      state%q(k) = departure%q(k) + change
       largest = max(largest, abs(change)/plan%unit_of(k))
     end do
   end subroutine predict
 
-  !> The trial becomes the state.
+  !> The trial becomes the place of departure.
   pure subroutine accept(tracker)
     type(tracker_type), intent(inout) :: tracker
-    real(wp) :: h
 
     tracker%steps = tracker%steps + 1
-    tracker%trial%known = acceleration_known
-    if (tracker%state%known /= nothing_known) then
-      h = tracker%trial%t - tracker%state%t
-      tracker%jerk = (tracker%trial%ddq - tracker%state%ddq)/h
-    end if
-    tracker%state = tracker%trial
+    tracker%state%known = acceleration_known
+    associate (here => tracker%state, last => tracker%departure)
+      last%jerk = (here%ddq - last%ddq)/(here%t - last%t)
+      last%t = here%t
+      last%q = here%q
+      last%dq = here%dq
+      last%ddq = here%ddq
+    end associate
   end subroutine accept
+
+  !> After a step that was given up: the coordinates of the last position again.
+  pure subroutine go_back(tracker)
+    type(tracker_type), intent(inout) :: tracker
+
+    tracker%state%t = tracker%departure%t
+    tracker%state%q = tracker%departure%q
+    tracker%state%dq = tracker%departure%dq
+    tracker%state%ddq = tracker%departure%ddq
+    tracker%state%known = nothing_known
+  end subroutine go_back
 
   !> Count a position that was asked for.
   subroutine record(plan, tracker)
@@ -238,10 +259,10 @@ contains
   end function largest_closure
 
   !> Say where and why the motion cannot go on.
-  subroutine refuse(mechanism, plan, tracker, block, err)
+  subroutine refuse(mechanism, plan, departure, block, err)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
-    type(tracker_type), intent(in) :: tracker
+    type(departure_type), intent(in) :: departure
     integer, intent(in) :: block
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: drives
@@ -252,9 +273,9 @@ contains
       k = plan%independent(i)
       if (i > 1) drives = drives//', '
       drives = drives//'q'//to_text(k)//' = '// &
-               to_text(tracker%state%q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular), 10)
+               to_text(departure%q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular), 10)
     end do
-    call raise(err, exit_singular, 'the motion cannot go on beyond t = '//to_text(tracker%state%t, 10)//' s: '// &
+    call raise(err, exit_singular, 'the motion cannot go on beyond t = '//to_text(departure%t, 10)//' s: '// &
                chain_names(plan%blocks(block))//' reaches a singular position there ('//drives//')')
   end subroutine refuse
 end module mech9_tracking

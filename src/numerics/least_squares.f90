@@ -18,6 +18,7 @@ module mech9_least_squares
     integer :: n = 0                            !< unknowns
     real(wp), allocatable :: a(:, :)            !< (m,n): the matrix before, its factors after `factorize`
     integer, allocatable :: pivot(:)            !< column of the matrix at each place
+    integer, allocatable, private :: order(:)
     real(wp), allocatable, private :: tau(:)
     real(wp), allocatable, private :: norms(:)
     real(wp), allocatable, private :: work(:)
@@ -39,9 +40,9 @@ contains
 
     self%m = m
     self%n = n
-    if (allocated(self%a)) deallocate (self%a, self%pivot, self%tau, self%norms, self%work)
+    if (allocated(self%a)) deallocate (self%a, self%pivot, self%order, self%tau, self%norms, self%work)
     allocate (self%a(m, n), self%tau(n), self%norms(n), source=0.0_wp)
-    allocate (self%pivot(n), source=0)
+    allocate (self%pivot(n), self%order(n), source=0)
     allocate (self%work(max(m, 2*n + (n + 1)*32, 32*32)), source=0.0_wp)
   end subroutine create
 
@@ -125,9 +126,9 @@ contains
   end function conditioning
 
   !> Sign of the determinant of a square matrix; 1 for others.
-  pure integer function determinant_sign(self) result(sign)
-    class(least_squares_type), intent(in) :: self
-    integer :: j, place, next, order(self%n)
+  integer function determinant_sign(self) result(sign)
+    class(least_squares_type), intent(inout) :: self
+    integer :: j, place, next
 
     sign = 1
     if (self%m /= self%n) return
@@ -136,13 +137,13 @@ contains
       if (abs(self%tau(j)) > 0.0_wp) sign = -sign   ! a reflection
     end do
     ! sign of the permutation: undo it by exchanges
-    order = self%pivot
+    self%order = self%pivot
     do j = 1, self%n
       place = j
-      do while (order(place) /= j)
-        next = order(place)
-        order(place) = order(next)
-        order(next) = next
+      do while (self%order(place) /= j)
+        next = self%order(place)
+        self%order(place) = self%order(next)
+        self%order(next) = next
         sign = -sign
       end do
     end do

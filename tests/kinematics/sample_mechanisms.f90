@@ -1,0 +1,138 @@
+!> Mechanisms built in code for the tests of the kinematics floor. Uses the model.
+module mech9_sample_mechanisms
+  use mech9_kinds, only: wp
+  use mech9_pose, only: pose_type, pose_from_axis, default_zero
+  use mech9_structure, only: structure_type, structure_from_pairs
+  use mech9_finding, only: finding_type
+  use mech9_transformation, only: transform
+  use mech9_screw_pair, only: screw_pair_type, revolute_pair, prismatic_pair
+  use mech9_polynomial_drive, only: polynomial_drive_type
+  use mech9_point, only: point_type
+  use mech9_mechanism, only: mechanism_type
+  implicit none
+  private
+  public :: new_mechanism, add_revolute, add_prismatic, drive, frame, fig1, four_bar, general_loop
+
+  real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
+
+contains
+
+  !> Structure from the links of each pair and the independent coordinates; no geometry yet.
+  subroutine new_mechanism(n_links, links, cq, mechanism)
+    integer, intent(in) :: n_links, links(:, :), cq(:)
+    type(mechanism_type), intent(out) :: mechanism
+    type(finding_type), allocatable :: findings(:)
+    integer :: m
+
+    call structure_from_pairs(n_links, links, cq, mechanism%structure, findings)
+    if (size(findings) > 0) error stop 'a sample mechanism has a bad structure'
+    call transform(mechanism%structure, mechanism%vectors)
+    m = size(links, 2)
+    mechanism%title = 'sample'
+    allocate (mechanism%pairs(m), mechanism%drives(0), mechanism%points(0), mechanism%bodies(0))
+    allocate (mechanism%initial_position(m), mechanism%initial_velocity(m), source=0.0_wp)
+    allocate (mechanism%position_given(m), mechanism%velocity_given(m), source=.false.)
+    allocate (mechanism%parameters(0))
+  end subroutine new_mechanism
+
+  !> A frame with its z along an axis through a point.
+  function frame(point, axis)
+    real(wp), intent(in) :: point(3), axis(3)
+    type(pose_type) :: frame
+    logical :: ok
+
+    call pose_from_axis(point, axis, default_zero(axis), frame, ok)
+  end function frame
+
+  subroutine add_pair(mechanism, k, reference, moving, pair)
+    type(mechanism_type), intent(inout) :: mechanism
+    integer, intent(in) :: k, reference, moving
+    type(screw_pair_type), intent(in) :: pair
+
+    allocate (mechanism%pairs(k)%pair, source=pair)
+    mechanism%pairs(k)%pair%coordinate = k
+    mechanism%pairs(k)%pair%reference = reference
+    mechanism%pairs(k)%pair%moving = moving
+  end subroutine add_pair
+
+  subroutine add_revolute(mechanism, k, reference, moving, in_reference, in_moving)
+    type(mechanism_type), intent(inout) :: mechanism
+    integer, intent(in) :: k, reference, moving
+    type(pose_type), intent(in) :: in_reference, in_moving
+
+    call add_pair(mechanism, k, reference, moving, revolute_pair(in_reference, in_moving))
+  end subroutine add_revolute
+
+  subroutine add_prismatic(mechanism, k, reference, moving, in_reference, in_moving)
+    type(mechanism_type), intent(inout) :: mechanism
+    integer, intent(in) :: k, reference, moving
+    type(pose_type), intent(in) :: in_reference, in_moving
+
+    call add_pair(mechanism, k, reference, moving, prismatic_pair(in_reference, in_moving))
+  end subroutine add_prismatic
+
+  !> Drive a coordinate by c0 + c1 t + ...
+  subroutine drive(mechanism, k, coefficients)
+    type(mechanism_type), intent(inout) :: mechanism
+    integer, intent(in) :: k
+    real(wp), intent(in) :: coefficients(:)
+    type(polynomial_drive_type) :: polynomial
+
+    polynomial%coordinate = k
+    polynomial%coefficients = coefficients
+    deallocate (mechanism%drives)
+    allocate (mechanism%drives(1))
+    allocate (mechanism%drives(1)%drive, source=polynomial)
+  end subroutine drive
+
+  !> The paper's Fig. 1 with dimensions; driven at the coordinate `driven`.
+  subroutine fig1(driven, mechanism)
+    integer, intent(in) :: driven
+    type(mechanism_type), intent(out) :: mechanism
+    integer, parameter :: links(2, 7) = reshape([1, 6, 6, 5, 3, 5, 2, 3, 1, 2, 1, 4, 3, 4], [2, 7])
+    real(wp), parameter :: at(2, 7) = reshape([-1.0_wp, 2.5_wp, 1.8_wp, 0.0_wp, 1.6_wp, 1.2_wp, 1.0_wp, 0.0_wp, &
+                                               0.0_wp, 0.0_wp, 4.0_wp, 0.0_wp, 3.2_wp, 0.0_wp], [2, 7])
+    real(wp), parameter :: moving_at(7) = [0.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 2.6_wp]
+    integer :: k
+
+    call new_mechanism(6, links, [driven], mechanism)
+    do k = 1, 7
+      call add_revolute(mechanism, k, links(1, k), links(2, k), frame([at(1, k), at(2, k), 0.0_wp], z), &
+                        frame([moving_at(k), 0.0_wp, 0.0_wp], z))
+    end do
+    mechanism%initial_position = [-1.0_wp, 1.8_wp, 0.1_wp, 0.2_wp, 0.5_wp, 1.8_wp, 1.1_wp]
+  end subroutine fig1
+
+  !> A planar four-bar: ground, crank, coupler, rocker; coordinates crank, coupler, rocker-to-coupler, rocker.
+  subroutine four_bar(ground, crank, coupler, rocker, guess, mechanism)
+    real(wp), intent(in) :: ground, crank, coupler, rocker, guess(4)
+    type(mechanism_type), intent(out) :: mechanism
+    integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
+    real(wp), parameter :: origin(3) = 0.0_wp
+
+    call new_mechanism(4, links, [1], mechanism)
+    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(mechanism, 2, 2, 3, frame([crank, 0.0_wp, 0.0_wp], z), frame(origin, z))
+    call add_revolute(mechanism, 3, 3, 4, frame([coupler, 0.0_wp, 0.0_wp], z), frame([rocker, 0.0_wp, 0.0_wp], z))
+    call add_revolute(mechanism, 4, 1, 4, frame([ground, 0.0_wp, 0.0_wp], z), frame(origin, z))
+    mechanism%initial_position = guess
+  end subroutine four_bar
+
+  !> A general spatial loop of seven revolutes, assembled where every coordinate is zero.
+  subroutine general_loop(mechanism)
+    type(mechanism_type), intent(out) :: mechanism
+    integer, parameter :: links(2, 7) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 1], [2, 7])
+    real(wp), parameter :: at(3, 7) = reshape([ &
+      -0.9_wp, 0.4_wp, -0.7_wp, 0.1_wp, -1.0_wp, -0.1_wp, 0.2_wp, 0.5_wp, -0.1_wp, -0.8_wp, 0.3_wp, 0.0_wp, &
+      0.1_wp, 0.2_wp, -0.2_wp, -0.4_wp, 0.8_wp, 0.1_wp, 0.2_wp, 0.9_wp, 0.4_wp], [3, 7])
+    real(wp), parameter :: along(3, 7) = reshape([ &
+      -1.5_wp, 0.3_wp, 0.3_wp, -1.1_wp, -1.4_wp, 1.4_wp, 0.9_wp, 1.7_wp, 0.4_wp, -0.9_wp, 0.2_wp, -1.3_wp, &
+      0.3_wp, 0.1_wp, 1.8_wp, -0.7_wp, 1.6_wp, 1.2_wp, 1.2_wp, 0.8_wp, 0.5_wp], [3, 7])
+    integer :: k
+
+    call new_mechanism(7, links, [1], mechanism)
+    do k = 1, 7
+      call add_revolute(mechanism, k, links(1, k), links(2, k), frame(at(:, k), along(:, k)), frame(at(:, k), along(:, k)))
+    end do
+  end subroutine general_loop
+end module mech9_sample_mechanisms

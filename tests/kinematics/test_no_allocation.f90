@@ -1,0 +1,107 @@
+!> Counts calls of malloc, realloc and calloc: the linker sends them here.
+module counted_memory
+  use, intrinsic :: iso_c_binding, only: c_ptr, c_size_t
+  implicit none
+  integer :: calls = 0
+
+  interface
+    type(c_ptr) function real_malloc(size) bind(c, name='__real_malloc')
+      import :: c_ptr, c_size_t
+      integer(c_size_t), value :: size
+    end function real_malloc
+    type(c_ptr) function real_realloc(old, size) bind(c, name='__real_realloc')
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: old
+      integer(c_size_t), value :: size
+    end function real_realloc
+    type(c_ptr) function real_calloc(count, size) bind(c, name='__real_calloc')
+      import :: c_ptr, c_size_t
+      integer(c_size_t), value :: count, size
+    end function real_calloc
+  end interface
+
+contains
+
+  type(c_ptr) function counted_malloc(size) bind(c, name='__wrap_malloc')
+    integer(c_size_t), value :: size
+
+    calls = calls + 1
+    counted_malloc = real_malloc(size)
+  end function counted_malloc
+
+  type(c_ptr) function counted_realloc(old, size) bind(c, name='__wrap_realloc')
+    type(c_ptr), value :: old
+    integer(c_size_t), value :: size
+
+    calls = calls + 1
+    counted_realloc = real_realloc(old, size)
+  end function counted_realloc
+
+  type(c_ptr) function counted_calloc(count, size) bind(c, name='__wrap_calloc')
+    integer(c_size_t), value :: count, size
+
+    calls = calls + 1
+    counted_calloc = real_calloc(count, size)
+  end function counted_calloc
+end module counted_memory
+
+!> A position step, with velocities, accelerations and its row of results, allocates nothing.
+program test_no_allocation
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_columns, only: columns_type, kinematic_columns
+  use mech9_point, only: point_type
+  use mech9_sample_mechanisms, only: drive, fig1, general_loop
+  use mech9_testing, only: tester_type
+  use counted_memory, only: calls
+  implicit none
+  type(tester_type) :: test
+  type(mechanism_type) :: mechanism
+
+  call fig1(5, mechanism)
+  call drive(mechanism, 5, [0.5_wp, 6.0_wp])
+  call count_calls('planar chains')
+  call fig1(1, mechanism)
+  call drive(mechanism, 1, [-1.0_wp, 0.1_wp])
+  call count_calls('chains solved together')
+  call general_loop(mechanism)
+  call drive(mechanism, 1, [0.0_wp, 0.1_wp])
+  call count_calls('a spatial chain')
+  call test%finish()
+
+contains
+
+  subroutine count_calls(name)
+    character(len=*), intent(in) :: name
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(tracker_type) :: tracker
+    type(columns_type) :: columns
+    type(error_type), allocatable :: err
+    real(wp) :: row(100)
+    integer :: i, before, used
+
+    deallocate (mechanism%points)
+    allocate (mechanism%points(1))
+    mechanism%points(1) = point_type('P', 3, [0.1_wp, 0.2_wp, 0.0_wp])
+    columns = kinematic_columns(mechanism)
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, name//': plan')
+    call start_tracking(mechanism, plan, state, 0.0_wp, tracker, err)
+    call test%no_error(err, name//': start')
+    before = calls
+    call test%is_true(before > 0, 'the counter counts')
+    do i = 1, 100
+      call advance(mechanism, plan, tracker, 0.002_wp*i, err)
+      if (allocated(err)) exit
+      call columns%fill(mechanism, plan, tracker%state, row, used)
+    end do
+    call test%is_true(calls == before, name//': a hundred positions allocate nothing')
+    call test%no_error(err, name//': goes on')
+  end subroutine count_calls
+end program test_no_allocation
