@@ -12,6 +12,10 @@
 !> further from the known links than that, and what lies beyond waits in the queue until it matters.
 !> Below half that cost the label of a link is unique, since two labels at one distance would close
 !> a chain of twice that distance. So the ties too are settled from the labels.
+!>
+!> A label is mended at most as often as half the cheapest chain in sight is long, and hardly ever more
+!> than a few times: the work grows like the number of pairs (times its logarithm, for the queues). Ladders
+!> with rungs as long as they have rungs are the worst known: there it grows with the power 1.5.
 module mech9_closed_chains
   use mech9_kinds, only: long
   use mech9_priority_queue, only: queue_item_type, priority_queue_type
@@ -203,7 +207,8 @@ contains
     do while (.not. self%closing%is_empty())
       offered = self%closing%top()
       call self%closing_item(graph, offered%what, current, closes)
-      if (closes .and. current%major == offered%major .and. current%minor == offered%minor) exit
+      ! distances only shrink, so the same cost means the same labels
+      if (closes .and. current%major == offered%major) exit
       call self%closing%pop()
       self%operations = self%operations + 1
     end do

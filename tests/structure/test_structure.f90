@@ -46,7 +46,8 @@ contains
     call structure_from_pairs(6, fig_1, [5], structure, findings)
     call tester%is_true(size(findings) == 0 .and. all(structure%links == fig_1), 'the pairs of Fig. 1 are good')
     call structure_from_pairs(2, reshape([1, 2, 2, 1], [2, 2]), [integer ::], structure, findings)
-    call tester%is_true(size(findings) == 0, 'two pairs between the same links, and no independent coordinate, are good')
+    call tester%is_true(size(findings) == 0, &
+                        'two pairs between the same links, and no independent coordinate, are good')
   end subroutine good_data
 
   !> Exactly one finding, with this name, this place, and this text in it.
@@ -144,7 +145,8 @@ contains
     call one_finding(tester, findings, 'links', [0, 0], 'links 2, 3, 4, 5, 6, 7, ... (20 in all) are not', &
                      'a long list is shortened')
     call structure_from_pairs(huge(1), fig_1, [5], structure, findings)
-    call one_finding(tester, findings, 'links', [0, 0], 'cannot all be connected by 7 pairs', 'a mistyped number of links')
+    call one_finding(tester, findings, 'links', [0, 0], 'cannot all be connected by 7 pairs', &
+                     'a mistyped number of links')
     call structure_from_pairs(2, reshape([integer ::], [2, 0]), [integer ::], structure, findings)
     call tester%is_true(size(findings) == 2, 'no pairs: none at all, and link 2 is loose')
   end subroutine bad_pairs
