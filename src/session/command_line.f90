@@ -7,7 +7,7 @@ module mech9_command_line
                            no_argument, optional_argument
   implicit none
   private
-  public :: command_line_type, command_words, parse_command_line, help_text
+  public :: command_line_type, get_command_words, parse_command_line, help_text
 
   !> What a command line asks for. A text that was not given is empty.
   type :: command_line_type
@@ -30,8 +30,8 @@ module mech9_command_line
 contains
 
   !> The words of this program's own command line, without the program's name.
-  function command_words() result(words)
-    type(string_type), allocatable :: words(:)
+  subroutine get_command_words(words)
+    type(string_type), allocatable, intent(out) :: words(:)
     integer :: i, length
 
     allocate (words(command_argument_count()))
@@ -40,7 +40,7 @@ contains
       allocate (character(len=length) :: words(i)%text)
       if (length > 0) call get_command_argument(i, words(i)%text)
     end do
-  end function command_words
+  end subroutine get_command_words
 
   !> Read the words. An error is a wrong command line (exit_usage).
   pure subroutine parse_command_line(words, program_name, options, err)
