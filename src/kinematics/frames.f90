@@ -129,14 +129,16 @@ contains
   end subroutine make_closure
 
   !> Size of the mechanism and a good origin: the middle of link 1's pairs.
-  !> The size is the largest distance between two pairs of one link, or between a pair and the
-  !> origin of its link where all links have their pairs in one point.
+  !> The size is the largest distance between two pairs of one link. Where all links have their pairs
+  !> in one point, as in spherical mechanisms, it is the largest distance of a point or pair from the
+  !> origin of its link, or 1 if that is nothing.
   subroutine find_size(mechanism, plan)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(inout) :: plan
     real(wp) :: low(3, mechanism%structure%n_links), high(3, mechanism%structure%n_links)
     type(screw_factors_type) :: factors
     type(pose_type) :: frame
+    real(wp) :: reach
     logical :: is_screw
     integer :: k
 
@@ -162,12 +164,16 @@ contains
       if (.not. mechanism%pairs(k)%pair%angular) &
         plan%length = max(plan%length, abs(mechanism%initial_position(k)))
     end do
-    if (plan%length <= tiny(plan%length)) then
-      do k = 1, plan%n_links
-        plan%length = max(plan%length, maxval(abs(high(:, k))), maxval(abs(low(:, k))))
-      end do
-    end if
-    if (plan%length <= tiny(plan%length)) plan%length = 1.0_wp
+    reach = 0.0_wp
+    do k = 1, plan%n_links
+      reach = max(reach, maxval(abs(high(:, k))), maxval(abs(low(:, k))))
+    end do
+    do k = 1, size(mechanism%points)
+      reach = max(reach, maxval(abs(mechanism%points(k)%position)))
+    end do
+    ! distances that are nothing but round-off are no size
+    if (plan%length <= 1.0e-9_wp*reach) plan%length = reach
+    if (plan%length <= 1.0e-14_wp) plan%length = 1.0_wp
   end subroutine find_size
 
   !> What counts as one in each coordinate.

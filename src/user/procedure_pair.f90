@@ -90,16 +90,21 @@ contains
     type(taylor), intent(in) :: r(3, 3)   !< the three points by columns
     type(pair_motion_type), intent(out) :: motion
     type(taylor) :: d(3), f(3), e(3, 3)
+    real(wp) :: a(3, 3), a_first(3, 3), a_second(3, 3)
 
     d = r(:, 2) - r(:, 1)
     f = r(:, 3) - r(:, 1)
     e(:, 1) = unit_taylor(d)
     e(:, 2) = unit_taylor(cross_taylor(d, f))
     e(:, 3) = cross_taylor(e(:, 1), e(:, 2))
-    motion%pose%r = e%value
+    ! plain copies: gfortran 12 takes wrong strides in matmul with the transpose of a component of an array
+    a = e%value
+    a_first = e%first
+    a_second = e%second
+    motion%pose%r = a
     motion%pose%p = r(:, 1)%value
-    motion%w = axial_vector(matmul(e%first, transpose(e%value)))
-    motion%w_rate = axial_vector(matmul(e%second, transpose(e%value)))
+    motion%w = axial_vector(matmul(a_first, transpose(a)))
+    motion%w_rate = axial_vector(matmul(a_second, transpose(a)))
     motion%v = r(:, 1)%first
     motion%v_rate = r(:, 1)%second
   end subroutine motion_from_points
