@@ -8,7 +8,8 @@
 !>        0.0000000000000000E+00   5.0000000000000000E-01
 !>
 !> Rows gather in a buffer and leave it as whole rows, when it is full and about once a second, so
-!> that a run that is killed leaves a table that can be read.
+!> that a run that is killed leaves a table that can be read. (Linux ends even a write in hand when a
+!> process is killed outright; then, and only then, the last line may be a part of a row.)
 module mech9_table
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal

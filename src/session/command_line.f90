@@ -218,8 +218,23 @@ contains
                  //setting//"'")
       return
     end if
-    options%settings = [options%settings, string_type(setting)]
+    call append(options%settings, setting)
   end subroutine take_setting
+
+  !> One text more. An array constructor would be shorter, but gfortran 12 leaks what is in it.
+  pure subroutine append(list, text)
+    type(string_type), allocatable, intent(inout) :: list(:)
+    character(len=*), intent(in) :: text
+    type(string_type), allocatable :: longer(:)
+    integer :: i
+
+    allocate (longer(size(list) + 1))
+    do i = 1, size(list)
+      call move_alloc(list(i)%text, longer(i)%text)
+    end do
+    longer(size(longer))%text = text
+    call move_alloc(longer, list)
+  end subroutine append
 
   !> What the words mean together.
   pure subroutine judge(program_name, options, err)

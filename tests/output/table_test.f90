@@ -1,0 +1,213 @@
+!> Tests of mech9_table: what stands in the file is read back with plain reads.
+program table_test
+  use mech9_kinds, only: wp
+  use mech9_clock, only: seconds
+  use mech9_error, only: error_type, exit_file, exit_internal
+  use mech9_text, only: string_type
+  use mech9_table, only: table_type
+  use mech9_testing, only: tester_type
+  implicit none
+  call run_tests()
+contains
+
+  subroutine run_tests()
+    type(tester_type) :: tester
+
+    call test_contents(tester)
+    call test_odd_words(tester)
+    call test_many_rows(tester)
+    call test_regular_flush(tester)
+    call test_failures(tester)
+    call tester%finish()
+  end subroutine run_tests
+
+  !> A table for the tests: columns t, q1 [rad].
+  subroutine open_two_columns(table, path, err)
+    type(table_type), intent(inout) :: table
+    character(len=*), intent(in) :: path
+    type(error_type), allocatable, intent(out) :: err
+
+    call table%open(path, 'Two columns', 'mech9k 0.0', words('t|q1'), words('s|rad'), err)
+  end subroutine open_two_columns
+
+  subroutine test_contents(tester)
+    type(tester_type), intent(inout) :: tester
+    type(table_type) :: table
+    type(error_type), allocatable :: err
+    character(len=80) :: lines(7)
+    real(wp) :: row(2)
+    integer :: count
+
+    call open_two_columns(table, 'contents.dat', err)
+    call tester%no_error(err, 'open')
+    call table%write_row([0.0_wp, -1.0_wp/3.0_wp], err)
+    call table%write_row([0.1_wp, 1.0e-300_wp], err)
+    call tester%no_error(err, 'write_row')
+    call table%close(err)
+    call tester%no_error(err, 'close')
+    call table%close(err)
+    call tester%no_error(err, 'closing again does nothing')
+    call read_lines('contents.dat', lines, count)
+    call tester%is_true(count == 6, 'three comments, names, two rows')
+    call tester%is_true(lines(1) == '# Two columns', 'the title')
+    call tester%is_true(lines(2) == '# mech9k 0.0', 'the program')
+    call tester%is_true(lines(3)(:8) == '# units:' .and. adjustl(lines(3)(9:25)) == 's' &
+                        .and. adjustl(lines(3)(26:)) == 'rad', 'the units above their columns')
+    call tester%is_true(adjustl(lines(4)(:25)) == 't' .and. adjustl(lines(4)(26:)) == 'q1', 'the names')
+    read (lines(5), *) row
+    call tester%is_true(all(abs(row - [0.0_wp, -1.0_wp/3.0_wp]) <= 0.0_wp), 'the first row, bit for bit')
+    read (lines(6), *) row
+    call tester%is_true(all(abs(row - [0.1_wp, 1.0e-300_wp]) <= 0.0_wp), 'the second row, bit for bit')
+    call tester%is_true(len_trim(lines(5)) == 50 .and. len_trim(lines(6)) == 50, 'columns of one width')
+  end subroutine test_contents
+
+  !> Titles and names of any bytes leave a table that can be read.
+  subroutine test_odd_words(tester)
+    type(tester_type), intent(inout) :: tester
+    type(table_type) :: table
+    type(error_type), allocatable :: err
+    character(len=100) :: lines(8)
+    character(len=*), parameter :: e_acute = char(195)//char(169)
+    integer :: count
+
+    call table%open('odd.dat', 'one'//achar(10)//'two'//achar(13)//achar(10)//achar(0)//'a'//achar(27) &
+                    //char(255)//e_acute//char(195), 'p', &
+                    words('t|a b#"c|'//repeat('n', 30)), words('|m/s|N m'), err)
+    call tester%no_error(err, 'open')
+    call table%write_row([1.0_wp, 2.0_wp, 3.0_wp], err)
+    call table%close(err)
+    call read_lines('odd.dat', lines, count)
+    call tester%is_true(count == 7, 'a comment for each line of the title and no other lines')
+    call tester%is_true(lines(1) == '# one' .and. lines(2) == '# two', 'the title in lines')
+    call tester%is_true(lines(3) == '#  a ?'//e_acute//'?', 'control characters and broken UTF-8 are gone')
+    call tester%is_true(lines(5)(25:25) == '1' .and. lines(5)(48:50) == 'm/s' &
+                        .and. adjustl(lines(5)(51:)) == 'N_m', 'a plain number has the unit 1')
+    call tester%is_true(lines(6)(45:50) == 'a_b__c', 'a name is one word and no comment')
+    call tester%is_true(lines(6)(51:) == ' '//repeat('n', 30), 'a long name keeps apart from its neighbour')
+  end subroutine test_odd_words
+
+  !> Several buffers full of rows: nothing is lost or torn where one ends.
+  subroutine test_many_rows(tester)
+    type(tester_type), intent(inout) :: tester
+    integer, parameter :: rows = 50000
+    type(table_type) :: table
+    type(error_type), allocatable :: err
+    character(len=80) :: line
+    real(wp) :: row(2)
+    integer :: unit, i, wrong
+
+    call open_two_columns(table, 'many.dat', err)
+    do i = 1, rows
+      call table%write_row([real(i, wp), 1.0_wp/real(i, wp)], err)
+      if (allocated(err)) exit
+    end do
+    call tester%no_error(err, 'write_row')
+    call table%close(err)
+    open (newunit=unit, file='many.dat', action='read', status='old')
+    do i = 1, 4
+      read (unit, '(a)') line
+    end do
+    wrong = 0
+    do i = 1, rows
+      read (unit, *) row
+      if (any(abs(row - [real(i, wp), 1.0_wp/real(i, wp)]) > 0.0_wp)) wrong = wrong + 1
+    end do
+    close (unit)
+    call tester%is_true(wrong == 0, '50000 rows come back bit for bit')
+  end subroutine test_many_rows
+
+  !> A slow run: what is more than a second old stands in the file, in whole rows, before it is closed.
+  subroutine test_regular_flush(tester)
+    type(tester_type), intent(inout) :: tester
+    type(table_type) :: table
+    type(error_type), allocatable :: err
+    real(wp) :: start
+    character(len=80) :: lines(20)
+    integer :: count
+
+    call open_two_columns(table, 'slow.dat', err)
+    call table%write_row([1.0_wp, 1.0_wp], err)
+    call read_lines('slow.dat', lines, count)
+    call tester%is_true(count == 4, 'the head stands in the file at once, a row waits for more')
+    start = seconds()
+    do while (seconds() - start < 1.1_wp)
+    end do
+    ! the clock is looked at at every call here, for calls are slow
+    call table%write_row([2.0_wp, 2.0_wp], err)
+    call table%write_row([3.0_wp, 3.0_wp], err)
+    call read_lines('slow.dat', lines, count)
+    call tester%is_true(count >= 6 .and. all(len_trim(lines(5:6)) == 50), &
+                        'after a second whole rows stand in the file')
+    call table%close(err)
+    call read_lines('slow.dat', lines, count)
+    call tester%is_true(count == 7, 'all rows stand in the file in the end')
+  end subroutine test_regular_flush
+
+  subroutine test_failures(tester)
+    type(tester_type), intent(inout) :: tester
+    type(table_type) :: table
+    type(error_type), allocatable :: err
+    integer :: i
+
+    call open_two_columns(table, 'no/such/folder.dat', err)
+    call tester%has_error(err, exit_file, 'a folder that is not there')
+    call tester%is_true(index(err%message, 'no/such/folder.dat') > 0, 'the message names the file')
+    call open_two_columns(table, '.', err)
+    call tester%has_error(err, exit_file, 'a folder instead of a file')
+    call open_two_columns(table, '', err)
+    call tester%has_error(err, exit_file, 'no name')
+    call table%write_row([1.0_wp, 1.0_wp], err)
+    call tester%has_error(err, exit_internal, 'a row for a table that is not open')
+    call table%open('short.dat', '', '', words('t'), words('s|m'), err)
+    call tester%has_error(err, exit_internal, 'more units than names')
+    call open_two_columns(table, 'short.dat', err)
+    call table%write_row([1.0_wp], err)
+    call tester%has_error(err, exit_internal, 'a row too short')
+    call table%close(err)
+    ! a disk that is full: the few bytes of the head are enough to notice
+    call open_two_columns(table, '/dev/full', err)
+    call tester%has_error(err, exit_file, 'a full disk')
+    do i = 1, 2
+      call table%write_row([1.0_wp, 1.0_wp], err)
+    end do
+    call table%close(err)
+    call tester%has_error(err, exit_file, 'a full disk is noticed when the last rows leave the buffer')
+    call table%close(err)
+    call tester%no_error(err, 'a table that failed is closed all the same')
+  end subroutine test_failures
+
+  !> Words that are separated by `|` in the text. (Array constructors of these leak in gfortran 12.)
+  function words(text) result(list)
+    character(len=*), intent(in) :: text
+    type(string_type), allocatable :: list(:)
+    integer :: first, next, i
+
+    allocate (list(1 + count([(text(i:i) == '|', i=1, len(text))])))
+    first = 1
+    do i = 1, size(list)
+      next = index(text(first:)//'|', '|') + first - 1
+      list(i)%text = text(first:next - 1)
+      first = next + 1
+    end do
+  end function words
+
+  !> The lines of a file; count may exceed what there is room for.
+  subroutine read_lines(path, lines, count)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(out) :: lines(:)
+    integer, intent(out) :: count
+    character(len=200) :: line
+    integer :: unit, status
+
+    lines = ''
+    count = 0
+    open (newunit=unit, file=path, action='read', status='old')
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      count = count + 1
+      if (count <= size(lines)) lines(count) = line
+    end do
+    close (unit)
+  end subroutine read_lines
+end program table_test

@@ -1,0 +1,183 @@
+!> Tests of mech9_command_line: the words are an array, so that any command line can be tried here.
+program command_line_test
+  use mech9_error, only: error_type, exit_usage
+  use mech9_text, only: string_type
+  use mech9_options, only: options_table, option_names, find_option, needed_argument
+  use mech9_command_line, only: command_line_type, parse_command_line, help_text
+  use mech9_testing, only: tester_type
+  implicit none
+  call run_tests()
+contains
+
+  subroutine run_tests()
+    type(tester_type) :: tester
+
+    call test_good_lines(tester)
+    call test_every_option(tester)
+    call test_bad_lines(tester)
+    call test_help(tester)
+    call tester%finish()
+  end subroutine run_tests
+
+  !> Parse a line whose words are separated by `|`.
+  subroutine parse(line, options, err)
+    character(len=*), intent(in) :: line
+    type(command_line_type), intent(out) :: options
+    type(error_type), allocatable, intent(out) :: err
+    type(string_type), allocatable :: words(:)
+    integer :: first, next, i
+
+    allocate (words(count([(line(i:i) == '|', i=1, len(line))]) + merge(1, 0, len(line) > 0)))
+    first = 1
+    do i = 1, size(words)
+      next = index(line(first:)//'|', '|') + first - 1
+      words(i)%text = line(first:next - 1)
+      first = next + 1
+    end do
+    call parse_command_line(words, 'mech9k', options, err)
+  end subroutine parse
+
+  subroutine test_good_lines(tester)
+    type(tester_type), intent(inout) :: tester
+    type(command_line_type) :: options
+    type(error_type), allocatable :: err
+
+    call parse('a.nml', options, err)
+    call tester%no_error(err, 'a file alone')
+    call tester%is_true(options%file == 'a.nml' .and. .not. options%check .and. options%table == '' &
+                        .and. size(options%settings) == 0, 'nothing else is asked for')
+    call parse('--table=x y.dat|--check|a b.nml|--report|r=1.json', options, err)
+    call tester%no_error(err, 'options before and after the file, blanks in names')
+    call tester%is_true(options%table == 'x y.dat' .and. options%report == 'r=1.json' .and. options%check &
+                        .and. options%file == 'a b.nml', 'both forms of an argument')
+    call parse('a.nml|--table|-', options, err)
+    call tester%is_true(options%table == '-', 'a dash is standard output')
+    call parse('--quiet|--|--check', options, err)
+    call tester%is_true(options%file == '--check' .and. options%quiet .and. .not. options%check, &
+                        'after two dashes everything is a file')
+    call parse('a.nml|--set|time.end=2|--set=drive.coefficients=1,2|--set|mechanism.title=a=b', options, err)
+    call tester%no_error(err, 'settings')
+    call tester%is_true(size(options%settings) == 3, 'settings gather')
+    call tester%is_true(options%settings(1)%text == 'time.end=2' &
+                        .and. options%settings(2)%text == 'drive.coefficients=1,2' &
+                        .and. options%settings(3)%text == 'mechanism.title=a=b', 'settings, word by word')
+    call parse('--help-data', options, err)
+    call tester%is_true(options%help_data .and. options%help_group == '' .and. .not. allocated(err), &
+                        'an optional argument left out, no file needed')
+    call parse('--help-data|pair', options, err)
+    call tester%is_true(options%help_data .and. options%help_group == 'pair', 'an optional argument')
+    call parse('--help-data|--quiet', options, err)
+    call tester%is_true(options%help_group == '' .and. options%quiet, 'an option is no optional argument')
+  end subroutine test_good_lines
+
+  !> Each row of the table is understood and changes what is asked for.
+  subroutine test_every_option(tester)
+    type(tester_type), intent(inout) :: tester
+    type(command_line_type) :: options
+    type(error_type), allocatable :: err
+    character(len=*), parameter :: argument = 'time.end=3'
+    character(len=12) :: name
+    character(len=40) :: word
+    integer :: i
+    logical :: taken
+
+    do i = 1, size(options_table)
+      name = options_table(i)%name
+      word = '--'//name
+      if (options_table(i)%takes == needed_argument) word = trim(word)//'='//argument
+      call parse('a.nml|'//word, options, err)
+      call tester%no_error(err, trim(word))
+      select case (name)
+      case ('check')
+        taken = options%check
+      case ('structure')
+        taken = options%structure
+      case ('plan')
+        taken = options%plan
+      case ('no-write')
+        taken = options%no_write
+      case ('quiet')
+        taken = options%quiet
+      case ('verbose')
+        taken = options%verbose
+      case ('help')
+        taken = options%help
+      case ('help-data')
+        taken = options%help_data
+      case ('version')
+        taken = options%version
+      case ('table')
+        taken = options%table == argument
+      case ('report')
+        taken = options%report == argument
+      case ('set')
+        taken = size(options%settings) == 1
+      case default
+        taken = .false.
+      end select
+      call tester%is_true(taken, trim(word)//' is taken')
+      call tester%is_true(index(help_text('mech9k'), '--'//trim(name)//' ') > 0, trim(word)//' is in the help')
+    end do
+    call tester%is_true(size(option_names('mech9k')) == size(options_table) &
+                        .and. size(option_names('other')) == 0 .and. find_option('check', 'other') == 0, &
+                        'options belong to programs')
+  end subroutine test_every_option
+
+  subroutine test_bad_lines(tester)
+    type(tester_type), intent(inout) :: tester
+
+    call refuse(tester, '', 'no data file')
+    call refuse(tester, '--check', 'no data file')
+    call refuse(tester, 'a.nml|b.nml', "two data files are given, 'a.nml' and 'b.nml'")
+    call refuse(tester, 'a.nml||', 'the name of the data file is empty')
+    call refuse(tester, 'a.nml|--tabel|x', "unknown option '--tabel'; did you mean --table?")
+    call refuse(tester, 'a.nml|--tabel=x', "'--tabel'; did you mean --table?")
+    call refuse(tester, 'a.nml|-check', "'-check'; did you mean --check?")
+    call refuse(tester, 'a.nml|--zzzzzzzz', "'--zzzzzzzz'; mech9k --help lists")
+    call refuse(tester, 'a.nml|---', "unknown option '---'")
+    call refuse(tester, 'a.nml|--=x', "unknown option '--'")
+    call refuse(tester, 'a.nml|--hdf5|x', "unknown option '--hdf5'")
+    call refuse(tester, 'a.nml|--table', '--table needs an argument: --table PATH')
+    call refuse(tester, 'a.nml|--table|--quiet', '--table needs an argument')
+    call refuse(tester, 'a.nml|--table=', '--table needs an argument')
+    call refuse(tester, 'a.nml|--help-data=', '--help-data needs an argument: --help-data GROUP')
+    call refuse(tester, 'a.nml|--table|a|--table|b', '--table is given more than once')
+    call refuse(tester, 'a.nml|--check=yes', '--check takes no argument')
+    call refuse(tester, 'a.nml|--set|end=2', "--set needs GROUP.NAME=VALUE")
+    call refuse(tester, 'a.nml|--set|.end=2', "not '.end=2'")
+    call refuse(tester, 'a.nml|--set|time.=2', "not 'time.=2'")
+    call refuse(tester, 'a.nml|--set|time.end', "not 'time.end'")
+    call refuse(tester, 'a.nml|--set|x=1.5', "not 'x=1.5'")
+    call refuse(tester, 'a.nml|--quiet|--verbose', 'contradict')
+    call refuse(tester, 'a.nml|--no-write|--table=x', 'contradict')
+  end subroutine test_bad_lines
+
+  !> The line is an error of usage whose message holds some words.
+  subroutine refuse(tester, line, words)
+    type(tester_type), intent(inout) :: tester
+    character(len=*), intent(in) :: line, words
+    type(command_line_type) :: options
+    type(error_type), allocatable :: err
+
+    call parse(line, options, err)
+    call tester%has_error(err, exit_usage, line)
+    if (allocated(err)) call tester%is_true(index(err%message, words) > 0, line//' said: '//err%message)
+  end subroutine refuse
+
+  !> The help fits a terminal of 100 columns, and its lines end without blanks.
+  subroutine test_help(tester)
+    type(tester_type), intent(inout) :: tester
+    character(len=:), allocatable :: text
+    integer :: first, next
+
+    text = help_text('mech9k')//achar(10)
+    call tester%is_true(index(text, 'usage: mech9k FILE [options]') == 1, 'the help begins with the usage')
+    first = 1
+    do while (first <= len(text))
+      next = index(text(first:), achar(10)) + first - 1
+      call tester%is_true(next - first <= 100, 'not too long: '//text(first:next - 1))
+      if (next > first) call tester%is_true(text(next - 1:next - 1) /= ' ', 'no blank at its end')
+      first = next + 1
+    end do
+  end subroutine test_help
+end program command_line_test

@@ -1,0 +1,87 @@
+!> Tests of the text of the progress line, and of the pacer that decides when it is written.
+program progress_test
+  use mech9_kinds, only: wp
+  use mech9_clock, only: seconds, pacer_type
+  use mech9_progress, only: progress_line
+  use mech9_version, only: version, version_text
+  use mech9_testing, only: tester_type
+  implicit none
+  call run_tests()
+contains
+
+  subroutine run_tests()
+    type(tester_type) :: tester
+
+    call test_line(tester)
+    call test_pacer(tester)
+    call test_slow_pacer(tester)
+    call tester%is_true(index(version_text('mech9k'), 'mech9k '//version) == 1, 'program and version')
+    call tester%finish()
+  end subroutine run_tests
+
+  subroutine test_line(tester)
+    type(tester_type), intent(inout) :: tester
+    character(len=79) :: line
+
+    line = progress_line('run', 0.25_wp, 60.0_wp)
+    call tester%is_true(line == 'run  25 % [######..................]  3:00 left', &
+                        'a quarter took a minute, three are left: '//line)
+    line = progress_line('run', 0.5_wp, 12.5_wp)
+    call tester%is_true(index(line, '12 s left') > 0, 'seconds')
+    line = progress_line('run', 1.0_wp/3.0_wp, 3631.0_wp)
+    call tester%is_true(index(line, '2:01:02 left') > 0, 'hours')
+    line = progress_line('run', 0.0_wp, 5.0_wp)
+    call tester%is_true(index(line, '  0 % [......') > 0 .and. index(line, 'left') == 0, &
+                        'nothing done yet tells nothing')
+    line = progress_line(repeat('long name ', 20), 1.0e-5_wp, 1.0e300_wp)
+    call tester%is_true(index(line, '2400:00:00 left') > 0, 'the longest line fits')
+    line = progress_line('run', 2.0_wp, 5.0_wp)
+    call tester%is_true(index(line, '100 %') > 0 .and. index(line, '0 s left') > 0, 'no more than all')
+  end subroutine test_line
+
+  !> In a fast loop the pacer says so about as often as intervals pass.
+  subroutine test_pacer(tester)
+    type(tester_type), intent(inout) :: tester
+    type(pacer_type) :: pacer
+    real(wp) :: start, elapsed
+    integer :: times, calls
+
+    start = seconds()
+    call pacer%start(0.02_wp)
+    times = 0
+    calls = 0
+    do while (times < 10)
+      if (pacer%due()) times = times + 1
+      calls = calls + 1
+    end do
+    elapsed = seconds() - start
+    call tester%is_true(elapsed >= 0.2_wp, 'ten intervals take ten intervals at least')
+    ! generous: other work may hold up this program
+    call tester%is_true(elapsed < 2.0_wp, 'and not ten times as long')
+    print '(f0.2,a)', elapsed/calls*1.0e9_wp, ' ns a call'
+  end subroutine test_pacer
+
+  !> After a fast stretch, a loop that slows down is noticed at the next look, 64 calls away at most.
+  subroutine test_slow_pacer(tester)
+    type(tester_type), intent(inout) :: tester
+    type(pacer_type) :: pacer
+    real(wp) :: pause
+    integer :: i, first
+
+    call pacer%start(0.02_wp)
+    do i = 1, 1000
+      if (pacer%due()) exit
+    end do
+    first = 0
+    do i = 1, 66
+      pause = seconds() + 0.001_wp
+      do while (seconds() < pause)
+      end do
+      if (first == 0) then
+        if (pacer%due()) first = i
+      end if
+    end do
+    call tester%is_true(first > 0, 'noticed within 64 calls and one')
+  end subroutine test_slow_pacer
+
+end program progress_test
