@@ -6,7 +6,7 @@ module mech9_checker
   use mech9_text, only: to_text, lower, nearest_name
   use mech9_source, only: span_type
   use mech9_grammar, only: group_table, item_table, item_row_type, find_group_row, rows_of_group, find_item_rows, &
-                           item_row_for_kind, takes_kind
+                           item_row_for_kind, takes_kind, names_of_groups, names_in_group
   use mech9_document, only: document_type, group_type, item_type, value_type, value_bad, value_null, value_text, &
                             value_integer, add_item
   use mech9_item_merge, only: merge_items, expand_repeats
@@ -49,12 +49,8 @@ contains
     character(len=:), allocatable :: hint
 
     if (group%name == '') return          ! told when it was read
-    hint = nearest_name(group%name, group_table%name)
-    if (hint == '') then
-      hint = ''
-    else
-      hint = '; did you mean &'//hint//'?'
-    end if
+    hint = nearest_name(group%name, names_of_groups())
+    if (hint /= '') hint = '; did you mean &'//hint//'?'
     call diagnostics%add(group%span, 'unknown group '//diagnostics%text_of(group%span)//hint)
   end subroutine report_unknown_group
 
@@ -161,7 +157,7 @@ contains
     character(len=:), allocatable :: hint
     integer :: i
 
-    hint = nearest_name(item%name, item_table(rows_of_group(group%name))%name)
+    hint = nearest_name(item%name, names_in_group(group%name))
     if (hint /= '') then
       hint = '; did you mean '''//hint//'''?'
     else

@@ -6,6 +6,7 @@ module mech9_grammar
   private
   public :: group_row_type, item_row_type, group_table, item_table, unlimited
   public :: find_group_row, rows_of_group, find_item_rows, item_row_for_kind, takes_kind, words_of
+  public :: names_of_groups, names_in_group
 
   type :: group_row_type
     character(len=9) :: name
@@ -219,6 +220,20 @@ contains
 
     rows = pack([(i, i=1, size(item_table))], item_table%group == lower(group))
   end function rows_of_group
+
+  pure function names_of_groups() result(names)
+    character(len=len(group_table%name)), allocatable :: names(:)
+
+    names = group_table%name
+  end function names_of_groups
+
+  !> The names that a group has; one that several kinds share stands more than once.
+  pure function names_in_group(group) result(names)
+    character(len=*), intent(in) :: group
+    character(len=len(item_table%name)), allocatable :: names(:)
+
+    names = pack(item_table%name, item_table%group == lower(group))
+  end function names_in_group
 
   !> Rows of one name of a group: none where it is unknown, several where its kinds differ.
   pure function find_item_rows(group, name) result(rows)

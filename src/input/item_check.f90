@@ -29,7 +29,7 @@ contains
       end if
       call check_type(item%values(i), i, item%name, row, diagnostics)
     end do
-    if (diagnostics%count > found) return
+    if (diagnostics%count > found .or. any(item%values%kind == value_bad)) return
     call check_count(item, row, diagnostics)
     do i = 1, min(size(item%values), row%high)
       call check_range(item%values(i), item%name, row, diagnostics)

@@ -127,8 +127,8 @@ contains
   pure logical function exceeds_range(mantissa, magnitude)
     character(len=*), intent(in) :: mantissa
     integer, intent(in) :: magnitude       !< power of ten of the first digit
-    character(len=16), parameter :: largest = '1797693134862315'
-    character(len=16) :: lead
+    character(len=17), parameter :: largest = '17976931348623157'
+    character(len=17) :: lead
     integer :: i, n
 
     exceeds_range = magnitude > 308

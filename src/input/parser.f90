@@ -3,7 +3,7 @@ module mech9_parser
   use mech9_error, only: error_type
   use mech9_text, only: lower
   use mech9_source, only: source_type, span_type, read_source
-  use mech9_document, only: document_type, group_type, item_type, value_type, value_null, value_integer, &
+  use mech9_document, only: document_type, group_type, item_type, value_type, value_bad, &
                             add_group, add_item, add_value, trim_document
   use mech9_scanner, only: skip_blanks, skip_line, next_is_name, scan_word, scan_subscripts, scan_value, is_letter
   use mech9_diagnostics, only: diagnostics_type
@@ -205,6 +205,7 @@ contains
     logical :: ok
 
     first = at
+    ok = .true.
     call scan_word(text, at)
     item%name = lower(text(first:at - 1))
     item%span = span_type(source, first, at - 1)
@@ -221,6 +222,7 @@ contains
     call skip_blanks(text, at)
     at = at + 1                                      ! the equals sign
     call parse_values(text, at, source, item%values, diagnostics)
+    if (.not. ok) item%values = [value_type(kind=value_bad, span=item%span)]
   end subroutine parse_item
 
   !> Values up to the next name or the end of the group. An empty place between commas is a null value.

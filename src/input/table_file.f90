@@ -9,7 +9,7 @@ module mech9_table_file
   use mech9_source, only: source_type, span_type, read_source
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_item_check, only: is_sensible
-  use mech9_diagnostics, only: diagnostics_type
+  use mech9_diagnostics, only: diagnostics_type, printable
   implicit none
   private
   public :: read_table_file
@@ -34,7 +34,7 @@ contains
     allocate (t(0), q(0))
     call read_source(path, source, err)
     if (allocated(err)) then
-      call diagnostics%add(asked_at, 'the table '//err%message, err%code)
+      call diagnostics%add(asked_at, 'the table '''//printable(path)//''': '//err%message, err%code)
       return
     end if
     call diagnostics%add_source(source, number)

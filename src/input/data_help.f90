@@ -1,0 +1,204 @@
+!> The table of names told to people: as plain text for the terminal and as Markdown for the
+!> documentation. Uses error, text, grammar.
+module mech9_data_help
+  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_text, only: to_text, nearest_name
+  use mech9_grammar, only: group_table, item_table, item_row_type, group_row_type, unlimited, find_group_row, rows_of_group, &
+                           names_of_groups
+  implicit none
+  private
+  public :: write_data_help, write_data_tables, values_text, unit_text, default_text
+
+  character(len=*), parameter :: indent = '      '
+
+contains
+
+  !> Help on a group, with all of its names; on all groups in short where none is named.
+  subroutine write_data_help(unit, group, err)
+    integer, intent(in) :: unit
+    character(len=*), intent(in) :: group           !< with or without its &; empty: a list of all groups
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: name, hint
+    integer, allocatable :: rows(:)
+    integer :: row, i
+
+    if (group == '') then
+      call list_groups(unit)
+      return
+    end if
+    name = trim(group)
+    if (name(1:1) == '&') name = name(2:)
+    row = find_group_row(name)
+    if (row == 0) then
+      hint = nearest_name(name, names_of_groups())
+      if (hint /= '') hint = '; did you mean '//hint//'?'
+      call raise(err, exit_usage, 'there is no group '''//name//''' in a data file'//hint)
+      return
+    end if
+    write (unit, '(3a)') '&', trim(group_table(row)%name), ': '//trim(group_table(row)%help)
+    write (unit, '(2a)') indent(:2), use_text(group_table(row))
+    rows = rows_of_group(name)
+    do i = 1, size(rows)
+      call describe_item(unit, item_table(rows(i)))
+    end do
+  end subroutine write_data_help
+
+  subroutine list_groups(unit)
+    integer, intent(in) :: unit
+    integer :: i
+
+    write (unit, '(a)') 'The groups of a data file, in any order; --help-data GROUP tells of one:'
+    do i = 1, size(group_table)
+      write (unit, '(2x,a,a12,a)') '&', group_table(i)%name//'   ', trim(group_table(i)%help)
+    end do
+  end subroutine list_groups
+
+  subroutine describe_item(unit, row)
+    integer, intent(in) :: unit
+    type(item_row_type), intent(in) :: row
+
+    write (unit, '(a)')
+    write (unit, '(2a)') indent(:2), trim(row%name)//' = '//trim(row%example)
+    write (unit, '(2a)') indent, meaning_text(row)
+    write (unit, '(2a)') indent, values_text(row)//unit_in_brackets(row)//'; '//default_text(row)
+  end subroutine describe_item
+
+  !> The groups one after the other, each with a Markdown table of its names.
+  subroutine write_data_tables(unit)
+    integer, intent(in) :: unit
+    integer, allocatable :: rows(:)
+    integer :: i, j
+
+    do i = 1, size(group_table)
+      write (unit, '(/,3a,/)') '### `&', trim(group_table(i)%name), '`'
+      write (unit, '(a,/)') capital(trim(group_table(i)%help))//'. '//capital(use_text(group_table(i)))//'.'
+      write (unit, '(a)') '| name | values | unit | if not given | meaning | example |'
+      write (unit, '(a)') '| --- | --- | --- | --- | --- | --- |'
+      rows = rows_of_group(group_table(i)%name)
+      do j = 1, size(rows)
+        call write_table_row(unit, item_table(rows(j)))
+      end do
+    end do
+  end subroutine write_data_tables
+
+  subroutine write_table_row(unit, row)
+    integer, intent(in) :: unit
+    type(item_row_type), intent(in) :: row
+
+    write (unit, '(*(a))') '| `', trim(row%name), '` | ', values_text(row), ' | ', unit_text(row), ' | ', &
+      default_text(row), ' | ', meaning_text(row), ' | `', trim(row%example), '` |'
+  end subroutine write_table_row
+
+  pure function capital(text) result(raised)
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: raised
+
+    raised = text
+    if (text(1:1) >= 'a' .and. text(1:1) <= 'z') raised(1:1) = achar(iachar(text(1:1)) - 32)
+  end function capital
+
+  !> How often a group may stand, and who uses it.
+  pure function use_text(row) result(text)
+    type(group_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    text = 'stands at most once'
+    if (row%repeats) text = 'may be repeated'
+    if (row%key /= '') text = 'may be repeated, each with another '//trim(row%key)
+    if (row%program /= 'both') text = text//'; used by '//trim(row%program)
+  end function use_text
+
+  !> What a name takes: "2 whole numbers, >=1", "a text: fixed or link".
+  pure function values_text(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    select case (row%type)
+    case ('integer')
+      text = 'whole number'
+    case ('real')
+      text = 'number'
+    case ('logical')
+      text = '.true. or .false.'
+    case default
+      text = 'text'
+    end select
+    if (row%high == unlimited) then
+      text = text//'s'
+    else if (row%high > 1) then
+      text = to_text(row%high)//' '//text//'s'
+    end if
+    if (row%range /= '') text = text//', '//trim(row%range)
+    if (row%words /= '') text = text//': '//word_list(trim(row%words))
+  end function values_text
+
+  !> "a b c" as "a, b or c".
+  pure function word_list(words) result(text)
+    character(len=*), intent(in) :: words
+    character(len=:), allocatable :: text
+    integer :: i, last
+
+    last = index(words, ' ', back=.true.)
+    text = ''
+    do i = 1, len(words)
+      if (words(i:i) /= ' ') then
+        text = text//words(i:i)
+      else if (i == last) then
+        text = text//' or '
+      else
+        text = text//', '
+      end if
+    end do
+  end function word_list
+
+  !> The unit in words: `q` stands for that of the coordinate meant.
+  pure function unit_text(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    select case (row%unit)
+    case ('q')
+      text = 'angle or m'
+    case ('q/s')
+      text = 'angle/s or m/s'
+    case ('q, q/s, ...')
+      text = 'angle or m, per s, ...'
+    case ('s, q')
+      text = 's, angle or m'
+    case default
+      text = trim(row%unit)
+    end select
+  end function unit_text
+
+  pure function unit_in_brackets(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (row%unit /= '') text = ' ['//unit_text(row)//']'
+  end function unit_in_brackets
+
+  !> What happens where the name is not given.
+  pure function default_text(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    if (row%needed) then
+      text = 'must be given'
+    else if (row%default == '''''') then
+      text = 'none'
+    else if (index(row%default, '(') == 1) then
+      text = row%default(2:len_trim(row%default) - 1)
+    else
+      text = trim(row%default)
+    end if
+  end function default_text
+
+  pure function meaning_text(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    text = trim(row%help)
+    if (row%kinds /= '') text = '('//word_list(trim(row%kinds))//') '//text
+  end function meaning_text
+end module mech9_data_help

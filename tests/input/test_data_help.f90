@@ -1,0 +1,82 @@
+!> The documentation of the data file is what the table of names says. Argument: the path of docs/data-file.md.
+!>
+!> What it should be is left in `data-file.md` of the current folder, to be copied over an outdated one.
+program test_data_help
+  use mech9_error, only: error_type, exit_usage
+  use mech9_source, only: source_type, read_source
+  use mech9_grammar, only: group_table, item_table
+  use mech9_data_help, only: write_data_help, write_data_tables
+  use mech9_testing, only: tester_type
+  use mech9_input_support, only: eol
+  implicit none
+  character(len=*), parameter :: mark = '<!-- From here on made from the table of names; see tests/input. -->'
+  type(tester_type) :: tester
+
+  call the_document()
+  call the_help()
+  call tester%finish()
+
+contains
+
+  subroutine the_document()
+    type(source_type) :: found, expected
+    type(error_type), allocatable :: err
+    character(len=1000) :: path
+    integer :: unit, at
+
+    call get_command_argument(1, path)
+    call read_source(trim(path), found, err)
+    call tester%no_error(err, 'the document can be read')
+    at = index(found%text, mark//eol)
+    call tester%is_true(at > 0, 'the document has its mark')
+    open (newunit=unit, file='data-file.md', status='replace', action='write', access='stream', form='formatted')
+    write (unit, '(2a)') found%text(:max(at - 1, 0)), mark
+    call write_data_tables(unit)
+    close (unit)
+    call read_source('data-file.md', expected, err)
+    call tester%is_true(found%text == expected%text, 'the document says what the table of names says; else copy data-file.md '// &
+                        'of the test''s folder over it')
+    call tester%is_true(len(found%text) == len(expected%text), 'to the last byte')
+  end subroutine the_document
+
+  !> Help names every group, and help on a group every name, with its default and its words.
+  subroutine the_help()
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: text
+    integer :: i
+
+    call help_of('', text, err)
+    call tester%no_error(err, 'help on all groups')
+    do i = 1, size(group_table)
+      call tester%is_true(index(text, '&'//trim(group_table(i)%name)) > 0, 'it names '//trim(group_table(i)%name))
+    end do
+    do i = 1, size(item_table)
+      call help_of(trim(item_table(i)%group), text, err)
+      call tester%no_error(err, 'help on '//trim(item_table(i)%group))
+      call tester%is_true(index(text, eol//'  '//trim(item_table(i)%name)//' = ') > 0, 'it names '//trim(item_table(i)%name))
+      call tester%is_true(index(text, trim(item_table(i)%help)) > 0, 'it explains '//trim(item_table(i)%name))
+    end do
+    call help_of('&PAIR', text, err)
+    call tester%no_error(err, 'a group in capitals with its &')
+    call help_of('piar', text, err)
+    call tester%has_error(err, exit_usage, 'a group that is not there')
+    if (allocated(err)) call tester%is_true(index(err%message, 'pair') > 0, 'the nearest one is named')
+    call help_of('&', text, err)
+    call tester%has_error(err, exit_usage, 'no name at all')
+  end subroutine the_help
+
+  subroutine help_of(group, text, err)
+    character(len=*), intent(in) :: group
+    character(len=:), allocatable, intent(out) :: text
+    type(error_type), allocatable, intent(out) :: err
+    type(source_type) :: source
+    type(error_type), allocatable :: trouble
+    integer :: unit
+
+    open (newunit=unit, file='test_data_help.txt', status='replace', action='write', access='stream', form='formatted')
+    call write_data_help(unit, group, err)
+    close (unit)
+    call read_source('test_data_help.txt', source, trouble)
+    text = source%text
+  end subroutine help_of
+end program test_data_help

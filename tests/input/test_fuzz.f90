@@ -1,0 +1,200 @@
+!> Damaged data files: thousands of right ones with bytes changed, lines shuffled, pieces cut out, doubled or put
+!> in. Whatever they have become, they are read, or refused with a message and an exit code; never a crash.
+program test_fuzz
+  use mech9_kinds, only: wp
+  use mech9_error, only: exit_data, exit_structure, exit_file
+  use mech9_random, only: random_type
+  use mech9_source, only: source_from_text
+  use mech9_document, only: document_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_parser, only: parse_document
+  use mech9_setting, only: apply_setting
+  use mech9_reader, only: read_mechanism, read_structure_only
+  use mech9_mechanism, only: mechanism_type
+  use mech9_structure, only: structure_type
+  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_testing, only: tester_type
+  use mech9_input_support, only: printed, slider_crank, eol
+  implicit none
+
+  integer, parameter :: runs = 6000
+  character(len=*), parameter :: everything = slider_crank// &
+    "&user parameters=3*0.5, 7 / ! numbers"//eol// &
+    "&body link=3, mass=2, centre=1,2,3, inertia=4,5,6,0.1,0.2,0.3 /"//eol// &
+    "&gravity acceleration=0,-9.81,0 / &solver method='adams', relative_tolerance=1e-9, maximum_steps=77 /"//eol// &
+    "&output table='a b.dat' hdf5='x.h5'/"//eol// &
+    "&load kind='spring', links=1,3, position=0,0,0, second_position=3*1.0, stiffness=20, free_length=1, damping=.1 /"//eol// &
+    "&load kind='force', link=2, force=1,2,3, frame='link' / &load kind='coordinate', coordinate=2, rest=1 /"//eol
+  character(len=*), parameter :: second_set = "&mechanism angle_unit='deg' /"//eol// &
+    "&structure nrg=1,2,3,1  nws=0,1,2,3  rdw=2*1,2*0  nrw=3*0,1 cq=1 /"//eol// &
+    "&pair coordinate=1, links=1,2, kind='helical', axis=0,0,1, pitch=0.1, moving_axis=1,1,1 /"//eol// &
+    "&pair coordinate=2, links=2,3, kind='revolute', dh=0.1, 90, 0, 30 /"//eol// &
+    "&pair coordinate=3, links=3,1, kind='prismatic', axis(1)=1 axis(2:3)=0,0 /"//eol// &
+    "&drive coordinate=1, kind='harmonic', mean=2, amplitude=3, angular_frequency=90, phase=30 /"//eol
+  character(len=12), parameter :: pieces(24) = [character(len=12) :: '/', '&', "'", '"', ',', '=', '(', ')', '(:,', ':', &
+    '999999999*', '1e308', '-', '1e-320', 'NaN', '&pair', '&structure', 'c(9,9)=1', 'cq=', '2147483647', &
+    '99999999999', achar(0), char(255), 'axis(1)=']
+  type(tester_type) :: tester
+  type(random_type) :: random
+  integer :: i, refused
+  character(len=:), allocatable :: text
+
+  refused = 0
+  do i = 1, runs
+    text = everything
+    if (mod(i, 3) == 0) text = second_set
+    call damage(text)
+    call try(text, i)
+  end do
+  call tester%is_true(refused > runs/2, 'most of the damage is seen')
+  call tester%is_true(refused < runs, 'and some does no harm')
+  do i = 1, runs/4
+    call try_setting(i)
+  end do
+  call tester%finish()
+
+contains
+
+  !> A whole number from 1 to n.
+  integer function dice(n)
+    integer, intent(in) :: n
+
+    dice = min(n, 1 + int(0.5_wp*(random%symmetric() + 1.0_wp)*n))
+  end function dice
+
+  !> One to four changes.
+  subroutine damage(text)
+    character(len=:), allocatable, intent(inout) :: text
+    integer :: i
+
+    do i = 1, dice(4)
+      if (len(text) < 2) return
+      select case (dice(7))
+      case (1)
+        call change_byte(text)
+      case (2)
+        text = text(:dice(len(text)))
+      case (3)
+        call move_line(text)
+      case (4)
+        call cut_or_double(text, .false.)
+      case (5)
+        call cut_or_double(text, .true.)
+      case default
+        call put_piece(text)
+      end select
+    end do
+  end subroutine damage
+
+  subroutine change_byte(text)
+    character(len=*), intent(inout) :: text
+    integer :: at
+
+    at = dice(len(text))
+    text(at:at) = char(dice(256) - 1)
+  end subroutine change_byte
+
+  subroutine put_piece(text)
+    character(len=:), allocatable, intent(inout) :: text
+    integer :: at
+
+    at = dice(len(text))
+    text = text(:at)//trim(pieces(dice(size(pieces))))//text(at + 1:)
+  end subroutine put_piece
+
+  subroutine cut_or_double(text, double)
+    character(len=:), allocatable, intent(inout) :: text
+    logical, intent(in) :: double
+    integer :: first, last
+
+    first = dice(len(text))
+    last = min(len(text), first + dice(60))
+    if (double) then
+      text = text(:last)//text(first:)
+    else
+      text = text(:first - 1)//text(last + 1:)
+    end if
+  end subroutine cut_or_double
+
+  !> Take the line around some place and put it before another one.
+  subroutine move_line(text)
+    character(len=:), allocatable, intent(inout) :: text
+    character(len=:), allocatable :: line
+    integer :: at, first, last
+
+    at = dice(len(text))
+    first = index(text(:at), eol, back=.true.) + 1
+    last = min(len(text), first - 1 + index(text(first:)//eol, eol))
+    line = text(first:last)
+    text = text(:first - 1)//text(last + 1:)
+    if (len(text) == 0) return
+    at = dice(len(text))
+    first = index(text(:at), eol, back=.true.) + 1
+    text = text(:first - 1)//line//text(first:)
+  end subroutine move_line
+
+  subroutine try(text, number)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: number
+    type(document_type) :: document
+    type(diagnostics_type) :: diagnostics, again
+    type(mechanism_type) :: mechanism
+    type(structure_type) :: structure
+    type(structural_vectors_type) :: vectors
+
+    call parse_document(source_from_text('test.nml', text), document, diagnostics)
+    again = diagnostics
+    call read_mechanism(document, mod(number, 2) == 0, mechanism, diagnostics)
+    call read_structure_only(document, structure, vectors, again)
+    if (diagnostics%failed()) refused = refused + 1
+    call judge(diagnostics, text)
+    call judge(again, text)
+    if (.not. diagnostics%failed()) call tester%is_true(is_whole(mechanism), 'what is read is whole:'//eol//text)
+  end subroutine try
+
+  !> Either nothing is wrong and nothing is printed, or there is a message and its code.
+  subroutine judge(diagnostics, text)
+    type(diagnostics_type), intent(in) :: diagnostics
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: answer
+
+    answer = printed(diagnostics)
+    if (diagnostics%failed()) then
+      call tester%is_true(any(diagnostics%code() == [exit_data, exit_structure, exit_file]), 'its code:'//eol//text)
+      call tester%is_true(index(answer, ': ') > 0 .and. index(answer, achar(0)) == 0, 'its message:'//eol//text)
+    else
+      call tester%is_true(answer == '' .and. diagnostics%code() == 0, 'all is well:'//eol//text)
+    end if
+  end subroutine judge
+
+  logical function is_whole(mechanism)
+    type(mechanism_type), intent(in) :: mechanism
+    integer :: k
+
+    is_whole = size(mechanism%pairs) == mechanism%structure%n_coordinates .and. size(mechanism%vectors%nrg) > 1
+    do k = 1, size(mechanism%pairs)
+      is_whole = is_whole .and. allocated(mechanism%pairs(k)%pair)
+    end do
+    do k = 1, size(mechanism%drives)
+      is_whole = is_whole .and. allocated(mechanism%drives(k)%drive)
+    end do
+  end function is_whole
+
+  !> Damaged settings on a right file.
+  subroutine try_setting(number)
+    integer, intent(in) :: number
+    character(len=*), parameter :: settings(4) = [character(len=24) :: 'time.intervals=7', 'pair(2).axis(1)=0.5', &
+                                                 'structure.c(1,:)=0,1,0,4', "output.table='x.dat'"]
+    character(len=:), allocatable :: text
+    type(document_type) :: document
+    type(diagnostics_type) :: diagnostics
+    type(mechanism_type) :: mechanism
+
+    text = trim(settings(1 + mod(number, 4)))
+    call damage(text)
+    call parse_document(source_from_text('test.nml', everything), document, diagnostics)
+    call apply_setting(document, text, diagnostics)
+    call read_mechanism(document, .true., mechanism, diagnostics)
+    call judge(diagnostics, text)
+  end subroutine try_setting
+end program test_fuzz

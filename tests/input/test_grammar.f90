@@ -1,0 +1,191 @@
+!> Every row of the table of names: it is consistent, its example and default are accepted, and a value of
+!> another type, a value too many and a value out of range are refused at their place.
+program test_grammar
+  use mech9_source, only: source_from_text
+  use mech9_grammar, only: group_table, item_table, item_row_type, unlimited, find_group_row, find_item_rows, takes_kind, &
+                           words_of
+  use mech9_document, only: document_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_parser, only: parse_document
+  use mech9_checker, only: check_document
+  use mech9_testing, only: tester_type
+  use mech9_input_support, only: printed
+  implicit none
+  type(tester_type) :: tester
+  integer :: i, j
+
+  do i = 1, size(group_table)
+    call check_group_row(i)
+  end do
+  do i = 1, size(item_table)
+    call check_item_row(item_table(i))
+    do j = 1, i - 1
+      call tester%is_true(apart(item_table(i), item_table(j)), label(item_table(i))//': one meaning for each kind')
+    end do
+  end do
+  call tester%finish()
+
+contains
+
+  subroutine check_group_row(row)
+    integer, intent(in) :: row
+
+    associate (group => group_table(row))
+      call tester%is_true(find_group_row(group%name) == row, trim(group%name)//': is found under its name')
+      call tester%is_true(any(item_table%group == group%name), trim(group%name)//': has names')
+      call tester%is_true(any(group%program == ['both  ', 'mech9k', 'mech9d']), trim(group%name)//': is for a program there is')
+      call tester%is_true(group%help /= '' .and. len_trim(group%help) < len(group%help), trim(group%name)//': help fits')
+      if (group%key /= '') &
+        call tester%is_true(group%repeats .and. size(find_item_rows(group%name, group%key)) == 1, trim(group%name)//': its key')
+    end associate
+  end subroutine check_group_row
+
+  !> Two rows share no name, or no kind.
+  logical function apart(a, b)
+    type(item_row_type), intent(in) :: a, b
+    character(len=len(a%kinds)), allocatable :: kinds(:)
+    integer :: k
+
+    apart = a%group /= b%group .or. a%name /= b%name
+    if (apart .or. a%kinds == '' .or. b%kinds == '') return
+    kinds = words_of(a%kinds)
+    apart = .true.
+    do k = 1, size(kinds)
+      if (takes_kind(b, trim(kinds(k)))) apart = .false.
+    end do
+  end function apart
+
+  function label(row)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: label
+
+    label = trim(row%group)//'.'//trim(row%name)
+  end function label
+
+  subroutine check_item_row(row)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: wrong
+
+    call tester%is_true(find_group_row(row%group) > 0, label(row)//': belongs to a group')
+    call tester%is_true(row%low >= 1 .and. row%high >= row%low, label(row)//': counts')
+    call tester%is_true(row%help /= '' .and. len_trim(row%help) < len(row%help), label(row)//': help fits')
+    call tester%is_true(len_trim(row%words) < len(row%words) .and. len_trim(row%kinds) < len(row%kinds), &
+                        label(row)//': words and kinds fit')
+    call tester%is_true(.not. (row%needed .and. row%default /= ''), label(row)//': what is needed has no default')
+    call tester%is_true(row%needed .or. row%default /= '', label(row)//': what is not needed has a default')
+    if (row%kinds /= '') call check_kinds(row)
+    call check_words(row)
+
+    call accepted(row, example(row), 'its example')
+    if (row%default /= '' .and. row%default(1:1) /= '(') call accepted(row, assignment_of(row, trim(row%default)), 'its default')
+    wrong = "'text'"
+    if (row%type == 'text') wrong = '17'
+    call refused(row, assignment_of(row, wrong), 'a value of another type')
+    call refused(row, assignment_of(row, 'NaN'), 'NaN')
+    if (row%type == 'integer') call refused(row, assignment_of(row, '1.0'), 'a real number for a whole one')
+    if (row%type == 'integer' .and. row%range /= '') call refused(row, assignment_of(row, '-1'), 'a number out of range')
+    if (row%type == 'real' .and. row%range /= '') call refused(row, assignment_of(row, '-1.0'), 'a number out of range')
+    if (row%high < unlimited) call refused(row, example(row)//', '//example_value(row), 'a value too many')
+    if (row%low > 1) call refused(row, assignment_of(row, '1'), 'a value too few')
+    if (row%words /= '') call refused(row, assignment_of(row, "'no such word'"), 'a word that is not allowed')
+  end subroutine check_item_row
+
+  !> The kinds a name belongs to are kinds that the group has.
+  subroutine check_kinds(row)
+    type(item_row_type), intent(in) :: row
+    character(len=len(row%kinds)), allocatable :: kinds(:)
+    integer, allocatable :: rows(:)
+    integer :: k
+
+    kinds = words_of(row%kinds)
+    rows = find_item_rows(row%group, 'kind')
+    call tester%is_true(size(rows) == 1, label(row)//': its group has kinds')
+    do k = 1, size(kinds)
+      call tester%is_true(any(words_of(item_table(rows(1))%words) == kinds(k)), label(row)//': kind '//trim(kinds(k)))
+    end do
+  end subroutine check_kinds
+
+  subroutine check_words(row)
+    type(item_row_type), intent(in) :: row
+    character(len=len(row%words)), allocatable :: words(:)
+    integer :: k
+
+    words = words_of(row%words)
+    call tester%is_true(size(words) > 0 .eqv. row%words /= '', label(row)//': words are told apart')
+    do k = 1, size(words)
+      call accepted(row, assignment_of(row, "'"//trim(words(k))//"'"), 'the word '//trim(words(k)))
+    end do
+  end subroutine check_words
+
+  !> "name = value", or the example where it names itself.
+  function example(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    text = assignment_of(row, trim(row%example))
+    if (index(row%example, '=') > 0) text = trim(row%example)
+  end function example
+
+  function example_value(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+
+    text = trim(row%example(:index(trim(row%example)//',', ',') - 1))
+  end function example_value
+
+  !> "name = value value ...": one value stands for as many as are needed.
+  function assignment_of(row, value) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=*), intent(in) :: value
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = trim(row%name)//' = '//value
+    if (index(value, ',') > 0 .or. value == '1') return
+    do k = 2, row%low
+      text = text//', '//value
+    end do
+  end function assignment_of
+
+  !> A data file of one group with this item, of a kind that has it.
+  subroutine check_text(row, assignment, errors, text)
+    type(item_row_type), intent(in) :: row
+    character(len=*), intent(in) :: assignment
+    integer, intent(out) :: errors                          !< that name this item or stand in its place
+    character(len=:), allocatable, intent(out) :: text      !< what is printed
+    type(document_type) :: document
+    type(diagnostics_type) :: diagnostics
+    character(len=:), allocatable :: kind
+    character(len=len(row%kinds)), allocatable :: kinds(:)
+
+    kind = ''
+    kinds = words_of(row%kinds)
+    if (size(kinds) > 0) kind = "kind='"//trim(kinds(1))//"' "
+    call parse_document(source_from_text('test.nml', '&'//trim(row%group)//' '//kind//new_line('a')//assignment// &
+                                         new_line('a')//'/'), document, diagnostics)
+    call check_document(document, diagnostics)
+    text = printed(diagnostics)
+    errors = merge(1, 0, index(text, 'test.nml:2:') > 0)
+  end subroutine check_text
+
+  subroutine accepted(row, assignment, what)
+    type(item_row_type), intent(in) :: row
+    character(len=*), intent(in) :: assignment, what
+    character(len=:), allocatable :: text
+    integer :: errors
+
+    call check_text(row, assignment, errors, text)
+    call tester%is_true(errors == 0, label(row)//': '//what//' is accepted: '//assignment)
+    if (errors > 0) print '(a)', text
+  end subroutine accepted
+
+  subroutine refused(row, assignment, what)
+    type(item_row_type), intent(in) :: row
+    character(len=*), intent(in) :: assignment, what
+    character(len=:), allocatable :: text
+    integer :: errors
+
+    call check_text(row, assignment, errors, text)
+    call tester%is_true(errors == 1, label(row)//': '//what//' is refused: '//assignment)
+  end subroutine refused
+end program test_grammar
