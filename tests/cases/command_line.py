@@ -170,7 +170,15 @@ def bad_data(s):
     s.ends(DONE, 'a plain run', FIG1, '--table', 'plain.dat')
     same_tables(s.checks, s.table('plain.dat'), s.table('crlf.dat'), 'line ends of Windows change nothing')
     s.ends(DATA, 'an empty file', s.write('empty.nml', ''))
-    s.ends(STRUCTURE, 'two independent coordinates where one will do', FIG1, '--set', 'structure.cq=5, 1', '--check')
+    # the loop of seven revolutes is closed at q = 0, but has one freedom, not two
+    seven = text_of(os.path.join(REFERENCE, 'kinematics_general_7r.nml'))
+    two = s.write('two.nml', seven.replace('cq = 1', 'cq = 1, 2') + "&drive coordinate=2, kind='polynomial', coefficients=0.0 /\n")
+    s.ends(STRUCTURE, 'two independent coordinates where one is free', two, '--check', says=['two.nml', '1, 2'])
+    # a five-bar has two freedoms
+    five = text_of(os.path.join(REFERENCE, 'dynamics_fivebar.nml'))
+    one = s.write('one.nml', five.replace('cq = 1, 5', 'cq = 1') + "&drive coordinate=1, kind='polynomial', coefficients=2.1 /\n")
+    s.ends(STRUCTURE, 'one independent coordinate where two are free', one, '--check', says=['one.nml', 'cq'])
+    s.ends(DATA, 'an independent coordinate without drive', FIG1, '--set', 'structure.cq=5, 1', '--check', says='drive')
 
 
 def cannot_move(s):
