@@ -22,6 +22,7 @@ program test_reader
   call bodies_and_settings()
   call tables()
   call single_position()
+  call all_errors_at_once()
   call tester%finish()
 
 contains
@@ -263,4 +264,23 @@ contains
     call read_well(slider_crank(:at - 1), m, 'no &time')
     call tester%near(m%time%time(1), 0.01_wp, round_off, 'times by default')
   end subroutine single_position
+
+  !> What the scanner, the grammar, the structure and the model object to, in one go and in the order of the lines.
+  subroutine all_errors_at_once()
+    type(mechanism_type) :: m
+    type(diagnostics_type) :: g
+    character(len=:), allocatable :: text, answer
+    integer :: places(5), i
+
+    text = "&structure cq=1, 7 /"//eol//slider_crank(index(slider_crank, '&pair'):)// &
+           "&point name='A B', link=2 /"//eol//"&point naem='C', link=2 /"//eol//"&gravity acceleration=0,-9..81,0 /"//eol// &
+           "&body link=2, mass=-1 /"
+    call mechanism_from_text(text, m, g)
+    answer = printed(g)
+    places = [index(answer, 'test.nml:1:'), index(answer, 'test.nml:10:'), index(answer, 'test.nml:11:'), &
+              index(answer, 'test.nml:12:'), index(answer, 'test.nml:13:')]
+    call tester%is_true(all(places > 0), 'all five are told')
+    call tester%is_true(all([(places(i) < places(i + 1), i=1, 4)]), 'in the order of the lines')
+    call tester%is_true(g%code() == 3, 'wrong data come before a wrong structure')
+  end subroutine all_errors_at_once
 end program test_reader
