@@ -13,7 +13,7 @@ module mech9_closure
   use mech9_state, only: state_type, velocity_known
   implicit none
   private
-  public :: closure_errors, closure_jacobian, closure_rates, closing_error, loop_screw
+  public :: closure_errors, closure_jacobian, closure_rates, closing_error, loop_screw, reduced_screw
 
 contains
 
@@ -29,7 +29,7 @@ contains
     row = 0
     do c = block%first_closure, block%last_closure
       call error_screw(plan%closures(c), state, w, v, place)
-      call reduce(plan, plan%closures(c), state, w, v, place, errors(row + 1:row + plan%closures(c)%rank))
+      call reduced_screw(plan, plan%closures(c), state, w, v, place, errors(row + 1:row + plan%closures(c)%rank))
       row = row + plan%closures(c)%rank
     end do
   end subroutine closure_errors
@@ -59,7 +59,7 @@ contains
           w = unit*state%axis_w(:, s)
           arm = place - state%p(:, s)
           v = unit*state%axis_v(:, s) + cross(w, arm)
-          call reduce(plan, closure, state, w, v, place, jacobian(row + 1:row + closure%rank, column))
+          call reduced_screw(plan, closure, state, w, v, place, jacobian(row + 1:row + closure%rank, column))
         end do
         row = row + closure%rank
       end associate
@@ -89,7 +89,7 @@ contains
           v = state%a(:, f) - state%a(:, g) - cross(state%alpha(:, g), arm) &
               - cross(state%omega(:, g), cross(state%omega(:, g), arm))
         end if
-        call reduce(plan, closure, state, w, v, place, rates(row + 1:row + closure%rank))
+        call reduced_screw(plan, closure, state, w, v, place, rates(row + 1:row + closure%rank))
         row = row + closure%rank
       end associate
     end do
@@ -122,7 +122,7 @@ contains
   end subroutine error_screw
 
   !> The independent components of a screw that is given at `place` in the axes of frame 0.
-  pure subroutine reduce(plan, closure, state, w, v, place, components)
+  pure subroutine reduced_screw(plan, closure, state, w, v, place, components)
     type(plan_type), intent(in) :: plan
     type(closure_type), intent(in) :: closure
     type(state_type), intent(in) :: state
@@ -140,7 +140,7 @@ contains
     do i = 1, closure%rank
       components(i) = dot_product(closure%rows(:, i), screw)
     end do
-  end subroutine reduce
+  end subroutine reduced_screw
 
   !> A screw given at `place` in the axes of frame 0, moved to the base frame of a loop, lengths scaled.
   pure function loop_screw(plan, closure, state, w, v, place) result(screw)

@@ -8,6 +8,7 @@ module mech9_mechanism
   use mech9_drive, only: drive_slot_type
   use mech9_point, only: point_type
   use mech9_body, only: body_type
+  use mech9_load, only: load_slot_type
   use mech9_settings, only: time_grid_type, solver_settings_type, output_settings_type
   implicit none
   private
@@ -29,6 +30,7 @@ module mech9_mechanism
     logical, allocatable :: velocity_given(:)               !< (M)
     type(point_type), allocatable :: points(:)
     type(body_type), allocatable :: bodies(:)
+    type(load_slot_type), allocatable :: loads(:)           !< in the order of the data file
     real(wp) :: gravity(3) = 0.0_wp                         !< [m/s^2]
     type(time_grid_type) :: time
     type(solver_settings_type) :: solver

@@ -1,0 +1,233 @@
+!> The plan of dynamics: which links have inertia, and on which independent coordinates each frame
+!> depends. Uses kinds, inertia, mechanism, plan.
+!>
+!> Columns of Jacobians are kept only where a frame depends on the independent coordinate: frame s has
+!> the entries first(s) .. first(s+1)-1 of one long list. All frames of a closed block share one set of
+!> coordinates; along an open chain the set grows by each coordinate.
+module mech9_dynamics_plan
+  use mech9_kinds, only: wp
+  use mech9_pose, only: transformed
+  use mech9_inertia, only: inertia_in_axes
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  implicit none
+  private
+  public :: dynamics_plan_type, frame_body_type, make_dynamics_plan
+
+  !> A link with mass, in its frame.
+  type :: frame_body_type
+    integer :: frame = 0
+    real(wp) :: mass = 0.0_wp             !< [kg]
+    real(wp) :: centre(3) = 0.0_wp        !< in the frame [m]
+    real(wp) :: inertia(3, 3) = 0.0_wp    !< about the centre, frame axes [kg m^2]
+    logical :: is_point = .true.          !< no inertia but its mass
+  end type frame_body_type
+
+  type :: dynamics_plan_type
+    type(frame_body_type), allocatable :: bodies(:)    !< none of link 1, none without mass
+    real(wp) :: gravity(3) = 0.0_wp                    !< [m/s^2]
+    integer, allocatable :: place_of(:)                !< (M) number of a coordinate among the independent ones, 0
+    integer, allocatable :: first(:)                   !< (0:M+1) first entry of each frame
+    integer, allocatable :: column(:)                  !< (entries) number of the independent coordinate
+    integer, allocatable :: parent_entry(:)            !< (entries) the same column in the parent frame, 0 for none
+    integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame
+    logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
+    logical, allocatable :: load_links(:)              !< (N) links whose motion loads ask for
+  end type dynamics_plan_type
+
+contains
+
+  !> Make it; `plan` must have its blocks.
+  subroutine make_dynamics_plan(mechanism, plan, dynamics)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(out) :: dynamics
+    integer :: i
+
+    dynamics%gravity = mechanism%gravity
+    allocate (dynamics%place_of(plan%n_coordinates), source=0)
+    do i = 1, size(plan%independent)
+      dynamics%place_of(plan%independent(i)) = i
+    end do
+    allocate (dynamics%load_links(plan%n_links), source=.false.)
+    do i = 1, size(mechanism%loads)
+      call mechanism%loads(i)%load%mark_links(dynamics%load_links)
+    end do
+    call find_bodies(mechanism, plan, dynamics)
+    call find_columns(plan, dynamics)
+    call find_carriers(plan, dynamics)
+  end subroutine make_dynamics_plan
+
+  !> Bodies with mass, moved into the frames of their links.
+  subroutine find_bodies(mechanism, plan, dynamics)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer :: i, n
+
+    allocate (dynamics%bodies(size(mechanism%bodies)))
+    n = 0
+    do i = 1, size(mechanism%bodies)
+      associate (body => mechanism%bodies(i))
+        ! a link may have inertia about its axis and no mass
+        if (body%link == 1 .or. .not. (body%mass > 0.0_wp .or. any(abs(body%inertia) > 0.0_wp))) cycle
+        n = n + 1
+        dynamics%bodies(n)%frame = plan%frame_of(body%link)
+        dynamics%bodies(n)%mass = body%mass
+        dynamics%bodies(n)%centre = transformed(plan%link_in_frame(body%link), body%centre)
+        dynamics%bodies(n)%inertia = inertia_in_axes(plan%link_in_frame(body%link)%r, body%inertia)
+        dynamics%bodies(n)%is_point = .not. any(abs(body%inertia) > 0.0_wp)
+      end associate
+    end do
+    dynamics%bodies = dynamics%bodies(:n)
+  end subroutine find_bodies
+
+  !> The columns of all frames, block by block.
+  subroutine find_columns(plan, dynamics)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer :: b, s, m
+
+    m = plan%n_coordinates
+    allocate (dynamics%first(0:m + 1), source=1)
+    allocate (dynamics%column(0), dynamics%parent_entry(0), dynamics%target_entry(0))
+    do b = 1, size(plan%blocks)
+      if (size(plan%blocks(b)%unknowns) > 0) then
+        call add_closed_block(plan, plan%blocks(b), dynamics)
+      else
+        do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
+          call add_frame(plan, s, united(columns_of(dynamics, plan%steps(s)%parent), own_column(plan, dynamics, s)), &
+                         dynamics)
+        end do
+      end if
+    end do
+  end subroutine find_columns
+
+  subroutine add_closed_block(plan, block, dynamics)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer, allocatable :: columns(:)
+    integer :: s, c
+
+    allocate (columns(0))
+    do s = block%first_step, block%last_step
+      if (plan%steps(s)%parent < block%first_step) columns = united(columns, columns_of(dynamics, plan%steps(s)%parent))
+      columns = united(columns, own_column(plan, dynamics, s))
+    end do
+    do c = block%first_closure, block%last_closure
+      if (plan%closures(c)%target < block%first_step) &
+        columns = united(columns, columns_of(dynamics, plan%closures(c)%target))
+    end do
+    do s = block%first_step, block%last_step
+      call add_frame(plan, s, columns, dynamics)
+    end do
+    do c = block%first_closure, block%last_closure
+      call find_target_entries(plan%closures(c)%closing, plan%closures(c)%target, dynamics)
+    end do
+  end subroutine add_closed_block
+
+  subroutine add_frame(plan, s, columns, dynamics)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: s
+    integer, intent(in) :: columns(:)
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer :: i
+
+    dynamics%first(s) = size(dynamics%column) + 1
+    dynamics%first(s + 1) = dynamics%first(s) + size(columns)
+    dynamics%column = [dynamics%column, columns]
+    dynamics%parent_entry = [dynamics%parent_entry, (entry_of(dynamics, plan%steps(s)%parent, columns(i)), &
+                                                     i=1, size(columns))]
+    dynamics%target_entry = [dynamics%target_entry, (0, i=1, size(columns))]
+  end subroutine add_frame
+
+  subroutine find_target_entries(closing, target, dynamics)
+    integer, intent(in) :: closing, target
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer :: e
+
+    do e = dynamics%first(closing), dynamics%first(closing + 1) - 1
+      dynamics%target_entry(e) = entry_of(dynamics, target, dynamics%column(e))
+    end do
+  end subroutine find_target_entries
+
+  !> The entry of a column in a frame's list; 0 where the frame does not depend on it.
+  pure integer function entry_of(dynamics, frame, column) result(e)
+    type(dynamics_plan_type), intent(in) :: dynamics
+    integer, intent(in) :: frame, column
+
+    do e = dynamics%first(frame), dynamics%first(frame + 1) - 1
+      if (dynamics%column(e) == column) return
+    end do
+    e = 0
+  end function entry_of
+
+  pure function columns_of(dynamics, frame) result(columns)
+    type(dynamics_plan_type), intent(in) :: dynamics
+    integer, intent(in) :: frame
+    integer, allocatable :: columns(:)
+
+    columns = dynamics%column(dynamics%first(frame):dynamics%first(frame + 1) - 1)
+  end function columns_of
+
+  !> The independent coordinate of a step itself, or none.
+  pure function own_column(plan, dynamics, s) result(columns)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    integer, intent(in) :: s
+    integer, allocatable :: columns(:)
+
+    columns = pack([dynamics%place_of(plan%steps(s)%coordinate)], [.not. plan%steps(s)%dependent])
+  end function own_column
+
+  !> Both sets, ascending.
+  pure function united(a, b) result(c)
+    integer, intent(in) :: a(:), b(:)
+    integer, allocatable :: c(:)
+    integer :: buffer(size(a) + size(b)), i, j, n
+
+    i = 1
+    j = 1
+    n = 0
+    do while (i <= size(a) .or. j <= size(b))
+      n = n + 1
+      if (j > size(b)) then
+        buffer(n) = a(i)
+      else if (i > size(a)) then
+        buffer(n) = b(j)
+      else
+        buffer(n) = min(a(i), b(j))
+      end if
+      if (i <= size(a)) then
+        if (a(i) == buffer(n)) i = i + 1
+      end if
+      if (j <= size(b)) then
+        if (b(j) == buffer(n)) j = j + 1
+      end if
+    end do
+    c = buffer(:n)
+  end function united
+
+  !> Frames on which a mass, a load or a closure of a later block depends.
+  subroutine find_carriers(plan, dynamics)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer :: i, s, c
+
+    allocate (dynamics%carries(0:plan%n_coordinates), source=.false.)
+    do i = 1, size(dynamics%bodies)
+      dynamics%carries(dynamics%bodies(i)%frame) = .true.
+    end do
+    do i = 1, plan%n_links
+      if (dynamics%load_links(i)) dynamics%carries(plan%frame_of(i)) = .true.
+    end do
+    do c = 1, size(plan%closures)
+      dynamics%carries(plan%closures(c)%target) = .true.
+      dynamics%carries(plan%steps(plan%closures(c)%path%steps)%parent) = .true.
+    end do
+    do s = plan%n_coordinates, 1, -1
+      if (dynamics%carries(s)) dynamics%carries(plan%steps(s)%parent) = .true.
+    end do
+  end subroutine find_carriers
+end module mech9_dynamics_plan

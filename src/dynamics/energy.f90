@@ -1,0 +1,55 @@
+!> Kinetic (20) and potential energy of a state. Uses kinds, rotation, mechanism, plan, state, dynamics_plan.
+module mech9_energy
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: cross
+  use mech9_mechanism, only: mechanism_type
+  use mech9_motion_view, only: motion_view_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_dynamics_plan, only: dynamics_plan_type
+  implicit none
+  private
+  public :: kinetic_energy, potential_energy
+
+contains
+
+  !> Sum over the bodies of half m v^2 of the centre and half omega . I omega [J].
+  pure real(wp) function kinetic_energy(dynamics, state) result(energy)
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state       !< with its velocities
+    real(wp) :: arm(3), v(3), omega(3)
+    integer :: i
+
+    energy = 0.0_wp
+    do i = 1, size(dynamics%bodies)
+      associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
+        arm = matmul(state%r(:, :, f), body%centre)
+        v = state%v(:, f) + cross(state%omega(:, f), arm)
+        omega = matmul(state%omega(:, f), state%r(:, :, f))
+        energy = energy + 0.5_wp*(body%mass*dot_product(v, v) + dot_product(omega, matmul(body%inertia, omega)))
+      end associate
+    end do
+  end function kinetic_energy
+
+  !> Of gravity, zero where all centres are in the origin of link 1, and of the springs [J].
+  pure real(wp) function potential_energy(mechanism, plan, dynamics, state, view) result(energy)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    type(motion_view_type), intent(in) :: view      !< of the same state
+    real(wp) :: centre(3)
+    integer :: i
+
+    energy = 0.0_wp
+    do i = 1, size(dynamics%bodies)
+      associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
+        centre = state%p(:, f) + matmul(state%r(:, :, f), body%centre) + plan%origin
+        energy = energy - body%mass*dot_product(dynamics%gravity, centre)
+      end associate
+    end do
+    do i = 1, size(mechanism%loads)
+      energy = energy + mechanism%loads(i)%load%potential(view)
+    end do
+  end function potential_energy
+end module mech9_energy

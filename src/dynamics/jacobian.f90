@@ -1,0 +1,122 @@
+!> Jacobians of frames with respect to the independent coordinates, with the dependent coordinates
+!> eliminated block by block. Uses kinds, rotation, plan, state, solver, dynamics_plan.
+module mech9_jacobian
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: cross
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_closure, only: reduced_screw
+  use mech9_solver, only: block_work_type
+  use mech9_dynamics_plan, only: dynamics_plan_type
+  implicit none
+  private
+  public :: jacobian_type, new_jacobian, find_jacobian
+
+  !> Entries as in the dynamics plan: derivatives of a frame's angular velocity and of the velocity of its
+  !> origin (fixed axes) by the rate of an independent coordinate; `b` is dq_k/dq_i of the step's coordinate.
+  type :: jacobian_type
+    real(wp), allocatable :: w(:, :)    !< (3, entries)
+    real(wp), allocatable :: v(:, :)    !< (3, entries)
+    real(wp), allocatable :: b(:)       !< (entries)
+  end type jacobian_type
+
+contains
+
+  pure function new_jacobian(dynamics) result(jacobian)
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(jacobian_type) :: jacobian
+
+    allocate (jacobian%w(3, size(dynamics%column)), jacobian%v(3, size(dynamics%column)), source=0.0_wp)
+    allocate (jacobian%b(size(dynamics%column)), source=0.0_wp)
+  end function new_jacobian
+
+  !> The entries of a block's frames and its part of B = dq/dq_i. Frames must be in place, the block's
+  !> Jacobian factorized, earlier blocks done.
+  subroutine find_jacobian(plan, dynamics, block, state, work, jacobian)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(inout) :: work
+    type(jacobian_type), intent(inout) :: jacobian
+    integer :: s, e, c
+
+    do s = block%first_step, block%last_step
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        jacobian%b(e) = 0.0_wp
+        if (.not. plan%steps(s)%dependent .and. dynamics%column(e) == dynamics%place_of(plan%steps(s)%coordinate)) &
+          jacobian%b(e) = 1.0_wp
+      end do
+    end do
+    if (size(block%unknowns) > 0) then
+      call spread_jacobian(plan, dynamics, block, state, .true., jacobian)
+      do c = 1, dynamics%first(block%first_step + 1) - dynamics%first(block%first_step)
+        call eliminate(plan, dynamics, block, state, c - 1, work, jacobian)
+      end do
+    end if
+    call spread_jacobian(plan, dynamics, block, state, .false., jacobian)
+  end subroutine find_jacobian
+
+  !> Outward recursion of the entries over the steps of a block.
+  pure subroutine spread_jacobian(plan, dynamics, block, state, all_frames, jacobian)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    logical, intent(in) :: all_frames        !< also those that carry nothing
+    type(jacobian_type), intent(inout) :: jacobian
+    real(wp) :: arm(3)
+    integer :: s, e, p
+
+    do s = block%first_step, block%last_step
+      if (.not. (all_frames .or. dynamics%carries(s))) cycle
+      arm = state%p(:, s) - state%p(:, plan%steps(s)%parent)
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        jacobian%w(:, e) = jacobian%b(e)*state%axis_w(:, s)
+        jacobian%v(:, e) = jacobian%b(e)*state%axis_v(:, s)
+        p = dynamics%parent_entry(e)
+        if (p == 0) cycle
+        jacobian%w(:, e) = jacobian%w(:, e) + jacobian%w(:, p)
+        jacobian%v(:, e) = jacobian%v(:, e) + jacobian%v(:, p) + cross(jacobian%w(:, p), arm)
+      end do
+    end do
+  end subroutine spread_jacobian
+
+  !> Rates of the block's dependent coordinates for one independent coordinate, number `offset` + 1
+  !> of the block's: J_d b_d = -(what opens the closures).
+  subroutine eliminate(plan, dynamics, block, state, offset, work, jacobian)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: offset
+    type(block_work_type), intent(inout) :: work
+    type(jacobian_type), intent(inout) :: jacobian
+    real(wp) :: w(3), v(3), arm(3)
+    integer :: c, e, t, row, i, s
+
+    row = 0
+    do c = block%first_closure, block%last_closure
+      associate (closure => plan%closures(c))
+        e = dynamics%first(closure%closing) + offset
+        t = dynamics%target_entry(e)
+        w = jacobian%w(:, e)
+        v = jacobian%v(:, e)
+        if (t > 0) then
+          arm = state%p(:, closure%closing) - state%p(:, closure%target)
+          w = w - jacobian%w(:, t)
+          v = v - jacobian%v(:, t) - cross(jacobian%w(:, t), arm)
+        end if
+        call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), &
+                           work%right(row + 1:row + closure%rank))
+        row = row + closure%rank
+      end associate
+    end do
+    work%right = -work%right
+    call work%equations%solve(work%right, work%change)
+    do i = 1, size(block%unknowns)
+      s = block%unknowns(i)
+      jacobian%b(dynamics%first(s) + offset) = work%change(i)*plan%unit_of(plan%steps(s)%coordinate)
+    end do
+  end subroutine eliminate
+end module mech9_jacobian

@@ -1,0 +1,265 @@
+!> Lagrange's equations in the independent coordinates, (19): coefficients of motion, velocity terms and
+!> generalized forces from the Jacobians of the frames. Uses the kinematics floor, mechanism, loads,
+!> cholesky, dynamics_plan, jacobian.
+!>
+!> (21) and the terms of (19) that are squares of rates are not differentiated: with the Jacobians J_c of
+!> mass centres and J_w of angular velocities,
+!>   a_pr = sum m J_c,p . J_c,r + J_w,p . I J_w,r,
+!>   h_p  = sum m J_c,p . a_c + J_w,p . (I alpha + omega x I omega)
+!> with the accelerations a_c, alpha that rates alone give (no accelerations of independent coordinates);
+!> then a ddq_i = Q - h. The result is the same, at O(links I^2).
+module mech9_lagrange
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data, exit_singular
+  use mech9_text, only: to_text
+  use mech9_rotation, only: cross
+  use mech9_pose, only: pose_type
+  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
+  use mech9_mechanism, only: mechanism_type
+  use mech9_motion_view, only: motion_view_type
+  use mech9_force_sum, only: force_sum_type, new_force_sum
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_motion, only: spread_velocities, spread_accelerations
+  use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_accelerations
+  use mech9_inertia, only: inertia_in_axes
+  use mech9_dynamics_plan, only: dynamics_plan_type, frame_body_type
+  use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian
+  implicit none
+  private
+  public :: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations
+
+  !> Blocks whose least pivot is below this are at a singular position.
+  real(wp), parameter :: singular = 1.0e-9_wp
+
+  !> Scratch and results of one evaluation, sized once.
+  type :: lagrange_work_type
+    type(block_work_type), allocatable :: blocks(:)
+    type(jacobian_type) :: jacobian
+    real(wp), allocatable :: coefficients(:, :)      !< a_pr, lower triangle
+    real(wp), allocatable :: factors(:, :)
+    real(wp), allocatable :: velocity_terms(:)       !< h_p
+    real(wp), allocatable :: forces(:)               !< Q_p
+    real(wp), allocatable :: accelerations(:)        !< of the independent coordinates
+    type(motion_view_type) :: view
+    type(force_sum_type) :: sum
+  end type lagrange_work_type
+
+contains
+
+  function new_lagrange_work(plan, dynamics) result(work)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(lagrange_work_type) :: work
+    integer :: b, n
+
+    n = size(plan%independent)
+    allocate (work%blocks(size(plan%blocks)))
+    do b = 1, size(plan%blocks)
+      work%blocks(b) = new_block_work(plan%blocks(b))
+    end do
+    work%jacobian = new_jacobian(dynamics)
+    allocate (work%coefficients(n, n), work%factors(n, n), source=0.0_wp)
+    allocate (work%velocity_terms(n), work%forces(n), work%accelerations(n), source=0.0_wp)
+    allocate (work%view%links(plan%n_links))
+    allocate (work%view%q(plan%n_coordinates), work%view%dq(plan%n_coordinates), source=0.0_wp)
+    work%sum = new_force_sum(plan%n_links, plan%n_coordinates)
+  end function new_lagrange_work
+
+  !> Rates of the dependent coordinates and accelerations of the independent ones, for closed positions
+  !> (frames in place) and the rates of the independent coordinates in `state`. Dependent accelerations
+  !> in `state` are then those that rates alone give. Fails with exit_singular in a singular position of
+  !> a block, with exit_data where a coordinate has no inertia, and where a load fails.
+  subroutine find_motion(mechanism, plan, dynamics, state, work, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(inout) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    type(error_type), allocatable, intent(out) :: err
+    integer :: b, n, failed_at
+
+    state%ddq(plan%independent) = 0.0_wp
+    do b = 1, size(plan%blocks)
+      call move_block(plan, dynamics, b, state, work, err)
+      if (allocated(err)) return
+    end do
+    call collect_inertia(dynamics, state, work)
+    call collect_forces(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    n = size(plan%independent)
+    work%factors = work%coefficients
+    call cholesky_factorize(n, work%factors, failed_at)
+    if (failed_at > 0) then
+      call raise(err, exit_data, 'independent coordinate '//to_text(plan%independent(failed_at))// &
+                 ' has no inertia: no link with mass moves with it (apart from those that the independent '// &
+                 'coordinates before it move already); give a &body')
+      return
+    end if
+    work%accelerations = work%forces - work%velocity_terms
+    call cholesky_solve(n, work%factors, work%accelerations)
+  end subroutine find_motion
+
+  !> Rates and Jacobians of one block, and its accelerations from rates alone.
+  subroutine move_block(plan, dynamics, b, state, work, err)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    integer, intent(in) :: b
+    type(state_type), intent(inout) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i, s, e
+    real(wp) :: rate
+
+    associate (block => plan%blocks(b))
+      if (size(block%unknowns) > 0) then
+        call factorize_block(plan, block, state, work%blocks(b))
+        if (work%blocks(b)%equations%conditioning() < singular) then
+          call raise(err, exit_singular, 'a closed chain is in a singular position for these independent coordinates')
+          return
+        end if
+      end if
+      call find_jacobian(plan, dynamics, block, state, work%blocks(b), work%jacobian)
+      do i = 1, size(block%unknowns)
+        s = block%unknowns(i)
+        rate = 0.0_wp
+        do e = dynamics%first(s), dynamics%first(s + 1) - 1
+          rate = rate + work%jacobian%b(e)*state%dq(plan%independent(dynamics%column(e)))
+        end do
+        state%dq(plan%steps(s)%coordinate) = rate
+      end do
+      call spread_velocities(plan, block%first_step, block%last_step, state)
+      call solve_accelerations(plan, block, state, work%blocks(b))
+    end associate
+  end subroutine move_block
+
+  !> a_pr (21) and the velocity terms of (19).
+  subroutine collect_inertia(dynamics, state, work)
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    integer :: i
+
+    work%coefficients = 0.0_wp
+    work%velocity_terms = 0.0_wp
+    work%forces = 0.0_wp
+    do i = 1, size(dynamics%bodies)
+      call add_body(dynamics, dynamics%bodies(i), state, work)
+    end do
+  end subroutine collect_inertia
+
+  pure subroutine add_body(dynamics, body, state, work)
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(frame_body_type), intent(in) :: body
+    type(state_type), intent(in) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    real(wp) :: arm(3), inertia(3, 3), force(3), torque(3), j_c(3), momentum(3), spin(3)
+    integer :: f, e, d, p, r
+
+    f = body%frame
+    arm = matmul(state%r(:, :, f), body%centre)
+    force = body%mass*(state%a(:, f) + cross(state%alpha(:, f), arm) &
+                       + cross(state%omega(:, f), cross(state%omega(:, f), arm)))
+    torque = 0.0_wp
+    inertia = 0.0_wp
+    if (.not. body%is_point) then
+      inertia = inertia_in_axes(state%r(:, :, f), body%inertia)
+      spin = matmul(inertia, state%omega(:, f))
+      torque = matmul(inertia, state%alpha(:, f)) + cross(state%omega(:, f), spin)
+    end if
+    do e = dynamics%first(f), dynamics%first(f + 1) - 1
+      p = dynamics%column(e)
+      j_c = work%jacobian%v(:, e) + cross(work%jacobian%w(:, e), arm)
+      work%velocity_terms(p) = work%velocity_terms(p) + dot_product(j_c, force) &
+                               + dot_product(work%jacobian%w(:, e), torque)
+      work%forces(p) = work%forces(p) + body%mass*dot_product(j_c, dynamics%gravity)
+      momentum = body%mass*j_c
+      spin = matmul(inertia, work%jacobian%w(:, e)) + cross(arm, momentum)
+      ! J_c,r = J_v,r + J_w,r x arm, so that J_c,r . m J_c,p splits into J_v,r and J_w,r
+      do d = e, dynamics%first(f + 1) - 1
+        r = dynamics%column(d)
+        work%coefficients(r, p) = work%coefficients(r, p) + dot_product(work%jacobian%v(:, d), momentum) &
+                                  + dot_product(work%jacobian%w(:, d), spin)
+      end do
+    end do
+  end subroutine add_body
+
+  !> Q_p (25): what the loads exert, on the frames and on the coordinates.
+  subroutine collect_forces(mechanism, plan, dynamics, state, work, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: arm(3), torque(3)
+    integer :: i, f, e, p, s
+
+    if (size(mechanism%loads) == 0) return
+    call show_state(plan, dynamics, state, work%view)
+    call work%sum%clear()
+    do i = 1, size(mechanism%loads)
+      call mechanism%loads(i)%load%apply(work%view, work%sum, err)
+      if (allocated(err)) return
+    end do
+    do i = 2, plan%n_links
+      if (.not. dynamics%load_links(i)) cycle
+      f = plan%frame_of(i)
+      arm = work%view%links(i)%p - plan%origin - state%p(:, f)
+      torque = work%sum%torque(:, i) + cross(arm, work%sum%force(:, i))
+      do e = dynamics%first(f), dynamics%first(f + 1) - 1
+        p = dynamics%column(e)
+        work%forces(p) = work%forces(p) + dot_product(work%jacobian%v(:, e), work%sum%force(:, i)) &
+                         + dot_product(work%jacobian%w(:, e), torque)
+      end do
+    end do
+    do i = 1, plan%n_coordinates
+      if (.not. abs(work%sum%generalized(i)) > 0.0_wp) cycle
+      s = plan%step_of(i)
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        p = dynamics%column(e)
+        work%forces(p) = work%forces(p) + work%jacobian%b(e)*work%sum%generalized(i)
+      end do
+    end do
+  end subroutine collect_forces
+
+  !> The state as loads see it: the links' own systems in that of link 1.
+  pure subroutine show_state(plan, dynamics, state, view)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    type(motion_view_type), intent(inout) :: view
+    real(wp) :: arm(3)
+    integer :: i, f
+
+    view%t = state%t
+    view%q = state%q
+    view%dq = state%dq
+    do i = 1, plan%n_links
+      if (.not. dynamics%load_links(i)) cycle
+      f = plan%frame_of(i)
+      arm = matmul(state%r(:, :, f), plan%link_in_frame(i)%p)
+      view%links(i)%r = matmul(state%r(:, :, f), plan%link_in_frame(i)%r)
+      view%links(i)%p = state%p(:, f) + arm + plan%origin
+      view%links(i)%omega = state%omega(:, f)
+      view%links(i)%v = state%v(:, f) + cross(state%omega(:, f), arm)
+    end do
+  end subroutine show_state
+
+  !> After find_motion: the accelerations of all coordinates and frames, for results.
+  pure subroutine complete_accelerations(plan, dynamics, work, state)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(lagrange_work_type), intent(in) :: work
+    type(state_type), intent(inout) :: state
+    integer :: s, e
+
+    do s = 1, plan%n_coordinates
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        state%ddq(plan%steps(s)%coordinate) = state%ddq(plan%steps(s)%coordinate) &
+                                              + work%jacobian%b(e)*work%accelerations(dynamics%column(e))
+      end do
+    end do
+    call spread_accelerations(plan, 1, plan%n_coordinates, state)
+  end subroutine complete_accelerations
+end module mech9_lagrange

@@ -1,0 +1,51 @@
+!> A spring, damper and actuator on a coordinate, independent or not.
+!> Uses kinds, error, load and what loads see.
+module mech9_coordinate_load
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_motion_view, only: motion_view_type
+  use mech9_force_sum, only: force_sum_type
+  use mech9_load, only: load_type
+  implicit none
+  private
+  public :: coordinate_load_type
+
+  !> -stiffness (q - rest) - damping dq/dt + force, on q.
+  type, extends(load_type) :: coordinate_load_type
+    integer :: coordinate = 0
+    real(wp) :: stiffness = 0.0_wp   !< [N m/rad, N/m]
+    real(wp) :: rest = 0.0_wp        !< [rad, m]
+    real(wp) :: damping = 0.0_wp     !< [N m s/rad, N s/m]
+    real(wp) :: force = 0.0_wp       !< [N m, N]
+  contains
+    procedure :: mark_links
+    procedure :: apply
+    procedure :: potential
+  end type coordinate_load_type
+
+contains
+
+  !> It acts on a coordinate and asks for no link.
+  pure subroutine mark_links(self, needed)
+    class(coordinate_load_type), intent(in) :: self
+    logical, intent(inout) :: needed(:)
+  end subroutine mark_links
+
+  subroutine apply(self, state, sum, err)
+    class(coordinate_load_type), intent(in) :: self
+    type(motion_view_type), intent(in) :: state
+    type(force_sum_type), intent(inout) :: sum
+    type(error_type), allocatable, intent(out) :: err
+
+    associate (k => self%coordinate)
+      call sum%add_generalized(k, self%force - self%stiffness*(state%q(k) - self%rest) - self%damping*state%dq(k))
+    end associate
+  end subroutine apply
+
+  pure real(wp) function potential(self, state)
+    class(coordinate_load_type), intent(in) :: self
+    type(motion_view_type), intent(in) :: state
+
+    potential = 0.5_wp*self%stiffness*(state%q(self%coordinate) - self%rest)**2
+  end function potential
+end module mech9_coordinate_load

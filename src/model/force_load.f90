@@ -1,0 +1,56 @@
+!> A constant force at a point of a link, or a constant torque. Uses kinds, error, load and what loads see.
+module mech9_force_load
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_motion_view, only: motion_view_type
+  use mech9_force_sum, only: force_sum_type
+  use mech9_load, only: load_type
+  implicit none
+  private
+  public :: force_load_type
+
+  !> Its components are in fixed axes, or in those of the link and turn with it.
+  type, extends(load_type) :: force_load_type
+    integer :: link = 0
+    real(wp) :: position(3) = 0.0_wp   !< where the force acts, in the link's system [m]
+    real(wp) :: force(3) = 0.0_wp      !< [N]
+    real(wp) :: torque(3) = 0.0_wp     !< [N m]
+    logical :: turns_with_link = .false.
+  contains
+    procedure :: mark_links
+    procedure :: apply
+    procedure :: potential
+  end type force_load_type
+
+contains
+
+  pure subroutine mark_links(self, needed)
+    class(force_load_type), intent(in) :: self
+    logical, intent(inout) :: needed(:)
+
+    needed(self%link) = .true.
+  end subroutine mark_links
+
+  subroutine apply(self, state, sum, err)
+    class(force_load_type), intent(in) :: self
+    type(motion_view_type), intent(in) :: state
+    type(force_sum_type), intent(inout) :: sum
+    type(error_type), allocatable, intent(out) :: err
+
+    if (self%turns_with_link) then
+      call sum%add_force(state, self%link, self%position, state%turned(self%link, self%force))
+      call sum%add_torque(self%link, state%turned(self%link, self%torque))
+    else
+      call sum%add_force(state, self%link, self%position, self%force)
+      call sum%add_torque(self%link, self%torque)
+    end if
+  end subroutine apply
+
+  !> None is stated: the work of a given force counts as put in.
+  pure real(wp) function potential(self, state)
+    class(force_load_type), intent(in) :: self
+    type(motion_view_type), intent(in) :: state
+
+    potential = 0.0_wp
+  end function potential
+end module mech9_force_load

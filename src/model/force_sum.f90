@@ -1,0 +1,75 @@
+!> What loads collect: forces and torques on links, generalized forces on coordinates.
+!> Uses kinds, rotation, motion_view.
+module mech9_force_sum
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: cross
+  use mech9_motion_view, only: motion_view_type
+  implicit none
+  private
+  public :: force_sum_type, new_force_sum
+
+  !> Resultants, fixed axes. The torque of each link is about the origin of its own system.
+  type :: force_sum_type
+    real(wp), allocatable :: force(:, :)       !< (3,N) [N]
+    real(wp), allocatable :: torque(:, :)      !< (3,N) [N m]
+    real(wp), allocatable :: generalized(:)    !< (M) [N m or N]
+    logical :: unanswered = .false.            !< no user's procedure is linked
+  contains
+    procedure :: clear
+    procedure :: add_force
+    procedure :: add_torque
+    procedure :: add_generalized
+  end type force_sum_type
+
+contains
+
+  !> Nothing yet, for a mechanism with so many links and coordinates.
+  pure function new_force_sum(n_links, n_coordinates) result(sum)
+    integer, intent(in) :: n_links, n_coordinates
+    type(force_sum_type) :: sum
+
+    allocate (sum%force(3, n_links), sum%torque(3, n_links), source=0.0_wp)
+    allocate (sum%generalized(n_coordinates), source=0.0_wp)
+  end function new_force_sum
+
+  pure subroutine clear(self)
+    class(force_sum_type), intent(inout) :: self
+
+    self%force = 0.0_wp
+    self%torque = 0.0_wp
+    self%generalized = 0.0_wp
+  end subroutine clear
+
+  !> A force at a point of a link.
+  pure subroutine add_force(self, state, link, point, force)
+    class(force_sum_type), intent(inout) :: self
+    type(motion_view_type), intent(in) :: state
+    integer, intent(in) :: link
+    real(wp), intent(in) :: point(3)      !< in the link's system [m]
+    real(wp), intent(in) :: force(3)      !< fixed axes [N]
+    real(wp) :: arm(3)
+
+    arm = matmul(state%links(link)%r, point)
+    self%force(:, link) = self%force(:, link) + force
+    self%torque(:, link) = self%torque(:, link) + cross(arm, force)
+  end subroutine add_force
+
+  !> A torque on a link.
+  pure subroutine add_torque(self, link, torque)
+    class(force_sum_type), intent(inout) :: self
+    integer, intent(in) :: link
+    real(wp), intent(in) :: torque(3)     !< fixed axes [N m]
+
+    self%torque(:, link) = self%torque(:, link) + torque
+  end subroutine add_torque
+
+  !> A generalized force on a coordinate: a torque about the axis of a revolute pair, a force along
+  !> that of a prismatic one; it acts on the moving link and back on the reference link.
+  pure subroutine add_generalized(self, coordinate, value)
+    class(force_sum_type), intent(inout) :: self
+    integer, intent(in) :: coordinate
+    real(wp), intent(in) :: value         !< [N m, N]
+
+    self%generalized(coordinate) = self%generalized(coordinate) + value
+  end subroutine add_generalized
+end module mech9_force_sum

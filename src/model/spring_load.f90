@@ -1,0 +1,74 @@
+!> A spring and damper between points of two links. Uses kinds, error, text, load and what loads see.
+module mech9_spring_load
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_integrator
+  use mech9_text, only: to_text
+  use mech9_motion_view, only: motion_view_type
+  use mech9_force_sum, only: force_sum_type
+  use mech9_load, only: load_type
+  implicit none
+  private
+  public :: spring_load_type
+
+  !> Pulls its ends together with stiffness (length - free length) + damping d(length)/dt.
+  type, extends(load_type) :: spring_load_type
+    integer :: links(2) = 0
+    real(wp) :: positions(3, 2) = 0.0_wp   !< of its ends, each in its link's system [m]
+    real(wp) :: stiffness = 0.0_wp         !< [N/m]
+    real(wp) :: free_length = 0.0_wp       !< [m]
+    real(wp) :: damping = 0.0_wp           !< [N s/m]
+  contains
+    procedure :: mark_links
+    procedure :: apply
+    procedure :: potential
+    procedure, private :: span
+  end type spring_load_type
+
+contains
+
+  pure subroutine mark_links(self, needed)
+    class(spring_load_type), intent(in) :: self
+    logical, intent(inout) :: needed(:)
+
+    needed(self%links) = .true.
+  end subroutine mark_links
+
+  !> From the first end to the second.
+  pure function span(self, state)
+    class(spring_load_type), intent(in) :: self
+    type(motion_view_type), intent(in) :: state
+    real(wp) :: span(3)
+
+    span = state%position(self%links(2), self%positions(:, 2)) - state%position(self%links(1), self%positions(:, 1))
+  end function span
+
+  subroutine apply(self, state, sum, err)
+    class(spring_load_type), intent(in) :: self
+    type(motion_view_type), intent(in) :: state
+    type(force_sum_type), intent(inout) :: sum
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: d(3), rate(3), pull(3), length
+
+    d = self%span(state)
+    rate = state%velocity(self%links(2), self%positions(:, 2)) - state%velocity(self%links(1), self%positions(:, 1))
+    length = norm2(d)
+    if (length > 0.0_wp) then
+      pull = (self%stiffness*(length - self%free_length) + self%damping*dot_product(d, rate)/length)/length*d
+    else if (abs(self%free_length) > 0.0_wp) then
+      call raise(err, exit_integrator, 'a spring of free length '//to_text(self%free_length)// &
+                 ' m has shrunk to nothing, where its direction is not defined', self%place)
+      return
+    else
+      pull = self%damping*rate
+    end if
+    call sum%add_force(state, self%links(1), self%positions(:, 1), pull)
+    call sum%add_force(state, self%links(2), self%positions(:, 2), -pull)
+  end subroutine apply
+
+  pure real(wp) function potential(self, state)
+    class(spring_load_type), intent(in) :: self
+    type(motion_view_type), intent(in) :: state
+
+    potential = 0.5_wp*self%stiffness*(norm2(self%span(state)) - self%free_length)**2
+  end function potential
+end module mech9_spring_load
