@@ -1,16 +1,14 @@
-!> Bodies and gravity from a checked document, and what can be checked of loads without a model of them.
-!> Uses kinds, text, body, document, lookup, motion_reader, diagnostics.
+!> Bodies and gravity from a checked document. Uses kinds, body, document, lookup, motion_reader, diagnostics.
 module mech9_body_reader
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
   use mech9_body, only: body_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: groups_named, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  use mech9_lookup, only: groups_named, get_integer, get_real, get_reals, span_of
   use mech9_motion_reader, only: check_link
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_bodies, read_gravity, check_loads
+  public :: read_bodies, read_gravity
 
 contains
 
@@ -101,43 +99,4 @@ contains
     numbers = groups_named(document, 'gravity')
     if (size(numbers) > 0) gravity = get_reals(document%groups(numbers(1)), 'acceleration')
   end function read_gravity
-
-  !> Links and coordinates that loads name must be there.
-  pure subroutine check_loads(document, n_links, n_coordinates, diagnostics)
-    type(document_type), intent(in) :: document
-    integer, intent(in) :: n_links, n_coordinates            !< 0 where they are not known
-    type(diagnostics_type), intent(inout) :: diagnostics
-    integer, allocatable :: numbers(:)
-    integer :: i
-
-    numbers = groups_named(document, 'load')
-    do i = 1, size(numbers)
-      associate (group => document%groups(numbers(i)))
-        select case (get_text(group, 'kind'))
-        case ('force', 'torque')
-          call check_link(group, 'link', 1, n_links, diagnostics)
-        case ('spring')
-          call check_spring(group, n_links, diagnostics)
-        case ('coordinate')
-          if (n_coordinates > 0 .and. get_integer(group, 'coordinate') > n_coordinates) &
-            call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '// &
-                                 to_text(get_integer(group, 'coordinate'))//'; they are 1 to '//to_text(n_coordinates))
-        end select
-      end associate
-    end do
-  end subroutine check_loads
-
-  pure subroutine check_spring(group, n_links, diagnostics)
-    type(group_type), intent(in) :: group
-    integer, intent(in) :: n_links
-    type(diagnostics_type), intent(inout) :: diagnostics
-    integer :: links(2)
-
-    links = get_integers(group, 'links')
-    call check_link(group, 'links', 1, n_links, diagnostics)
-    call check_link(group, 'links', 2, n_links, diagnostics)
-    if (links(1) == links(2)) &
-      call diagnostics%add(span_of(group, 'links', 2), 'a spring joins two different links, not link '// &
-                           to_text(links(1))//' to itself')
-  end subroutine check_spring
 end module mech9_body_reader

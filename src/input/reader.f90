@@ -13,7 +13,8 @@ module mech9_reader
   use mech9_pair_reader, only: read_pairs
   use mech9_drive_reader, only: read_drives
   use mech9_motion_reader, only: initial_type, read_initial, read_points
-  use mech9_body_reader, only: read_bodies, read_gravity, check_loads
+  use mech9_body_reader, only: read_bodies, read_gravity
+  use mech9_load_reader, only: read_loads
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -83,7 +84,7 @@ contains
                        m%drives, diagnostics)
       call read_bodies(document, n_links, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
-      call check_loads(document, n_links, n_coordinates, diagnostics)
+      call read_loads(document, n_links, m%pairs, m%angle_unit, m%parameters, m%loads, diagnostics)
       call check_pairs_given(document, m, diagnostics)
     end associate
   end subroutine read_parts

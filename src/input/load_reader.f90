@@ -1,0 +1,122 @@
+!> Loads from a checked document. Uses kinds, text, the model's pairs and loads, the user's load, document,
+!> lookup, motion_reader, diagnostics.
+module mech9_load_reader
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_pair, only: pair_slot_type
+  use mech9_load, only: load_slot_type
+  use mech9_force_load, only: force_load_type
+  use mech9_spring_load, only: spring_load_type
+  use mech9_coordinate_load, only: coordinate_load_type
+  use mech9_procedure_load, only: procedure_load_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  use mech9_motion_reader, only: check_link
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_loads
+
+contains
+
+  !> All loads, in the order of the file. Links and coordinates that they name must be there.
+  pure subroutine read_loads(document, n_links, pairs, angle_unit, parameters, loads, diagnostics)
+    type(document_type), intent(in) :: document
+    integer, intent(in) :: n_links                           !< 0 where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)             !< size 0 where they are not known
+    real(wp), intent(in) :: angle_unit                       !< rad
+    real(wp), intent(in) :: parameters(:)                    !< for a user's procedure
+    type(load_slot_type), allocatable, intent(out) :: loads(:)
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, allocatable :: numbers(:)
+    integer :: i
+
+    numbers = groups_named(document, 'load')
+    allocate (loads(size(numbers)))
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)))
+        select case (get_text(group, 'kind'))
+        case ('force', 'torque')
+          call check_link(group, 'link', 1, n_links, diagnostics)
+          allocate (loads(i)%load, source=force_load(group))
+        case ('spring')
+          call check_spring(group, n_links, diagnostics)
+          allocate (loads(i)%load, source=spring_load(group))
+        case ('coordinate')
+          call check_coordinate(group, size(pairs), diagnostics)
+          allocate (loads(i)%load, source=coordinate_load(group, pairs, angle_unit))
+        case ('user')
+          allocate (loads(i)%load, source=procedure_load_type(parameters=parameters))
+        end select
+        loads(i)%load%place = diagnostics%place(group%span)
+      end associate
+    end do
+  end subroutine read_loads
+
+  pure function force_load(group) result(load)
+    type(group_type), intent(in) :: group
+    type(force_load_type) :: load
+
+    load%link = get_integer(group, 'link')
+    load%turns_with_link = get_text(group, 'frame') == 'link'
+    if (get_text(group, 'kind') == 'force') then
+      load%position = get_reals(group, 'position')
+      load%force = get_reals(group, 'force')
+    else
+      load%torque = get_reals(group, 'torque')
+    end if
+  end function force_load
+
+  pure function spring_load(group) result(load)
+    type(group_type), intent(in) :: group
+    type(spring_load_type) :: load
+
+    load%links = get_integers(group, 'links')
+    load%positions(:, 1) = get_reals(group, 'position')
+    load%positions(:, 2) = get_reals(group, 'second_position')
+    load%stiffness = get_real(group, 'stiffness')
+    load%free_length = get_real(group, 'free_length')
+    load%damping = get_real(group, 'damping')
+  end function spring_load
+
+  !> Only the position of rest is an angle in the unit of the file; stiffness and damping are per rad.
+  pure function coordinate_load(group, pairs, angle_unit) result(load)
+    type(group_type), intent(in) :: group
+    type(pair_slot_type), intent(in) :: pairs(:)
+    real(wp), intent(in) :: angle_unit
+    type(coordinate_load_type) :: load
+
+    load%coordinate = get_integer(group, 'coordinate')
+    load%stiffness = get_real(group, 'stiffness')
+    load%damping = get_real(group, 'damping')
+    load%force = get_real(group, 'force')
+    load%rest = get_real(group, 'rest')
+    if (load%coordinate > size(pairs)) return
+    if (.not. allocated(pairs(load%coordinate)%pair)) return
+    if (pairs(load%coordinate)%pair%angular) load%rest = load%rest*angle_unit
+  end function coordinate_load
+
+  pure subroutine check_coordinate(group, n_coordinates, diagnostics)
+    type(group_type), intent(in) :: group
+    integer, intent(in) :: n_coordinates
+    type(diagnostics_type), intent(inout) :: diagnostics
+
+    if (n_coordinates > 0 .and. get_integer(group, 'coordinate') > n_coordinates) &
+      call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '// &
+                           to_text(get_integer(group, 'coordinate'))//'; they are 1 to '//to_text(n_coordinates))
+  end subroutine check_coordinate
+
+  pure subroutine check_spring(group, n_links, diagnostics)
+    type(group_type), intent(in) :: group
+    integer, intent(in) :: n_links
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: links(2)
+
+    links = get_integers(group, 'links')
+    call check_link(group, 'links', 1, n_links, diagnostics)
+    call check_link(group, 'links', 2, n_links, diagnostics)
+    if (links(1) == links(2)) &
+      call diagnostics%add(span_of(group, 'links', 2), 'a spring joins two different links, not link '// &
+                           to_text(links(1))//' to itself')
+  end subroutine check_spring
+end module mech9_load_reader
