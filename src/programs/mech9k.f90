@@ -1,7 +1,8 @@
 !> mech9k: kinematics of mechanisms from structural data.
 program mech9k
-  use mech9_mech9k_session, only: mech9k_main
+  use mech9_session, only: run_program
+  use mech9_kinematic_task, only: kinematic_task
   implicit none
 
-  call mech9k_main()
+  call run_program(kinematic_task())
 end program mech9k

@@ -1,0 +1,61 @@
+!> What mech9k does with a mechanism. Uses task, kinematic_run, kinematic_report.
+module mech9_kinematic_task
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: error_type
+  use mech9_command_line, only: command_line_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_task, only: task_type, table_path_of, print_check, announce
+  use mech9_kinematic_run, only: kinematic_outcome_type, assemble_start, run_kinematics
+  use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report
+  implicit none
+  private
+  public :: kinematic_task_type, kinematic_task
+
+  type, extends(task_type) :: kinematic_task_type
+  contains
+    procedure :: work
+  end type kinematic_task_type
+
+contains
+
+  pure function kinematic_task() result(task)
+    type(kinematic_task_type) :: task
+
+    task%program_name = 'mech9k'
+    task%needs_drives = .true.
+  end function kinematic_task
+
+  !> Plan, assemble, and run unless only a check is asked for.
+  subroutine work(self, options, mechanism, diagnostics)
+    class(kinematic_task_type), intent(in) :: self
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(kinematic_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: table_path
+
+    call assemble_start(mechanism, plan, start, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
+    if (options%check .or. options%plan) then
+      call print_check(options, mechanism, plan, start)
+      return
+    end if
+    table_path = table_path_of(options, mechanism)
+    call announce(options, mechanism, plan)
+    call run_kinematics(mechanism, plan, start, table_path, options%quiet, outcome, err)
+    if (.not. options%quiet) call print_kinematic_report(error_unit, mechanism, table_path, outcome)
+    if (allocated(err)) call diagnostics%add_error(err)
+    if (options%report == '') return
+    call save_kinematic_report(options%report, mechanism, plan, table_path, diagnostics%code(), outcome, err)
+    if (allocated(err)) call diagnostics%add_error(err)
+  end subroutine work
+end module mech9_kinematic_task

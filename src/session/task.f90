@@ -1,0 +1,80 @@
+!> What a program does with a mechanism, as the session sees it, and what all tasks share.
+!> Uses command_line, mechanism, plan, state, plan_text, diagnostics.
+module mech9_task
+  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mech9_kinds, only: wp
+  use mech9_command_line, only: command_line_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_plan_text, only: print_structure, print_mobility, print_plan
+  implicit none
+  private
+  public :: task_type, table_path_of, print_check, announce
+
+  type, abstract :: task_type
+    character(len=6) :: program_name = ''
+    logical :: needs_drives = .false.      !< every independent coordinate must be driven
+  contains
+    procedure(work_interface), deferred :: work
+  end type task_type
+
+  abstract interface
+    !> Do what the options ask for. Errors go to `diagnostics`, which knows the places in the data file.
+    subroutine work_interface(self, options, mechanism, diagnostics)
+      import :: task_type, command_line_type, mechanism_type, diagnostics_type
+      class(task_type), intent(in) :: self
+      type(command_line_type), intent(in) :: options
+      type(mechanism_type), intent(in) :: mechanism
+      type(diagnostics_type), intent(inout) :: diagnostics
+    end subroutine work_interface
+  end interface
+
+contains
+
+  !> Where the table goes: the command line comes before the data file; without either, standard output.
+  pure function table_path_of(options, mechanism) result(path)
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=:), allocatable :: path
+
+    path = '-'
+    if (mechanism%output%table /= '') path = mechanism%output%table
+    if (options%table /= '') path = options%table
+    if (options%no_write) path = ''
+  end function table_path_of
+
+  !> Answer --check and --plan.
+  subroutine print_check(options, mechanism, plan, start)
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start      !< assembled
+    character(len=16) :: name
+    integer :: k
+
+    call print_mobility(output_unit, plan)
+    if (options%plan) call print_plan(output_unit, mechanism, plan)
+    if (.not. options%check) return
+    write (output_unit, '(a)') 'assembled at the start:'
+    do k = 1, size(mechanism%pairs)
+      write (name, '(a,i0)') 'q', k
+      write (output_unit, '(2x,a8,es24.16)') name, &
+        start%q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular)
+    end do
+  end subroutine print_check
+
+  !> Before a run: the title, and with --verbose the structure and the plan.
+  subroutine announce(options, mechanism, plan)
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+
+    if (.not. options%quiet .and. mechanism%title /= '') write (error_unit, '(a)') mechanism%title
+    if (.not. options%verbose) return
+    call print_structure(error_unit, mechanism%vectors)
+    call print_mobility(error_unit, plan)
+    call print_plan(error_unit, mechanism, plan)
+  end subroutine announce
+end module mech9_task
