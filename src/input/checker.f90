@@ -83,18 +83,16 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics
     type(item_type), allocatable :: merged(:)
     type(item_type) :: one
-    integer, allocatable :: same(:)
     integer :: i, j, count
 
     count = 0
     do i = 1, size(group%items)
-      same = pack([(j, j=1, size(group%items))], [(group%items(j)%name == group%items(i)%name, j=1, size(group%items))])
       if (is_matrix(group, group%items(i))) then
         one = group%items(i)
         call expand_repeats(group%items(i), one%values, diagnostics)
       else
-        if (same(1) < i) cycle
-        call merge_items(group%items(same), one, diagnostics)
+        if (any([(group%items(j)%name == group%items(i)%name, j=1, i - 1)])) cycle
+        call merge_items(group%items, group%items(i)%name, one, diagnostics)
       end if
       if (all(one%values%kind == value_null)) cycle   ! "name = ," says as much as nothing
       call add_item(merged, count, one)

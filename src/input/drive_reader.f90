@@ -122,12 +122,14 @@ contains
     real(wp), intent(in) :: start, parameters(:)
     type(drive_slot_type), intent(out) :: slot
     type(diagnostics_type), intent(inout) :: diagnostics
+    type(polynomial_drive_type) :: polynomial
     type(procedure_drive_type) :: user_drive
     type(error_type), allocatable :: err
 
     select case (get_text(group, 'kind'))
     case ('polynomial')
-      allocate (slot%drive, source=polynomial_drive_type(coefficients=unit*get_reals(group, 'coefficients')))
+      polynomial%coefficients = unit*get_reals(group, 'coefficients')
+      allocate (slot%drive, source=polynomial)
     case ('harmonic')
       allocate (slot%drive, source=harmonic_drive_type(mean=unit*get_real(group, 'mean'), &
                                                        amplitude=unit*get_real(group, 'amplitude'), &

@@ -14,37 +14,55 @@ module mech9_item_merge
 
 contains
 
-  !> Merge items of one name, in the order they are written. What does not fit together is reported;
+  !> Merge the items of a name, in the order they are written. What does not fit together is reported;
   !> the merged item then holds what was understood.
-  pure subroutine merge_items(items, merged, diagnostics)
-    type(item_type), intent(in) :: items(:)          !< at least one, all of the same name
+  pure subroutine merge_items(items, name, merged, diagnostics)
+    type(item_type), intent(in) :: items(:)          !< of a group; at least one has the name
+    character(len=*), intent(in) :: name
     type(item_type), intent(out) :: merged
     type(diagnostics_type), intent(inout) :: diagnostics
     type(value_type), allocatable :: values(:)
     logical, allocatable :: filled(:)
-    integer :: i, first
+    integer :: i, first, number
 
-    merged%name = items(1)%name
-    merged%span = items(size(items))%span
-    allocate (merged%subscripts(0))
-    if (size(items) == 1 .and. size(items(1)%subscripts) == 0) then
-      call expand_repeats(items(1), merged%values, diagnostics)
-      return
-    end if
-    allocate (merged%values(0), filled(0))
+    merged%name = name
+    allocate (merged%subscripts(0), merged%values(0), filled(0))
+    number = 0
     do i = 1, size(items)
-      call check_subscripts(items(i), items(1), i, first, diagnostics)
+      if (items(i)%name /= name) cycle
+      number = number + 1
+      if (size(items(i)%subscripts) == 0 .and. is_alone(items, i)) then
+        merged%span = items(i)%span
+        call expand_repeats(items(i), merged%values, diagnostics)
+        return
+      end if
+      call check_subscripts(items(i), merged%span, number, first, diagnostics)
+      merged%span = items(i)%span
       if (first == 0) cycle
       call expand_repeats(items(i), values, diagnostics)
       call place_values(items(i), values, first, merged%values, filled, diagnostics)
     end do
     if (.not. all(filled)) &
-      call diagnostics%add(merged%span, ''''//merged%name//'('//to_text(findloc(filled, .false., dim=1))//')'' is missing')
+      call diagnostics%add(merged%span, ''''//name//'('//to_text(findloc(filled, .false., dim=1))//')'' is missing')
   end subroutine merge_items
 
+  !> No other item has the name of this one.
+  pure logical function is_alone(items, number)
+    type(item_type), intent(in) :: items(:)
+    integer, intent(in) :: number
+    integer :: i
+
+    is_alone = .false.
+    do i = 1, size(items)
+      if (i /= number .and. items(i)%name == items(number)%name) return
+    end do
+    is_alone = .true.
+  end function is_alone
+
   !> The position of an item's first value; 0, with a report, where its subscripts do not serve.
-  pure subroutine check_subscripts(item, first_item, number, first, diagnostics)
-    type(item_type), intent(in) :: item, first_item
+  pure subroutine check_subscripts(item, before, number, first, diagnostics)
+    type(item_type), intent(in) :: item
+    type(span_type), intent(in) :: before            !< of the name where it stands before this
     integer, intent(in) :: number                    !< of the item among those of its name
     integer, intent(out) :: first
     type(diagnostics_type), intent(inout) :: diagnostics
@@ -56,7 +74,7 @@ contains
         first = 1
       else
         call diagnostics%add(item%span, ''''//item%name//''' is given twice in this group'// &
-                             line_of_first(first_item%span, diagnostics))
+                             line_of(before, diagnostics))
       end if
     case (1)
       first = max(item%subscripts(1)%first, 1)
@@ -66,7 +84,7 @@ contains
     end select
   end subroutine check_subscripts
 
-  pure function line_of_first(span, diagnostics) result(text)
+  pure function line_of(span, diagnostics) result(text)
     type(span_type), intent(in) :: span
     type(diagnostics_type), intent(in) :: diagnostics
     character(len=:), allocatable :: text
@@ -74,9 +92,9 @@ contains
     text = ''
     if (span%source /= 1) return
     associate (position => diagnostics%place(span))
-      text = '; first in line '//to_text(position%line)
+      text = '; it stands in line '//to_text(position%line)//' already'
     end associate
-  end function line_of_first
+  end function line_of
 
   !> Put values at their positions.
   pure subroutine place_values(item, new, first, values, filled, diagnostics)

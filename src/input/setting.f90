@@ -4,7 +4,7 @@ module mech9_setting
   use mech9_text, only: lower, to_text
   use mech9_source, only: source_type, span_type, source_from_text
   use mech9_grammar, only: item_table, find_item_rows
-  use mech9_document, only: document_type, group_type, item_type, value_type, subscript_type, value_text, &
+  use mech9_document, only: document_type, group_type, item_type, subscript_type, value_text, &
                             add_group, add_item, trim_document
   use mech9_scanner, only: scan_word, scan_subscripts, next_is_name, is_letter
   use mech9_parser, only: parse_item
@@ -88,8 +88,9 @@ contains
       item%name = lower(text(start:at - 1))
       item%span = span_type(source, start, at - 1)
       allocate (item%subscripts(0), item%values(1))
-      item%values(1) = value_type(kind=value_text, text=trim(adjustl(text(equals + 1:))), &
-                                  span=span_type(source, equals + 1, len(text)))
+      item%values(1)%kind = value_text
+      item%values(1)%text = trim(adjustl(text(equals + 1:)))
+      item%values(1)%span = span_type(source, equals + 1, len(text))
     else
       at = start
       call parse_item(text, at, source, item, diagnostics)

@@ -36,24 +36,27 @@ program test_fuzz
     '99999999999', achar(0), char(255), 'axis(1)=']
   type(tester_type) :: tester
   type(random_type) :: random
-  integer :: i, refused
-  character(len=:), allocatable :: text
+  integer :: refused = 0
 
-  refused = 0
-  do i = 1, runs
-    text = everything
-    if (mod(i, 3) == 0) text = second_set
-    call damage(text)
-    call try(text, i)
-  end do
-  call tester%is_true(refused > runs/2, 'most of the damage is seen')
-  call tester%is_true(refused < runs, 'and some does no harm')
-  do i = 1, runs/4
-    call try_setting(i)
-  end do
+  call damaged_files()
+  call damaged_settings()
   call tester%finish()
 
 contains
+
+  subroutine damaged_files()
+    character(len=:), allocatable :: text
+    integer :: i
+
+    do i = 1, runs
+      text = everything
+      if (mod(i, 3) == 0) text = second_set
+      call damage(text)
+      call try(text, i)
+    end do
+    call tester%is_true(refused > runs/2, 'most of the damage is seen')
+    call tester%is_true(refused < runs, 'and some does no harm')
+  end subroutine damaged_files
 
   !> A whole number from 1 to n.
   integer function dice(n)
@@ -152,6 +155,10 @@ contains
     if (.not. diagnostics%failed()) call tester%is_true(is_whole(mechanism), 'what is read is whole:'//eol//text)
   end subroutine try
 
+  subroutine forget(diagnostics)
+    type(diagnostics_type), intent(out) :: diagnostics
+  end subroutine forget
+
   !> Either nothing is wrong and nothing is printed, or there is a message and its code.
   subroutine judge(diagnostics, text)
     type(diagnostics_type), intent(in) :: diagnostics
@@ -181,20 +188,23 @@ contains
   end function is_whole
 
   !> Damaged settings on a right file.
-  subroutine try_setting(number)
-    integer, intent(in) :: number
+  subroutine damaged_settings()
     character(len=*), parameter :: settings(4) = [character(len=24) :: 'time.intervals=7', 'pair(2).axis(1)=0.5', &
                                                  'structure.c(1,:)=0,1,0,4', "output.table='x.dat'"]
     character(len=:), allocatable :: text
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     type(mechanism_type) :: mechanism
+    integer :: i
 
-    text = trim(settings(1 + mod(number, 4)))
-    call damage(text)
-    call parse_document(source_from_text('test.nml', everything), document, diagnostics)
-    call apply_setting(document, text, diagnostics)
-    call read_mechanism(document, .true., mechanism, diagnostics)
-    call judge(diagnostics, text)
-  end subroutine try_setting
+    do i = 1, runs/4
+      text = trim(settings(1 + mod(i, 4)))
+      call damage(text)
+      call forget(diagnostics)
+      call parse_document(source_from_text('test.nml', everything), document, diagnostics)
+      call apply_setting(document, text, diagnostics)
+      call read_mechanism(document, .true., mechanism, diagnostics)
+      call judge(diagnostics, text)
+    end do
+  end subroutine damaged_settings
 end program test_fuzz
