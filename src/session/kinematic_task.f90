@@ -1,4 +1,4 @@
-!> What mech9k does with a mechanism. Uses task, kinematic_run, kinematic_report.
+!> What mech9k does with a mechanism. Uses task, recording, kinematic_run, kinematic_report.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
@@ -8,7 +8,8 @@ module mech9_kinematic_task
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_task, only: task_type, table_path_of, print_check, announce
-  use mech9_kinematic_run, only: kinematic_outcome_type, assemble_start, run_kinematics
+  use mech9_recording, only: recording_outcome_type, record
+  use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
   use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report
   implicit none
   private
@@ -36,7 +37,8 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics
     type(plan_type) :: plan
     type(state_type) :: start
-    type(kinematic_outcome_type) :: outcome
+    type(kinematic_run_type) :: run
+    type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
     character(len=:), allocatable :: table_path
 
@@ -51,11 +53,12 @@ contains
     end if
     table_path = table_path_of(options, mechanism)
     call announce(options, mechanism, plan)
-    call run_kinematics(mechanism, plan, start, table_path, options%quiet, outcome, err)
-    if (.not. options%quiet) call print_kinematic_report(error_unit, mechanism, table_path, outcome)
+    call new_kinematic_run(mechanism, plan, start, run)
+    call record(run, mechanism, table_path, options%quiet, outcome, err)
+    if (.not. options%quiet) call print_kinematic_report(error_unit, mechanism, table_path, outcome, run%tracker)
     if (allocated(err)) call diagnostics%add_error(err)
     if (options%report == '') return
-    call save_kinematic_report(options%report, mechanism, plan, table_path, diagnostics%code(), outcome, err)
+    call save_kinematic_report(options%report, mechanism, plan, table_path, diagnostics%code(), outcome, run%tracker, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine work
 end module mech9_kinematic_task

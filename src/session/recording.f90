@@ -1,0 +1,145 @@
+!> Recording a motion: rows are computed and written by turns, whatever computes them.
+!> Uses error, clock, mechanism, columns, table, progress, system, version.
+module mech9_recording
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_interrupted
+  use mech9_text, only: to_text
+  use mech9_clock, only: seconds
+  use mech9_mechanism, only: mechanism_type
+  use mech9_columns, only: columns_type
+  use mech9_table, only: table_type
+  use mech9_version, only: version
+  use mech9_progress, only: progress_type
+  use mech9_system, only: interrupted
+  implicit none
+  private
+  public :: motion_source_type, recording_outcome_type, record
+
+  !> Rows that are computed before they are written together, so that both can be timed without a
+  !> clock in the inner loop.
+  integer, parameter :: rows_together = 256
+
+  !> What computes rows.
+  type, abstract :: motion_source_type
+    character(len=6) :: program_name = ''
+    type(columns_type) :: columns
+  contains
+    procedure(row_interface), deferred :: row_at
+  end type motion_source_type
+
+  abstract interface
+    !> Go on to output time t and give its row. Output times come in order, the first one is the start.
+    subroutine row_interface(self, t, row, err)
+      import :: motion_source_type, error_type, wp
+      class(motion_source_type), intent(inout) :: self
+      real(wp), intent(in) :: t
+      real(wp), intent(inout) :: row(:)
+      type(error_type), allocatable, intent(out) :: err
+    end subroutine row_interface
+  end interface
+
+  !> How the recording went.
+  type :: recording_outcome_type
+    integer :: rows = 0
+    real(wp) :: seconds_solving = 0.0_wp
+    real(wp) :: seconds_writing = 0.0_wp
+  end type recording_outcome_type
+
+contains
+
+  !> Rows at all output times; into the table, unless its path is empty. When the motion cannot go on,
+  !> or the user interrupts, what was computed is written first.
+  subroutine record(source, mechanism, table_path, quiet, outcome, err)
+    class(motion_source_type), intent(inout) :: source
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: table_path     !< '-' is standard output; empty: nothing is written
+    logical, intent(in) :: quiet
+    type(recording_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: stopped
+    type(table_type) :: table
+    type(progress_type) :: progress
+    real(wp), allocatable :: rows(:, :)
+    real(wp) :: clock
+    integer :: next, count
+
+    allocate (rows(source%columns%count, rows_together), source=0.0_wp)
+    clock = seconds()
+    if (table_path /= '') then
+      call table%open(table_path, mechanism%title, source%program_name//' '//version, &
+                      source%columns%names(:source%columns%count), &
+                      source%columns%units(:source%columns%count), err)
+      if (allocated(err)) return
+    end if
+    call progress%start(source%program_name, quiet)
+    next = 0
+    do while (next <= mechanism%time%intervals .and. .not. allocated(stopped))
+      call lap(clock, outcome%seconds_writing)
+      call compute_rows(source, mechanism, progress, next, rows, count, stopped)
+      call lap(clock, outcome%seconds_solving)
+      outcome%rows = outcome%rows + count
+      if (table_path /= '') call write_rows(table, rows(:, :count), err)
+      if (allocated(err)) exit
+    end do
+    call progress%finish()
+    if (table_path /= '') call close_table(table, err)
+    call lap(clock, outcome%seconds_writing)
+    if (.not. allocated(err)) call move_alloc(stopped, err)
+  end subroutine record
+
+  !> The next rows, from output number `next` on; fewer than fit where the motion or the run ends.
+  subroutine compute_rows(source, mechanism, progress, next, rows, count, err)
+    class(motion_source_type), intent(inout) :: source
+    type(mechanism_type), intent(in) :: mechanism
+    type(progress_type), intent(inout) :: progress
+    integer, intent(inout) :: next
+    real(wp), intent(inout) :: rows(:, :)
+    integer, intent(out) :: count
+    type(error_type), allocatable, intent(out) :: err
+
+    count = 0
+    do while (count < size(rows, 2) .and. next <= mechanism%time%intervals)
+      if (interrupted()) then
+        call raise(err, exit_interrupted, 'interrupted before t = '//to_text(mechanism%time%time(next), 10)//' s')
+        return
+      end if
+      call source%row_at(mechanism%time%time(next), rows(:, count + 1), err)
+      if (allocated(err)) return
+      count = count + 1
+      next = next + 1
+      call progress%update(real(next, wp)/max(1, mechanism%time%intervals))
+    end do
+  end subroutine compute_rows
+
+  subroutine write_rows(table, rows, err)
+    type(table_type), intent(inout) :: table
+    real(wp), intent(in) :: rows(:, :)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    do i = 1, size(rows, 2)
+      call table%write_row(rows(:, i), err)
+      if (allocated(err)) return
+    end do
+  end subroutine write_rows
+
+  !> Close the table; an error that came before is kept.
+  subroutine close_table(table, err)
+    type(table_type), intent(inout) :: table
+    type(error_type), allocatable, intent(inout) :: err
+    type(error_type), allocatable :: at_close
+
+    call table%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine close_table
+
+  !> Add the time since `clock` to a sum and set the clock.
+  subroutine lap(clock, sum)
+    real(wp), intent(inout) :: clock, sum
+    real(wp) :: now
+
+    now = seconds()
+    sum = sum + (now - clock)
+    clock = now
+  end subroutine lap
+end module mech9_recording
