@@ -2,7 +2,7 @@
 # The user's own flags (FFLAGS, CMAKE_Fortran_FLAGS) are left as they are and come first.
 option(MECH9_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(MECH9_NATIVE "use every instruction of this machine (-march=native)" OFF)
-option(MECH9_LTO "optimise across files when linking" OFF)
+option(MECH9_LTO "release: optimise across files when linking (a fifth faster, measured on Fig. 1)" ON)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "kind of build" FORCE)
@@ -15,12 +15,15 @@ set(MECH9_FORTRAN_OPTIONS -std=f2008 -fimplicit-none -Wall -Wextra -Wpedantic
 # Undoes what would refuse fixed-form FORTRAN 77: implicit types, arithmetic IF, calls without interface.
 set(MECH9_FORTRAN77_OPTIONS -std=legacy -fno-implicit-none -w)
 
-set(CMAKE_Fortran_FLAGS_RELEASE "-O3")
+# Optimising gfortran 12 takes the bounds of an array that is (re)allocated by its assignment for
+# uninitialized (PR fortran/108889); the debug build still warns of scalars.
+set(mech9_no_false_warnings "-Wno-uninitialized -Wno-maybe-uninitialized")
+set(CMAKE_Fortran_FLAGS_RELEASE "-O3 ${mech9_no_false_warnings}")
 set(CMAKE_Fortran_FLAGS_DEBUG
   "-g -Og -fcheck=all,no-array-temps -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
 set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
 foreach(language C Fortran)
-  set(CMAKE_${language}_FLAGS_SANITIZE "-g -O1 ${mech9_sanitizers}")
+  set(CMAKE_${language}_FLAGS_SANITIZE "-g -O1 ${mech9_sanitizers} ${mech9_no_false_warnings}")
   set(CMAKE_${language}_FLAGS_COVERAGE "-g -O0 --coverage")
 endforeach()
 
@@ -28,8 +31,11 @@ add_compile_options("$<$<COMPILE_LANGUAGE:Fortran>:${MECH9_FORTRAN_OPTIONS}>")
 if(MECH9_NATIVE)
   add_compile_options(-march=native)
 endif()
-if(MECH9_LTO)
-  # fat objects: the library can also be linked without it
-  add_compile_options(-flto=auto -ffat-lto-objects)
-  add_link_options(-flto=auto)
+
+# Across files: the library carries both kinds of code (fat objects). mech9k and mech9d are linked with the one,
+# which takes seconds; unit tests and users' programs with the other, at once.
+if(MECH9_LTO AND CMAKE_BUILD_TYPE STREQUAL "Release")
+  set(MECH9_LTO_COMPILE -flto=auto -ffat-lto-objects)
+  set(MECH9_LTO_LINK -flto=auto)
+  set(MECH9_LTO_NO_LINK -fno-lto)
 endif()
