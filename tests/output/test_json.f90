@@ -1,5 +1,5 @@
 !> Tests of mech9_json: documents letter by letter, as the standard (RFC 8259) has them.
-program json_test
+program test_json
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_internal, exit_file
   use mech9_json, only: json_type
@@ -140,4 +140,4 @@ contains
     read (unit) text
     close (unit)
   end function file_text
-end program json_test
+end program test_json

@@ -1,7 +1,7 @@
 !> Tests of mech9_number_format against the compiler's formatted write, which is exact, and by
 !> reading back. The hard cases were found by a search in exact integers (a m mod M next to M/2)
 !> and their digits by arbitrary-precision arithmetic.
-program number_format_test
+program test_number_format
   use mech9_kinds, only: wp, long
   use mech9_clock, only: seconds
   use mech9_number_format, only: number_format_type, number_width
@@ -189,4 +189,4 @@ contains
     print '(2(f0.1,a))', own/many*1.0e9_wp, ' ns a number, formatted write ', compilers/many*1.0e9_wp, ' ns'
     call tester%is_true(3*own < compilers, 'at least three times as fast as the formatted write')
   end subroutine test_speed
-end program number_format_test
+end program test_number_format

@@ -1,5 +1,5 @@
 !> Tests of mech9_table: what stands in the file is read back with plain reads.
-program table_test
+program test_table
   use mech9_kinds, only: wp
   use mech9_clock, only: seconds
   use mech9_error, only: error_type, exit_file, exit_internal
@@ -210,4 +210,4 @@ contains
     end do
     close (unit)
   end subroutine read_lines
-end program table_test
+end program test_table

@@ -1,5 +1,5 @@
 !> Tests of mech9_command_line: the words are an array, so that any command line can be tried here.
-program command_line_test
+program test_command_line
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
   use mech9_options, only: options_table, option_names, find_option, needed_argument
@@ -180,4 +180,4 @@ contains
       first = next + 1
     end do
   end subroutine test_help
-end program command_line_test
+end program test_command_line
