@@ -257,39 +257,64 @@ contains
     integer, intent(in) :: source
     type(value_type), intent(inout) :: value
     type(diagnostics_type), intent(inout) :: diagnostics
-    character :: quote
-    integer :: first, line_end, n
-    character(len=:), allocatable :: content
+    integer :: first
+    logical :: closed
 
     first = at
-    quote = text(at:at)
-    line_end = at
-    call skip_line(text, line_end)
-    allocate (character(len=line_end - first) :: content)
-    n = 0
-    do
-      at = at + 1
-      if (at >= line_end) exit
-      if (text(at:at) == quote) then
-        if (at + 1 >= line_end) exit
-        if (text(at + 1:at + 1) /= quote) exit
-        at = at + 1
-      end if
-      n = n + 1
-      content(n:n) = text(at:at)
-    end do
-    if (at >= line_end) then
-      value%kind = value_bad
-      value%span = span_type(source, first, line_end - 1)
-      call diagnostics%add(span_type(source, first, first), 'the text that begins here has no closing '//quote)
-      if (closes_group(text(first:line_end - 1))) at = first + len_trim(text(first:line_end - 1)) - 1
-    else
+    call find_closing_quote(text, at, closed)
+    if (closed) then
       value%kind = value_text
-      value%text = content(:n)
+      value%text = without_doubled(text(first + 1:at - 1), text(first:first))
       value%span = span_type(source, first, at)
       at = at + 1
+    else
+      value%kind = value_bad
+      value%span = span_type(source, first, at - 1)
+      call diagnostics%add(span_type(source, first, first), 'the text that begins here has no closing '//text(first:first))
+      if (closes_group(text(first:at - 1))) at = first + len_trim(text(first:at - 1)) - 1
     end if
   end subroutine scan_text
+
+  !> From an opening quote to the closing one, or to the end of the line.
+  pure subroutine find_closing_quote(text, at, closed)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+    logical, intent(out) :: closed
+    integer :: first
+
+    first = at
+    closed = .false.
+    do
+      at = at + 1
+      if (at > len(text)) return
+      if (index(line_ends, text(at:at)) > 0) return
+      if (text(at:at) /= text(first:first)) cycle
+      closed = .true.
+      if (at == len(text)) return
+      if (text(at + 1:at + 1) /= text(first:first)) return
+      closed = .false.
+      at = at + 1
+    end do
+  end subroutine find_closing_quote
+
+  !> The text with each doubled quote written once.
+  pure function without_doubled(text, quote) result(content)
+    character(len=*), intent(in) :: text
+    character, intent(in) :: quote
+    character(len=:), allocatable :: content
+    integer :: i, n
+
+    content = text
+    n = 0
+    i = 0
+    do while (i < len(text))
+      i = i + 1
+      n = n + 1
+      content(n:n) = text(i:i)
+      if (text(i:i) == quote) i = i + 1
+    end do
+    content = content(:n)
+  end function without_doubled
 
   !> A line with a forgotten quote whose last mark is a slash: that slash most likely ends the group.
   pure logical function closes_group(line)
