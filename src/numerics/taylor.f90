@@ -84,6 +84,7 @@ module mech9_taylor
   end interface max
 
 contains
+
   elemental type(taylor) function power_ti(a, n)
     type(taylor), intent(in) :: a
     integer, intent(in) :: n
@@ -103,14 +104,24 @@ contains
   elemental type(taylor) function power_tr(a, b)
     type(taylor), intent(in) :: a
     real(wp), intent(in) :: b
+    real(wp) :: first, second
 
-    power_tr = chain(a, a%value**b, b*a%value**(b - 1.0_wp), b*(b - 1.0_wp)*a%value**(b - 2.0_wp))
+    ! a factor of zero stands against an infinite power: x**1.0 at 0
+    first = 0.0_wp
+    second = 0.0_wp
+    if (abs(b) > 0.0_wp) first = b*a%value**(b - 1.0_wp)
+    if (abs(b*(b - 1.0_wp)) > 0.0_wp) second = b*(b - 1.0_wp)*a%value**(b - 2.0_wp)
+    power_tr = chain(a, a%value**b, first, second)
   end function power_tr
 
   elemental type(taylor) function power_tt(a, b)
     type(taylor), intent(in) :: a, b
 
-    power_tt = exp_t(b*log_t(a))
+    if (abs(b%first) <= 0.0_wp .and. abs(b%second) <= 0.0_wp) then
+      power_tt = power_tr(a, b%value)   ! also where there is no logarithm
+    else
+      power_tt = exp_t(b*log_t(a))
+    end if
   end function power_tt
 
   elemental type(taylor) function power_rt(a, b)
