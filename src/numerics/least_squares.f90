@@ -188,7 +188,16 @@ contains
       do i = k + 1, m
         s = s + a(i, k)**2
       end do
-      if (.not. s > 0.0_wp) cycle
+      if (.not. s > 0.0_wp) then
+        ! nothing to reflect away, but row k no longer counts in what remains of the others
+        do j = k + 1, n
+          norms(j) = 0.0_wp
+          do i = k + 1, m
+            norms(j) = norms(j) + a(i, j)**2
+          end do
+        end do
+        cycle
+      end if
       beta = -sign(sqrt(a(k, k)**2 + s), a(k, k))
       tau(k) = (beta - a(k, k))/beta
       s = 1.0_wp/(a(k, k) - beta)
