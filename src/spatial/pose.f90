@@ -61,7 +61,9 @@ contains
     if (.not. ok) return
     pose%p = r1
     pose%r(:, 1) = d
-    pose%r(:, 2) = unit(n)
+    ! close to one line the product stands across d to few digits only
+    n = unit(n)
+    pose%r(:, 2) = unit(n - dot_product(n, d)*d)
     pose%r(:, 3) = cross(pose%r(:, 1), pose%r(:, 2))
   end subroutine pose_from_points
 
