@@ -1,0 +1,178 @@
+!> The sign of a determinant from its factors, against exact determinants of whole numbers.
+program test_determinant_sign
+  use mech9_kinds, only: wp, long
+  use mech9_random, only: random_type
+  use mech9_least_squares, only: least_squares_type
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+
+  call small_matrices(test)
+  call permutations(test)
+  call large_matrices(test)
+  call other_shapes(test)
+  call test%finish()
+
+contains
+
+  !> Exact determinant by Bareiss' elimination, which divides without remainder.
+  function determinant(matrix) result(value)
+    integer, intent(in) :: matrix(:, :)
+    integer(long) :: value
+    integer(long) :: a(size(matrix, 1), size(matrix, 1)), row(size(matrix, 1)), last
+    integer :: n, i, j, k, sign
+
+    n = size(matrix, 1)
+    a = matrix
+    sign = 1
+    last = 1
+    do k = 1, n - 1
+      if (a(k, k) == 0) then
+        i = findloc(a(k:, k) /= 0_long, .true., dim=1) + k - 1
+        if (i < k) then
+          value = 0
+          return
+        end if
+        row = a(k, :)
+        a(k, :) = a(i, :)
+        a(i, :) = row
+        sign = -sign
+      end if
+      do i = k + 1, n
+        do j = k + 1, n
+          a(i, j) = (a(i, j)*a(k, k) - a(i, k)*a(k, j))/last
+        end do
+      end do
+      last = a(k, k)
+    end do
+    value = sign*a(n, n)
+  end function determinant
+
+  function random_integer(random, most) result(number)
+    type(random_type), intent(inout) :: random
+    integer, intent(in) :: most
+    integer :: number
+
+    number = nint((most + 0.49_wp)*random%symmetric())
+  end function random_integer
+
+  function random_integers(random, n, most) result(a)
+    type(random_type), intent(inout) :: random
+    integer, intent(in) :: n, most
+    integer :: a(n, n), i, j
+
+    do j = 1, n
+      do i = 1, n
+        a(i, j) = random_integer(random, most)
+      end do
+    end do
+  end function random_integers
+
+  subroutine check_matrix(test, matrix, value, why)
+    type(tester_type), intent(inout) :: test
+    integer, intent(in) :: matrix(:, :)
+    integer(long), intent(in) :: value
+    character(len=*), intent(in) :: why
+    type(least_squares_type) :: system
+    integer :: n
+
+    n = size(matrix, 1)
+    call system%create(n, n)
+    system%a = matrix
+    call system%factorize()
+    if (value == 0) then
+      call test%is_true(system%rank() < n, why//': singular')
+    else
+      call test%is_true(system%rank() == n, why//': regular')
+      call test%is_true(system%determinant_sign() == merge(1, -1, value > 0), why//': sign')
+    end if
+  end subroutine check_matrix
+
+  !> Entries -1 .. 1 give many zeros and singular matrices, -3 .. 3 few.
+  subroutine small_matrices(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    integer, allocatable :: a(:, :)
+    integer :: n, trial
+
+    do n = 1, 8
+      do trial = 1, 200
+        a = random_integers(random, n, 1 + 2*mod(trial, 2))
+        call check_matrix(test, a, determinant(a), 'a small matrix')
+      end do
+    end do
+  end subroutine small_matrices
+
+  !> All of three rows, with each choice of signs.
+  subroutine permutations(test)
+    type(tester_type), intent(inout) :: test
+    integer, parameter :: orders(3, 6) = reshape([1, 2, 3, 2, 3, 1, 3, 1, 2, 2, 1, 3, 1, 3, 2, 3, 2, 1], [3, 6])
+    integer :: a(3, 3), i, j, signs, value
+
+    do i = 1, 6
+      do signs = 0, 7
+        a = 0
+        value = merge(1, -1, i <= 3)
+        do j = 1, 3
+          a(orders(j, i), j) = merge(-2, 2, btest(signs, j - 1))
+          value = value*a(orders(j, i), j)
+        end do
+        call check_matrix(test, a, int(value, long), 'a permutation')
+      end do
+    end do
+  end subroutine permutations
+
+  !> Blocks along the diagonal whose determinants are exact, mixed by additions of rows, which change no
+  !> determinant, and by exchanges, which change its sign; past the size from which LAPACK is called.
+  subroutine large_matrices(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    integer, allocatable :: a(:, :), block(:, :), row(:)
+    integer :: n, trial, first, i, j, k, value
+    integer(long) :: part
+
+    do n = 20, 40, 4
+      do trial = 1, 20
+        allocate (a(n, n), source=0)
+        value = 1
+        first = 1
+        do while (first <= n)
+          block = random_integers(random, 4, 3)
+          part = determinant(block)
+          if (part == 0) cycle
+          if (part < 0) value = -value
+          a(first:first + 3, first:first + 3) = block
+          first = first + 4
+        end do
+        do k = 1, 2*n
+          i = 1 + mod(abs(random_integer(random, 100000)), n)
+          j = 1 + mod(abs(random_integer(random, 100000)), n)
+          if (i == j) cycle
+          if (mod(k, 2) == 0) then
+            row = a(i, :)
+            a(i, :) = a(j, :)
+            a(j, :) = row
+            value = -value
+          else if (maxval(abs(a(i, :))) < 20) then   ! the condition stays moderate
+            a(i, :) = a(i, :) + a(j, :)
+          end if
+        end do
+        call check_matrix(test, a, int(value, long), 'a large matrix')
+        deallocate (a)
+      end do
+    end do
+  end subroutine large_matrices
+
+  subroutine other_shapes(test)
+    type(tester_type), intent(inout) :: test
+    type(least_squares_type) :: system
+
+    call system%create(3, 2)
+    system%a = -1.0_wp
+    call system%factorize()
+    call test%is_true(system%determinant_sign() == 1, 'what is not square has no sign')
+    call system%create(0, 0)
+    call system%factorize()
+    call test%is_true(system%determinant_sign() == 1, 'the determinant of nothing is one')
+  end subroutine other_shapes
+end program test_determinant_sign

@@ -1,0 +1,321 @@
+!> Least squares against their definition, against normal equations in quadruple precision, and
+!> ranks and conditioning against singular values.
+program test_least_squares
+  use mech9_kinds, only: wp
+  use mech9_random, only: random_type
+  use mech9_random_geometry, only: random_matrix
+  use mech9_least_squares, only: least_squares_type
+  use mech9_lapack, only: dgesvd
+  use mech9_testing, only: tester_type
+  implicit none
+  integer, parameter :: quad = selected_real_kind(30)
+  type(tester_type) :: test
+
+  call all_shapes(test)
+  call against_normal_equations(test)
+  call deficient(test)
+  call hidden_behind_zeros(test)
+  call zero_matrices(test)
+  call known_conditioning(test)
+  call conditioning_within_bounds(test)
+  call several_right_sides(test)
+  call test%finish()
+
+contains
+
+  !> Singular values, the largest first.
+  function singular_values(a) result(s)
+    real(wp), intent(in) :: a(:, :)
+    real(wp) :: s(min(size(a, 1), size(a, 2)))
+    real(wp) :: copy(size(a, 1), size(a, 2)), u(size(a, 1), size(a, 1)), vt(1, 1), work(10*(size(a, 1) + size(a, 2)))
+    integer :: info
+
+    copy = a
+    ! without vectors LAPACK takes another way, which divides by zero on purpose
+    call dgesvd('A', 'N', size(a, 1), size(a, 2), copy, size(a, 1), s, u, size(a, 1), vt, 1, work, size(work), info)
+    if (info /= 0) error stop 'singular values did not converge'
+  end function singular_values
+
+  !> How far x is from least squares: A^T (b - A x), in quadruple precision, against what a solution of a
+  !> problem changed in its last digits leaves there, |A| (|A| |x| + |b|).
+  real(wp) function normality(a, b, x)
+    real(wp), intent(in) :: a(:, :), b(:), x(:)
+    real(quad) :: remains(size(b))
+    real(wp) :: size_a
+    integer :: j
+
+    remains = b
+    do j = 1, size(x)
+      remains = remains - real(a(:, j), quad)*x(j)
+    end do
+    normality = 0.0_wp
+    do j = 1, size(x)
+      normality = max(normality, real(abs(sum(real(a(:, j), quad)*remains)), wp))
+    end do
+    size_a = norm2(a)
+    normality = normality/max(size_a*(size_a*norm2(x) + norm2(b)), tiny(size_a))
+  end function normality
+
+  !> Each shape up to 60 equations in 40 unknowns: the remainder stands across all columns.
+  subroutine all_shapes(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    type(least_squares_type) :: system
+    real(wp), allocatable :: a(:, :), b(:), b_kept(:), x(:)
+    real(wp) :: worst, worst_remainder, remainder
+    logical :: full
+    integer :: m, n
+
+    worst = 0.0_wp
+    worst_remainder = 0.0_wp
+    full = .true.
+    do n = 1, 40
+      if (allocated(x)) deallocate (x)
+      allocate (x(n))
+      do m = 1, 60
+        a = random_matrix(random, m, n)
+        b = reshape(random_matrix(random, m, 1), [m])
+        b_kept = b
+        call system%create(m, n)
+        system%a = a
+        call system%factorize()
+        full = full .and. system%rank() == min(m, n)
+        call system%solve(b, x, remainder)
+        worst = max(worst, normality(a, b_kept, x))
+        worst_remainder = max(worst_remainder, abs(remainder - norm2(b_kept - matmul(a, x)))/(norm2(a)*norm2(x) + norm2(b_kept)))
+      end do
+    end do
+    call test%is_true(full, 'random matrices have full rank')
+    ! Householder factors are exact for a matrix that differs by some roundings; sixty of them add up at worst
+    call test%near(worst, 0.0_wp, 20.0_wp*epsilon(worst), 'the remainder stands across all columns, all shapes')
+    call test%near(worst_remainder, 0.0_wp, 20.0_wp*epsilon(worst), 'its length is as stated, all shapes')
+  end subroutine all_shapes
+
+  !> Solution of A^T A x = A^T b by Cholesky's factorization, in quadruple precision.
+  function normal_solution(a, b) result(x)
+    real(wp), intent(in) :: a(:, :), b(:)
+    real(wp) :: x(size(a, 2))
+    real(quad) :: c(size(a, 1), size(a, 2)), g(size(a, 2), size(a, 2)), y(size(a, 2))
+    integer :: j, k, n
+
+    n = size(a, 2)
+    c = a
+    do j = 1, n
+      y(j) = sum(c(:, j)*b)
+      do k = 1, j
+        g(j, k) = sum(c(:, j)*c(:, k))
+      end do
+    end do
+    do j = 1, n   ! lower triangle, row by row
+      do k = 1, j - 1
+        g(j, k) = (g(j, k) - sum(g(j, 1:k - 1)*g(k, 1:k - 1)))/g(k, k)
+      end do
+      g(j, j) = sqrt(g(j, j) - sum(g(j, 1:j - 1)**2))
+    end do
+    do j = 1, n
+      y(j) = (y(j) - sum(g(j, 1:j - 1)*y(1:j - 1)))/g(j, j)
+    end do
+    do j = n, 1, -1
+      y(j) = (y(j) - sum(g(j + 1:n, j)*y(j + 1:n)))/g(j, j)
+    end do
+    x = real(y, wp)
+  end function normal_solution
+
+  !> Solutions themselves, within what the condition of the problem allows.
+  subroutine against_normal_equations(test)
+    type(tester_type), intent(inout) :: test
+    integer, parameter :: rows(9) = [1, 2, 3, 6, 12, 23, 25, 40, 60], columns(8) = [1, 2, 3, 6, 12, 23, 24, 40]
+    type(random_type) :: random
+    type(least_squares_type) :: system
+    real(wp), allocatable :: a(:, :), b(:), x(:), expected(:), s(:)
+    real(wp) :: condition, remainder, allowed
+    integer :: i, j, m, n
+
+    do j = 1, size(columns)
+      n = columns(j)
+      if (allocated(x)) deallocate (x)
+      allocate (x(n))
+      do i = 1, size(rows)
+        m = rows(i)
+        if (m < n) cycle
+        a = random_matrix(random, m, n)
+        b = reshape(random_matrix(random, m, 1), [m])
+        expected = normal_solution(a, b)
+        call system%create(m, n)
+        system%a = a
+        call system%factorize()
+        call system%solve(b, x, remainder)
+        s = singular_values(a)
+        condition = s(1)/s(n)
+        ! first-order perturbation: roundings times cond |x| + cond^2 |remainder|/|A|
+        allowed = 20.0_wp*epsilon(allowed)*(condition*norm2(expected) + condition**2*remainder/s(1))
+        call test%is_true(norm2(x - expected) <= allowed, 'the solution of the normal equations')
+      end do
+    end do
+  end subroutine against_normal_equations
+
+  !> Products of thin matrices have the rank of their common side, whatever the shape.
+  subroutine deficient(test)
+    type(tester_type), intent(inout) :: test
+    integer, parameter :: sides(8) = [2, 3, 6, 9, 17, 24, 33, 40]
+    type(random_type) :: random
+    type(least_squares_type) :: system
+    real(wp), allocatable :: a(:, :), b(:), b_kept(:), x(:)
+    integer :: i, j, m, n, r
+
+    do i = 1, size(sides)
+      do j = 1, size(sides)
+        m = sides(i)
+        n = sides(j)
+        do r = 1, min(m, n) - 1
+          a = matmul(random_matrix(random, m, r), random_matrix(random, r, n))
+          b = reshape(random_matrix(random, m, 1), [m])
+          b_kept = b
+          if (allocated(x)) deallocate (x)
+          allocate (x(n))
+          call system%create(m, n)
+          system%a = a
+          call system%factorize()
+          call test%is_true(system%rank() == r, 'the rank of a product of thin matrices')
+          call test%is_true(system%conditioning() < 1.0e-12_wp, 'its columns depend on each other')
+          call system%solve(b, x)
+          call test%is_true(count(abs(x) > 0.0_wp) <= r, 'no more unknowns are used than the rank')
+          ! columns left out are combinations of those used, by factors of a few tens at worst
+          call test%near(normality(a, b_kept, x), 0.0_wp, 1.0e-13_wp, 'still least squares')
+        end do
+      end do
+    end do
+  end subroutine deficient
+
+  !> Columns along the axes: nothing below the diagonal is left to be reflected away, and yet the columns
+  !> must be chosen by what remains of them.
+  subroutine hidden_behind_zeros(test)
+    type(tester_type), intent(inout) :: test
+    type(least_squares_type) :: system
+    real(wp) :: x(3), b(3), remainder
+    integer, parameter :: entries(9) = [10, 0, 0, 9, 0, 0, 0, 1, 0]
+    integer :: shift, n
+
+    call system%create(3, 3)
+    do shift = 0, 2
+      system%a = cshift(real(reshape(entries, [3, 3]), wp), shift, dim=2)
+      call system%factorize()
+      call test%is_true(system%rank() == 2, 'two parallel columns and one across have rank 2')
+      b = [5.0_wp, 7.0_wp, 2.0_wp]
+      call system%solve(b, x, remainder)
+      call test%near(remainder, 2.0_wp, 1.0e-15_wp, 'only what no column reaches remains')
+    end do
+
+    do n = 1, 30   ! upper triangles of ones: the number of different rows
+      call system%create(n, n + 2)
+      system%a = 0.0_wp
+      do shift = 1, n
+        system%a(:shift, shift) = 1.0_wp
+      end do
+      system%a(:, n + 1) = system%a(:, n)
+      system%a(1, n + 2) = 3.0_wp
+      call system%factorize()
+      call test%is_true(system%rank() == n, 'a triangle with repeated columns has full row rank')
+    end do
+  end subroutine hidden_behind_zeros
+
+  subroutine zero_matrices(test)
+    type(tester_type), intent(inout) :: test
+    type(least_squares_type) :: system
+    real(wp) :: x(30), b(30), remainder
+    integer :: n
+
+    do n = 0, 30, 10
+      call system%create(4, n)
+      system%a = 0.0_wp
+      call system%factorize()
+      b(1:4) = [2.0_wp, 0.0_wp, 1.0_wp, 2.0_wp]
+      call system%solve(b(1:4), x(1:n), remainder)
+      call test%is_true(system%rank() == 0, 'a matrix of zeros has no rank')
+      call test%is_true(all(abs(x(1:n)) <= 0.0_wp), 'it moves nothing')
+      call test%near(remainder, 3.0_wp, 1.0e-15_wp, 'all remains')
+    end do
+    call test%near(system%conditioning(), 0.0_wp, 0.0_wp, 'columns of zeros depend on each other')
+    call system%create(3, 0)
+    call test%near(system%conditioning(), 1.0_wp, 0.0_wp, 'no columns do not')
+    call system%create(0, 3)
+    call system%factorize()
+    call system%solve(b(1:0), x(1:3), remainder)
+    call test%is_true(system%rank() == 0 .and. maxval(abs(x(1:3))) <= 0.0_wp, 'no equations ask for nothing')
+  end subroutine zero_matrices
+
+  !> Columns across each other: the quotient of the shortest and the longest.
+  subroutine known_conditioning(test)
+    type(tester_type), intent(inout) :: test
+    type(least_squares_type) :: system
+    integer :: k, i
+
+    do k = 0, 12, 3
+      call system%create(5, 4)
+      system%a = 0.0_wp
+      do i = 1, 4
+        system%a(i + 1, i) = 3.0_wp
+      end do
+      system%a(3, 2) = -3.0_wp*10.0_wp**(-k)
+      call system%factorize()
+      call test%near(system%conditioning()*10.0_wp**k, 1.0_wp, 1.0e-15_wp, 'columns across each other')
+      call test%is_true(system%rank(1.0e-7_wp) == merge(4, 3, k < 7), 'rank by a tolerance of the caller')
+    end do
+    call system%create(2, 3)
+    system%a = reshape([1.0_wp, 2.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 1.0_wp], [2, 3])
+    call system%factorize()
+    call test%near(system%conditioning(), 0.0_wp, 0.0_wp, 'more columns than equations depend on each other')
+  end subroutine known_conditioning
+
+  !> Pivots against singular values: |r11| <= s1 <= sqrt(n) |r11| and
+  !> sn <= |rnn| <= sn sqrt(4^n + 6n - 1)/3 (Lawson and Hanson, chapter 6).
+  subroutine conditioning_within_bounds(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    type(least_squares_type) :: system
+    real(wp), allocatable :: a(:, :), s(:)
+    real(wp) :: true, factor
+    integer :: n, trial
+
+    do trial = 1, 100
+      do n = 1, 6
+        a = random_matrix(random, n + mod(trial, 3), n)
+        a(:, n) = a(:, n)*10.0_wp**(-mod(trial, 8))
+        call system%create(size(a, 1), n)
+        system%a = a
+        call system%factorize()
+        s = singular_values(a)
+        true = s(n)/s(1)
+        factor = sqrt(real(n, wp))*sqrt(4.0_wp**n + 6*n - 1)/3.0_wp
+        call test%is_true(system%conditioning() >= true*(1.0_wp - 1.0e-6_wp) .and. &
+                          system%conditioning() <= true*factor*(1.0_wp + 1.0e-6_wp), 'pivots between their bounds')
+      end do
+    end do
+  end subroutine conditioning_within_bounds
+
+  !> One factorization serves several right-hand sides.
+  subroutine several_right_sides(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    type(least_squares_type) :: system
+    real(wp), allocatable :: a(:, :), b(:), x(:), expected(:), s(:)
+    integer :: n, k
+
+    do n = 6, 30, 24
+      a = random_matrix(random, n + 2, n)
+      s = singular_values(a)
+      call system%create(n + 2, n)
+      system%a = a
+      call system%factorize()
+      if (allocated(x)) deallocate (x)
+      allocate (x(n))
+      do k = 1, 3
+        expected = reshape(random_matrix(random, n, 1), [n])
+        b = matmul(a, expected)
+        call system%solve(b, x)
+        call test%is_true(norm2(x - expected) <= 20.0_wp*epsilon(x)*s(1)/s(n)*norm2(expected), &
+                          'a solution that is known, once more')
+      end do
+    end do
+  end subroutine several_right_sides
+end program test_least_squares

@@ -1,0 +1,193 @@
+!> Rotations: matrices against quaternions, rotation vectors at all angles, vectors.
+program test_rotation
+  use mech9_kinds, only: wp, pi
+  use mech9_random, only: random_type
+  use mech9_rotation, only: identity, cross, unit, about_axis, about_z, rotation_vector, axial_vector
+  use mech9_random_geometry, only: random_vector, random_unit, random_rotation, rotation_from_quaternion
+  use mech9_testing, only: tester_type
+  implicit none
+  !> A few roundings of numbers up to one.
+  real(wp), parameter :: round_off = 2.0e-15_wp
+  type(tester_type) :: test
+
+  call vectors(test)
+  call unit_vectors(test)
+  call axis_and_angle(test)
+  call vector_of_rotation(test)
+  call vector_of_small_rotation(test)
+  call half_turns(test)
+  call vector_of_any_rotation(test)
+  call test%finish()
+
+contains
+
+  subroutine vectors(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: a(3), b(3), c(3), matrix(3, 3)
+    integer :: i
+
+    do i = 1, 50
+      a = random_vector(random)
+      b = random_vector(random)
+      c = random_vector(random)
+      call test%near(dot_product(cross(a, b), a), 0.0_wp, round_off, 'a product stands across its first factor')
+      call test%near(dot_product(cross(a, b), b), 0.0_wp, round_off, 'and across its second')
+      call test%near(norm2(cross(a, b))**2, dot_product(a, a)*dot_product(b, b) - dot_product(a, b)**2, 2.0_wp*round_off, &
+                     'Lagrange''s identity')
+      call test%near(maxval(abs(cross(a, cross(b, c)) - (b*dot_product(a, c) - c*dot_product(a, b)))), 0.0_wp, &
+                     2.0_wp*round_off, 'product of three')
+      matrix(:, 1) = cross(a, identity(:, 1))
+      matrix(:, 2) = cross(a, identity(:, 2))
+      matrix(:, 3) = cross(a, identity(:, 3))
+      call test%near(maxval(abs(axial_vector(matrix) - a)), 0.0_wp, 0.0_wp, 'vector of a skew matrix')
+      call test%near(maxval(abs(axial_vector(matrix + outer(b, b)) - a)), 0.0_wp, round_off, &
+                     'a symmetric part does not count')
+    end do
+    call test%near(maxval(abs(cross(identity(:, 1), identity(:, 2)) - identity(:, 3))), 0.0_wp, 0.0_wp, 'x by y is z')
+  end subroutine vectors
+
+  pure function outer(a, b) result(c)
+    real(wp), intent(in) :: a(3), b(3)
+    real(wp) :: c(3, 3)
+
+    c = spread(a, 2, 3)*spread(b, 1, 3)
+  end function outer
+
+  !> Vectors of any size but zero, without overflow or underflow.
+  subroutine unit_vectors(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: a(3), e(3)
+    integer :: k
+
+    do k = -290, 300, 10
+      a = random_unit(random)
+      e = unit(a*10.0_wp**k)
+      call test%near(maxval(abs(e - a)), 0.0_wp, round_off, 'a direction of any length')
+      call test%near(norm2(e), 1.0_wp, round_off, 'length one')
+    end do
+    call test%near(maxval(abs(unit([0.0_wp, 0.0_wp, 0.0_wp]))), 0.0_wp, 0.0_wp, 'zero stays zero')
+    e = unit([huge(1.0_wp), huge(1.0_wp), 0.0_wp])
+    call test%near(maxval(abs(e - [sqrt(0.5_wp), sqrt(0.5_wp), 0.0_wp])), 0.0_wp, round_off, 'the longest vector')
+  end subroutine unit_vectors
+
+  subroutine axis_and_angle(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: e(3), angle, other, r(3, 3), a(3)
+    integer :: i
+
+    do i = 1, 100
+      e = random_unit(random)
+      angle = 10.0_wp*random%symmetric()
+      other = 10.0_wp*random%symmetric()
+      r = about_axis(e, angle)
+      call test%near(maxval(abs(matmul(r, transpose(r)) - identity)), 0.0_wp, round_off, 'R R^T = 1')
+      call test%near(maxval(abs(cross(r(:, 1), r(:, 2)) - r(:, 3))), 0.0_wp, round_off, 'right-handed')
+      call test%near(maxval(abs(matmul(r, e) - e)), 0.0_wp, round_off, 'the axis stays')
+      call test%near(maxval(abs(r - rotation_from_quaternion([cos(0.5_wp*angle), sin(0.5_wp*angle)*e]))), 0.0_wp, &
+                     round_off, 'the rotation of its quaternion')
+      ! angles up to twenty: roundings of the sum
+      call test%near(maxval(abs(matmul(r, about_axis(e, other)) - about_axis(e, angle + other))), 0.0_wp, &
+                     5.0_wp*round_off, 'angles add')
+      a = random_vector(random)
+      call test%near(maxval(abs(matmul(r, a) - (cos(angle)*a + sin(angle)*cross(e, a) &
+                                                + (1.0_wp - cos(angle))*dot_product(e, a)*e))), 0.0_wp, round_off, &
+                     'Rodrigues'' formula')
+      call test%near(maxval(abs(about_z(angle) - about_axis([0.0_wp, 0.0_wp, 1.0_wp], angle))), 0.0_wp, round_off, 'about z')
+    end do
+    call test%near(maxval(abs(matmul(about_z(0.5_wp*pi), identity(:, 1)) - identity(:, 2))), 0.0_wp, round_off, &
+                   'a quarter turn about z brings x to y')
+  end subroutine axis_and_angle
+
+  !> From 0 to 180 degrees, close to both, and close to all places where formulas change.
+  subroutine vector_of_rotation(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: e(3), angle, offset, phi(3)
+    integer :: i, k, place
+
+    do i = 1, 40
+      e = random_unit(random)
+      do place = 0, 2
+        do k = -14, 0
+          offset = 1.5_wp*10.0_wp**k
+          angle = 0.5_wp*pi*place
+          angle = merge(angle - offset, angle + offset, place == 2)
+          phi = rotation_vector(about_axis(e, angle))
+          call test%near(maxval(abs(phi - angle*e)), 0.0_wp, 4.0_wp*round_off, 'axis times angle')
+          if (place /= 1) cycle
+          phi = rotation_vector(about_axis(e, angle - 2.0_wp*offset))
+          if (angle < 2.0_wp*offset) phi = -phi   ! past zero the axis points the other way
+          if (angle >= 2.0_wp*offset) &
+            call test%near(maxval(abs(phi - (angle - 2.0_wp*offset)*e)), 0.0_wp, 4.0_wp*round_off, 'below a right angle')
+        end do
+      end do
+      phi = rotation_vector(about_axis(e, pi + 0.3_wp))
+      call test%near(maxval(abs(phi + (pi - 0.3_wp)*e)), 0.0_wp, 4.0_wp*round_off, 'beyond a half turn: the shorter way back')
+    end do
+  end subroutine vector_of_rotation
+
+  !> Small angles keep all their digits: closures are measured by them.
+  subroutine vector_of_small_rotation(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: e(3), angle, phi(3)
+    integer :: i, k
+
+    do i = 1, 20
+      e = random_unit(random)
+      do k = -150, -3
+        angle = 1.7_wp*10.0_wp**k
+        phi = rotation_vector(about_axis(e, angle))
+        ! the skew part is a difference of two entries that hold 1 - cos beside sin: angle/2 roundings more
+        call test%is_true(maxval(abs(phi - angle*e)) <= round_off*angle, 'a small rotation, to its last digits')
+      end do
+    end do
+    call test%near(maxval(abs(rotation_vector(identity))), 0.0_wp, 0.0_wp, 'no rotation')
+  end subroutine vector_of_small_rotation
+
+  !> At 180 degrees the axis is known but for its sense.
+  subroutine half_turns(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: e(3), phi(3), r(3, 3)
+    integer :: i, j, k
+
+    do i = 1, 60
+      e = random_unit(random)
+      if (i <= 27) then
+        ! along the axes and the diagonals
+        e = real([mod(i - 1, 3) - 1, mod((i - 1)/3, 3) - 1, (i - 1)/9 - 1], wp)
+        if (norm2(e) < 0.5_wp) cycle
+        e = e/norm2(e)
+      end if
+      do k = 1, 3
+        do j = 1, 3
+          r(j, k) = 2.0_wp*e(j)*e(k) - identity(j, k)
+        end do
+      end do
+      phi = rotation_vector(r)
+      call test%near(norm2(phi), pi, round_off, 'a half turn')
+      call test%near(min(norm2(phi - pi*e), norm2(phi + pi*e)), 0.0_wp, 4.0_wp*round_off, 'about its axis')
+    end do
+  end subroutine half_turns
+
+  subroutine vector_of_any_rotation(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: r(3, 3), phi(3), angle
+    integer :: i
+
+    do i = 1, 1000
+      r = random_rotation(random)
+      phi = rotation_vector(r)
+      angle = norm2(phi)
+      call test%is_true(angle <= pi*(1.0_wp + epsilon(pi)), 'no angle exceeds a half turn')
+      call test%near(maxval(abs(about_axis(unit(phi), angle) - r)), 0.0_wp, 2.0_wp*round_off, 'back to the same rotation')
+      call test%near(maxval(abs(rotation_vector(transpose(r)) + phi)), 0.0_wp, 4.0_wp*round_off, &
+                     'the opposite rotation has the opposite vector')
+    end do
+  end subroutine vector_of_any_rotation
+end program test_rotation
