@@ -97,13 +97,13 @@ contains
 
     call read_document(options%file, document, diagnostics)
     do i = 1, size(options%settings)
-      if (.not. diagnostics%failed()) call apply_setting(document, options%settings(i)%text, diagnostics)
+      call apply_setting(document, options%settings(i)%text, diagnostics)
     end do
     if (options%structure) then
-      if (.not. diagnostics%failed()) call read_structure_only(document, structure, vectors, diagnostics)
+      call read_structure_only(document, structure, vectors, diagnostics)
       if (.not. diagnostics%failed()) call print_structure(output_unit, vectors)
     else
-      if (.not. diagnostics%failed()) call read_mechanism(document, task%needs_drives, mechanism, diagnostics)
+      call read_mechanism(document, task%needs_drives, mechanism, diagnostics)
       if (.not. diagnostics%failed()) call task%work(options, mechanism, diagnostics)
     end if
     call diagnostics%report(error_unit)
