@@ -96,6 +96,8 @@ contains
     f = r(:, 3) - r(:, 1)
     e(:, 1) = unit_taylor(d)
     e(:, 2) = unit_taylor(cross_taylor(d, f))
+    ! close to one line the product stands across d to few digits only
+    e(:, 2) = unit_taylor(e(:, 2) - dot_taylor(e(:, 2), e(:, 1))*e(:, 1))
     e(:, 3) = cross_taylor(e(:, 1), e(:, 2))
     ! plain copies: gfortran 12 takes wrong strides in matmul with the transpose of a component of an array
     a = e%value
@@ -118,11 +120,17 @@ contains
     c(3) = a(1)*b(2) - a(2)*b(1)
   end function cross_taylor
 
+  pure type(taylor) function dot_taylor(a, b)
+    type(taylor), intent(in) :: a(3), b(3)
+
+    dot_taylor = a(1)*b(1) + a(2)*b(2) + a(3)*b(3)
+  end function dot_taylor
+
   pure function unit_taylor(a) result(e)
     type(taylor), intent(in) :: a(3)
     type(taylor) :: e(3)
 
-    e = a/sqrt(a(1)*a(1) + a(2)*a(2) + a(3)*a(3))
+    e = a/sqrt(dot_taylor(a, a))
   end function unit_taylor
 
   !> Points and their derivatives from the form in plain reals: the widest stencil that is at
