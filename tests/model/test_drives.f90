@@ -1,0 +1,194 @@
+!> Drives: values by their formulas, derivatives against differences, tables and where they end.
+program test_drives
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type, place_type, exit_data
+  use mech9_random, only: random_type
+  use mech9_differentiation, only: half_width, derivatives_from_stencil
+  use mech9_spline, only: build_spline
+  use mech9_drive, only: drive_type
+  use mech9_polynomial_drive, only: polynomial_drive_type
+  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_table_drive, only: table_drive_type
+  use mech9_settings, only: time_grid_type
+  use mech9_testing, only: tester_type
+  implicit none
+  !> A few roundings of numbers of order one.
+  real(wp), parameter :: round_off = 1.0e-14_wp
+  type(tester_type) :: test
+
+  call polynomials(test)
+  call harmonics(test)
+  call table_of_cubic(test)
+  call table_of_sine(test)
+  call ends_of_table(test)
+  call time_grid(test)
+  call test%finish()
+
+contains
+
+  real(wp) function value_at(test, drive, t)
+    type(tester_type), intent(inout) :: test
+    class(drive_type), intent(in) :: drive
+    real(wp), intent(in) :: t
+    type(error_type), allocatable :: err
+    real(wp) :: dq, ddq
+
+    call drive%evaluate(t, value_at, dq, ddq, err)
+    if (allocated(err)) call test%no_error(err, 'a drive where it is defined')
+  end function value_at
+
+  !> Derivatives as stated against differences of sixteenth order at h = 1/32: they leave the round-off
+  !> of the values, of order one, times 2/h and 8/h^2.
+  subroutine check_derivatives(test, drive, t, why)
+    type(tester_type), intent(inout) :: test
+    class(drive_type), intent(in) :: drive
+    real(wp), intent(in) :: t
+    character(len=*), intent(in) :: why
+    real(wp), parameter :: h = 1.0_wp/32.0_wp
+    type(error_type), allocatable :: err
+    real(wp) :: values(-half_width:half_width), q, dq, ddq, first, second, error
+    integer :: i
+
+    do i = -half_width, half_width
+      values(i) = value_at(test, drive, t + i*h)
+    end do
+    call derivatives_from_stencil(values, h, first, second, error)
+    call drive%evaluate(t, q, dq, ddq, err)
+    call test%no_error(err, why)
+    call test%near(q, values(0), 0.0_wp, why//': value')
+    call test%near(dq, first, 1.0e-12_wp, why//': first derivative')
+    call test%near(ddq, second, 5.0e-11_wp, why//': second derivative')
+  end subroutine check_derivatives
+
+  subroutine polynomials(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    type(polynomial_drive_type) :: drive
+    type(error_type), allocatable :: err
+    real(wp) :: t, q, dq, ddq
+    integer :: n, i
+
+    do n = 0, 7
+      drive%coefficients = [(random%symmetric(), i=0, n)]
+      t = 1.2_wp*random%symmetric()
+      call test%near(value_at(test, drive, t), sum([(drive%coefficients(i + 1)*t**i, i=0, n)]), round_off, &
+                     'a polynomial is the sum of its powers')
+      call check_derivatives(test, drive, t, 'a polynomial')
+      call drive%evaluate(0.0_wp, q, dq, ddq, err)
+      call test%near(q, drive%coefficients(1), 0.0_wp, 'its value at zero')
+      if (n >= 1) call test%near(dq, drive%coefficients(2), 0.0_wp, 'its rate at zero')
+      if (n >= 2) call test%near(ddq, 2.0_wp*drive%coefficients(3), 0.0_wp, 'its second derivative at zero')
+    end do
+    drive%coefficients = [real(wp) ::]
+    call drive%evaluate(0.7_wp, q, dq, ddq, err)
+    call test%near(maxval(abs([q, dq, ddq])), 0.0_wp, 0.0_wp, 'no coefficients: rest at zero')
+  end subroutine polynomials
+
+  subroutine harmonics(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    type(harmonic_drive_type) :: drive
+    type(error_type), allocatable :: err
+    real(wp) :: t, q, dq, ddq
+    integer :: i
+
+    do i = 1, 20
+      drive%mean = random%symmetric()
+      drive%amplitude = random%symmetric()
+      drive%angular_frequency = 3.0_wp*random%symmetric()
+      drive%phase = 4.0_wp*random%symmetric()
+      t = 2.0_wp*random%symmetric()
+      call check_derivatives(test, drive, t, 'a harmonic')
+      call drive%evaluate(t, q, dq, ddq, err)
+      call test%near(q, drive%mean + drive%amplitude*sin(drive%angular_frequency*t + drive%phase), round_off, 'its formula')
+      call test%near(ddq, -drive%angular_frequency**2*(q - drive%mean), round_off, 'the equation of oscillation')
+      call test%near((drive%angular_frequency*(q - drive%mean))**2 + dq**2, &
+                     (drive%angular_frequency*drive%amplitude)**2, round_off, 'its energy is constant')
+      call test%near(value_at(test, drive, t + 2.0_wp*pi/drive%angular_frequency), q, &
+                     round_off/min(1.0_wp, abs(drive%angular_frequency)), 'its period')
+    end do
+  end subroutine harmonics
+
+  !> Points of a cubic, unevenly spaced, give the cubic.
+  subroutine table_of_cubic(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    type(table_drive_type) :: table
+    type(polynomial_drive_type) :: cubic
+    type(error_type), allocatable :: err
+    real(wp) :: t(12), q(12), from_table(3), from_cubic(3), x
+    integer :: i
+
+    cubic%coefficients = [0.3_wp, -1.0_wp, 0.4_wp, 0.7_wp]
+    t = [(0.2_wp*i + 0.08_wp*random%symmetric(), i=1, 12)]
+    q = [(value_at(test, cubic, t(i)), i=1, 12)]
+    call build_spline(t, q, table%spline, err)
+    call test%no_error(err, 'a table of a cubic')
+    do i = 0, 40
+      x = t(1) + (t(12) - t(1))*i/40.0_wp
+      call table%evaluate(x, from_table(1), from_table(2), from_table(3), err)
+      call test%no_error(err, 'a time within the table')
+      call cubic%evaluate(x, from_cubic(1), from_cubic(2), from_cubic(3), err)
+      ! values up to fourteen, distances down to 0.04: roundings by 2/h and 8/h^2 at worst
+      call test%near(from_table(1), from_cubic(1), 1.0e-14_wp, 'value of a cubic from its table')
+      call test%near(from_table(2), from_cubic(2), 1.0e-13_wp, 'rate of a cubic from its table')
+      call test%near(from_table(3), from_cubic(3), 1.0e-11_wp, 'second derivative of a cubic from its table')
+    end do
+  end subroutine table_of_cubic
+
+  !> Within one piece a table is a cubic, whose derivatives differences find exactly.
+  subroutine table_of_sine(test)
+    type(tester_type), intent(inout) :: test
+    type(table_drive_type) :: table
+    type(error_type), allocatable :: err
+    real(wp) :: t(11)
+    integer :: i
+
+    t = [(0.75_wp*i, i=0, 10)]
+    call build_spline(t, sin(t), table%spline, err)
+    call test%no_error(err, 'a table of a sine')
+    do i = 1, 10
+      call test%near(value_at(test, table, t(i)), sin(t(i)), round_off, 'a table runs through its points')
+      call check_derivatives(test, table, 0.5_wp*(t(i) + t(i + 1)), 'a piece of a table')
+    end do
+  end subroutine table_of_sine
+
+  subroutine ends_of_table(test)
+    type(tester_type), intent(inout) :: test
+    type(table_drive_type) :: table
+    type(error_type), allocatable :: err
+    real(wp) :: t(5), q, dq, ddq
+
+    t = [1.0_wp, 1.5_wp, 2.0_wp, 2.5_wp, 3.0_wp]
+    table%coordinate = 7
+    table%place = place_type(12, 3)
+    call build_spline(t, t**2, table%spline, err)
+    call test%near(value_at(test, table, 1.0_wp), 1.0_wp, round_off, 'the first point belongs to the table')
+    call test%near(value_at(test, table, 3.0_wp), 9.0_wp, round_off, 'and so does the last')
+    call test%near(value_at(test, table, nearest(3.0_wp, 1.0_wp)), 9.0_wp, round_off, 'a last digit more does no harm')
+    call test%near(value_at(test, table, nearest(1.0_wp, -1.0_wp)), 1.0_wp, round_off, 'nor one less at the beginning')
+    call table%evaluate(3.001_wp, q, dq, ddq, err)
+    call test%has_error(err, exit_data, 'after the end of a table')
+    call test%is_true(err%place%line == 12, 'it tells where the drive is written')
+    call test%is_true(index(err%message, 'coordinate 7') > 0 .and. index(err%message, '1 to 3') > 0 .and. &
+                      index(err%message, '3.001') > 0, 'it names the coordinate, the range and the time')
+    call table%evaluate(0.999_wp, q, dq, ddq, err)
+    call test%has_error(err, exit_data, 'before the beginning of a table')
+  end subroutine ends_of_table
+
+  !> Times of results: evenly spaced, the ends exact.
+  subroutine time_grid(test)
+    type(tester_type), intent(inout) :: test
+    type(time_grid_type) :: grid
+    integer :: i
+
+    grid%start = 0.1_wp
+    grid%end = 0.7_wp
+    grid%intervals = 7
+    call test%near(grid%time(0), 0.1_wp, 0.0_wp, 'the first time is the start')
+    call test%near(grid%time(7), 0.7_wp, 0.0_wp, 'the last time is the end')
+    do i = 1, 7
+      call test%near(grid%time(i) - grid%time(i - 1), 0.6_wp/7.0_wp, 2.0e-16_wp, 'times are evenly spaced')
+    end do
+  end subroutine time_grid
+end program test_drives

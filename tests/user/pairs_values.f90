@@ -1,0 +1,43 @@
+!> User pairs for the tests, in plain real numbers; pairs_taylor.f90 holds the same in Taylor arithmetic.
+!> Uses ieee_arithmetic beside the hook.
+submodule (mech9_user_pair_values) test_pairs_values
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  implicit none
+
+contains
+
+  module subroutine user_pair_values(coordinate, q, parameters, r1, r2, r3)
+    integer, intent(in) :: coordinate
+    real(wp), intent(in) :: q
+    real(wp), intent(in) :: parameters(:)
+    real(wp), intent(out) :: r1(3), r2(3), r3(3)
+
+    select case (coordinate)
+    case (1)
+      r1 = parameters(10:12) + parameters(13)*q*parameters(7:9)
+      r2 = r1 + 2.0_wp*(cos(q)*parameters(1:3) + sin(q)*parameters(4:6))
+      r3 = r1 + 0.25_wp*(r2 - r1) - 1.5_wp*parameters(7:9)
+    case (2)
+      r1 = [2.0_wp*cos(q), sin(q), 0.3_wp*q**2]
+      r2 = r1 + [1.0_wp + 0.2_wp*sin(2.0_wp*q), 0.3_wp*q, 0.2_wp*cos(q)]
+      r3 = r1 + [0.1_wp*q, 0.4_wp, -1.0_wp - 0.2_wp*q]
+    case (3)
+      r1 = [q, 2.0_wp*q, 1.0_wp]
+      r2 = r1 + [1.0_wp, 1.0_wp, 1.0_wp]
+      r3 = r1 + [2.0_wp, 2.0_wp, 2.0_wp]
+    case (4)
+      r1 = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (q < 1.0_wp) r1 = [sqrt(1.0_wp - q), q, 0.0_wp]
+      r2 = r1 + [1.0_wp, 0.0_wp, 0.0_wp]
+      r3 = r1 + [0.0_wp, 0.0_wp, -1.0_wp]
+    case (5)
+      r1 = [sin(8.0_wp*q), cos(8.0_wp*q), exp(-2.0_wp*q)]
+      r2 = r1 + [cos(5.0_wp*q), sin(5.0_wp*q), 0.5_wp]
+      r3 = r1 + [0.0_wp, 0.3_wp*sin(q), -1.0_wp]
+    case default
+      r1 = [sin(q), cos(q), q]
+      r2 = r1 + [cos(q), sin(q), 0.3_wp*q]
+      r3 = r1 + 0.8_wp*(r2 - r1) + parameters(1)*[0.6_wp, 0.5_wp, -1.0_wp]
+    end select
+  end subroutine user_pair_values
+end submodule test_pairs_values

@@ -1,0 +1,40 @@
+!> No procedure of a user is linked: whoever asks for one is told so.
+program test_nothing_linked
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_data
+  use mech9_motion_view, only: motion_view_type
+  use mech9_force_sum, only: force_sum_type, new_force_sum
+  use mech9_procedure_pair, only: procedure_pair_type, make_procedure_pair
+  use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
+  use mech9_procedure_load, only: procedure_load_type
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(procedure_pair_type) :: pair
+  type(procedure_drive_type) :: drive
+  type(procedure_load_type) :: load
+  type(motion_view_type) :: state
+  type(force_sum_type) :: forces
+  type(error_type), allocatable :: err
+
+  call make_procedure_pair(3, [1.0_wp, 2.0_wp], pair, err)
+  call test%has_error(err, exit_data, 'a pair without its procedure')
+  call test%is_true(index(err%message, 'pair 3') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
+                    index(err%message, 'user_pair') > 0, 'which pair, what is missing, and its name')
+
+  call make_procedure_drive(5, 0.0_wp, [real(wp) ::], drive, err)
+  call test%has_error(err, exit_data, 'a drive without its procedure')
+  call test%is_true(index(err%message, 'coordinate 5') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
+                    index(err%message, 'user_drive') > 0, 'which coordinate, what is missing, and its name')
+
+  load%parameters = [real(wp) ::]
+  forces = new_force_sum(2, 1)
+  allocate (state%links(2), state%q(1), state%dq(1))
+  state%q = 0.0_wp
+  state%dq = 0.0_wp
+  call load%apply(state, forces, err)
+  call test%has_error(err, exit_data, 'a load without its procedure')
+  call test%is_true(index(err%message, 'none is linked') > 0 .and. index(err%message, 'user_force') > 0, &
+                    'what is missing, and its name')
+  call test%finish()
+end program test_nothing_linked

@@ -1,0 +1,36 @@
+!> Only the forms in plain real numbers are linked: they are found, and they do.
+program test_plain_values_linked
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_pair, only: pair_motion_type
+  use mech9_procedure_pair, only: procedure_pair_type, make_procedure_pair
+  use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(procedure_pair_type) :: pair
+  type(procedure_drive_type) :: drive
+  type(pair_motion_type) :: motion
+  type(error_type), allocatable :: err
+  real(wp) :: q, dq, ddq
+
+  call make_procedure_pair(2, [real(wp) ::], pair, err)
+  call test%no_error(err, 'a pair in plain values')
+  call test%is_true(pair%plain_values, 'its form is found')
+  call pair%evaluate(0.5_wp, motion, err)
+  call test%no_error(err, 'a pair in plain values, evaluated')
+  ! the first point runs along (2 cos q, sin q, 0.3 q^2)
+  call test%near(motion%pose%p(1), 2.0_wp*cos(0.5_wp), 1.0e-12_wp, 'its first point')
+  call test%near(motion%v(2), cos(0.5_wp), 1.0e-11_wp, 'its rate')
+  call test%near(motion%v_rate(3), 0.6_wp, 1.0e-10_wp, 'its second derivative')
+
+  call make_procedure_drive(1, 0.0_wp, [0.0_wp, 1.0_wp, 2.0_wp], drive, err)
+  call test%no_error(err, 'a drive in plain values')
+  call test%is_true(drive%plain_values, 'its form is found')
+  call drive%evaluate(0.5_wp, q, dq, ddq, err)
+  call test%no_error(err, 'a drive in plain values, evaluated')
+  call test%near(q, sin(1.0_wp), 1.0e-12_wp, 'its value')
+  call test%near(dq, 2.0_wp*cos(1.0_wp), 1.0e-11_wp, 'its rate')
+  call test%near(ddq, -4.0_wp*sin(1.0_wp), 1.0e-10_wp, 'its second derivative')
+  call test%finish()
+end program test_plain_values_linked
