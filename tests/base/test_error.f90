@@ -4,28 +4,36 @@ program test_error
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(error_type), allocatable :: err
-  type(error_type) :: fresh
 
-  call add_place(err, 'pair 3', place_type(4, 5))
-  call test%is_true(.not. allocated(err), 'a place makes no failure')
-
-  call raise(err, exit_data, 'no axis')
-  call test%has_error(err, exit_data, 'the code is kept')
-  call test%is_true(err%message == 'no axis', 'the message is kept')
-  call test%is_true(err%place%line == 0, 'no place is known')
-
-  call add_place(err, 'pair 3')
-  call test%is_true(err%message == 'pair 3: no axis', 'a place stands before the message')
-  call add_place(err, place=place_type(4, 5))
-  call test%is_true(err%place%line == 4 .and. err%place%column == 5, 'a place in the data file is taken')
-  call add_place(err, 'fig1', place_type(7, 8))
-  call test%is_true(err%message == 'fig1: pair 3: no axis', 'outer places stand before inner ones')
-  call test%is_true(err%place%line == 4, 'the first place in the data file is the nearest and stays')
-
-  call raise(err, exit_structure, 'links apart', place_type(2, 1))
-  call test%has_error(err, exit_structure, 'a new failure replaces an old one')
-  call test%is_true(err%message == 'links apart' .and. err%place%line == 2, 'with all its parts')
-  call test%is_true(fresh%code == exit_internal, 'a failure without a code is a defect of the program')
+  call failures(test)
   call test%finish()
+
+contains
+
+  subroutine failures(test)
+    type(tester_type), intent(inout) :: test
+    type(error_type), allocatable :: err
+    type(error_type) :: fresh
+
+    call add_place(err, 'pair 3', place_type(4, 5))
+    call test%is_true(.not. allocated(err), 'a place makes no failure')
+
+    call raise(err, exit_data, 'no axis')
+    call test%has_error(err, exit_data, 'the code is kept')
+    call test%is_true(err%message == 'no axis', 'the message is kept')
+    call test%is_true(err%place%line == 0, 'no place is known')
+
+    call add_place(err, 'pair 3')
+    call test%is_true(err%message == 'pair 3: no axis', 'a place stands before the message')
+    call add_place(err, place=place_type(4, 5))
+    call test%is_true(err%place%line == 4 .and. err%place%column == 5, 'a place in the data file is taken')
+    call add_place(err, 'fig1', place_type(7, 8))
+    call test%is_true(err%message == 'fig1: pair 3: no axis', 'outer places stand before inner ones')
+    call test%is_true(err%place%line == 4, 'the first place in the data file is the nearest and stays')
+
+    call raise(err, exit_structure, 'links apart', place_type(2, 1))
+    call test%has_error(err, exit_structure, 'a new failure replaces an old one')
+    call test%is_true(err%message == 'links apart' .and. err%place%line == 2, 'with all its parts')
+    call test%is_true(fresh%code == exit_internal, 'a failure without a code is a defect of the program')
+  end subroutine failures
 end program test_error

@@ -105,6 +105,7 @@ contains
 
   subroutine pieces_of_text(test)
     type(tester_type), intent(inout) :: test
+    type(string_type) :: words(3)
     character(len=2) :: umlaut
 
     umlaut = char(195)//char(132)   ! a letter of two bytes in UTF-8
@@ -116,9 +117,12 @@ contains
     call test%is_true(starts_with('dq', 'dq'), 'a text starts with itself')
     call test%is_true(.not. starts_with('d', 'dq'), 'a text does not start with a longer one')
     call test%is_true(.not. starts_with('d', 'd '), 'nor with itself and a blank')
-    call same(test, join([string_type ::], ', '), '')
-    call same(test, join([string_type('one')], ', '), 'one')
-    call same(test, join([string_type('one'), string_type(''), string_type(' b')], '; '), 'one; ;  b')
+    words(1)%text = 'one'
+    words(2)%text = ''
+    words(3)%text = ' b'
+    call same(test, join(words(:0), ', '), '')
+    call same(test, join(words(:1), ', '), 'one')
+    call same(test, join(words, '; '), 'one; ;  b')
   end subroutine pieces_of_text
 
   subroutine near_names(test)

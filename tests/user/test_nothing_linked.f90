@@ -10,31 +10,39 @@ program test_nothing_linked
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(procedure_pair_type) :: pair
-  type(procedure_drive_type) :: drive
-  type(procedure_load_type) :: load
-  type(motion_view_type) :: state
-  type(force_sum_type) :: forces
-  type(error_type), allocatable :: err
 
-  call make_procedure_pair(3, [1.0_wp, 2.0_wp], pair, err)
-  call test%has_error(err, exit_data, 'a pair without its procedure')
-  call test%is_true(index(err%message, 'pair 3') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
-                    index(err%message, 'user_pair') > 0, 'which pair, what is missing, and its name')
-
-  call make_procedure_drive(5, 0.0_wp, [real(wp) ::], drive, err)
-  call test%has_error(err, exit_data, 'a drive without its procedure')
-  call test%is_true(index(err%message, 'coordinate 5') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
-                    index(err%message, 'user_drive') > 0, 'which coordinate, what is missing, and its name')
-
-  load%parameters = [real(wp) ::]
-  forces = new_force_sum(2, 1)
-  allocate (state%links(2), state%q(1), state%dq(1))
-  state%q = 0.0_wp
-  state%dq = 0.0_wp
-  call load%apply(state, forces, err)
-  call test%has_error(err, exit_data, 'a load without its procedure')
-  call test%is_true(index(err%message, 'none is linked') > 0 .and. index(err%message, 'user_force') > 0, &
-                    'what is missing, and its name')
+  call ask_for_procedures(test)
   call test%finish()
+
+contains
+
+  subroutine ask_for_procedures(test)
+    type(tester_type), intent(inout) :: test
+    type(procedure_pair_type) :: pair
+    type(procedure_drive_type) :: drive
+    type(procedure_load_type) :: load
+    type(motion_view_type) :: state
+    type(force_sum_type) :: forces
+    type(error_type), allocatable :: err
+
+    call make_procedure_pair(3, [1.0_wp, 2.0_wp], pair, err)
+    call test%has_error(err, exit_data, 'a pair without its procedure')
+    call test%is_true(index(err%message, 'pair 3') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
+                      index(err%message, 'user_pair') > 0, 'which pair, what is missing, and its name')
+
+    call make_procedure_drive(5, 0.0_wp, [real(wp) ::], drive, err)
+    call test%has_error(err, exit_data, 'a drive without its procedure')
+    call test%is_true(index(err%message, 'coordinate 5') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
+                      index(err%message, 'user_drive') > 0, 'which coordinate, what is missing, and its name')
+
+    load%parameters = [real(wp) ::]
+    forces = new_force_sum(2, 1)
+    allocate (state%links(2), state%q(1), state%dq(1))
+    state%q = 0.0_wp
+    state%dq = 0.0_wp
+    call load%apply(state, forces, err)
+    call test%has_error(err, exit_data, 'a load without its procedure')
+    call test%is_true(index(err%message, 'none is linked') > 0 .and. index(err%message, 'user_force') > 0, &
+                      'what is missing, and its name')
+  end subroutine ask_for_procedures
 end program test_nothing_linked

@@ -8,29 +8,37 @@ program test_plain_values_linked
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(procedure_pair_type) :: pair
-  type(procedure_drive_type) :: drive
-  type(pair_motion_type) :: motion
-  type(error_type), allocatable :: err
-  real(wp) :: q, dq, ddq
 
-  call make_procedure_pair(2, [real(wp) ::], pair, err)
-  call test%no_error(err, 'a pair in plain values')
-  call test%is_true(pair%plain_values, 'its form is found')
-  call pair%evaluate(0.5_wp, motion, err)
-  call test%no_error(err, 'a pair in plain values, evaluated')
-  ! the first point runs along (2 cos q, sin q, 0.3 q^2)
-  call test%near(motion%pose%p(1), 2.0_wp*cos(0.5_wp), 1.0e-12_wp, 'its first point')
-  call test%near(motion%v(2), cos(0.5_wp), 1.0e-11_wp, 'its rate')
-  call test%near(motion%v_rate(3), 0.6_wp, 1.0e-10_wp, 'its second derivative')
-
-  call make_procedure_drive(1, 0.0_wp, [0.0_wp, 1.0_wp, 2.0_wp], drive, err)
-  call test%no_error(err, 'a drive in plain values')
-  call test%is_true(drive%plain_values, 'its form is found')
-  call drive%evaluate(0.5_wp, q, dq, ddq, err)
-  call test%no_error(err, 'a drive in plain values, evaluated')
-  call test%near(q, sin(1.0_wp), 1.0e-12_wp, 'its value')
-  call test%near(dq, 2.0_wp*cos(1.0_wp), 1.0e-11_wp, 'its rate')
-  call test%near(ddq, -4.0_wp*sin(1.0_wp), 1.0e-10_wp, 'its second derivative')
+  call use_procedures(test)
   call test%finish()
+
+contains
+
+  subroutine use_procedures(test)
+    type(tester_type), intent(inout) :: test
+    type(procedure_pair_type) :: pair
+    type(procedure_drive_type) :: drive
+    type(pair_motion_type) :: motion
+    type(error_type), allocatable :: err
+    real(wp) :: q, dq, ddq
+
+    call make_procedure_pair(2, [real(wp) ::], pair, err)
+    call test%no_error(err, 'a pair in plain values')
+    call test%is_true(pair%plain_values, 'its form is found')
+    call pair%evaluate(0.5_wp, motion, err)
+    call test%no_error(err, 'a pair in plain values, evaluated')
+    ! the first point runs along (2 cos q, sin q, 0.3 q^2)
+    call test%near(motion%pose%p(1), 2.0_wp*cos(0.5_wp), 1.0e-12_wp, 'its first point')
+    call test%near(motion%v(2), cos(0.5_wp), 1.0e-11_wp, 'its rate')
+    call test%near(motion%v_rate(3), 0.6_wp, 1.0e-10_wp, 'its second derivative')
+
+    call make_procedure_drive(1, 0.0_wp, [0.0_wp, 1.0_wp, 2.0_wp], drive, err)
+    call test%no_error(err, 'a drive in plain values')
+    call test%is_true(drive%plain_values, 'its form is found')
+    call drive%evaluate(0.5_wp, q, dq, ddq, err)
+    call test%no_error(err, 'a drive in plain values, evaluated')
+    call test%near(q, sin(1.0_wp), 1.0e-12_wp, 'its value')
+    call test%near(dq, 2.0_wp*cos(1.0_wp), 1.0e-11_wp, 'its rate')
+    call test%near(ddq, -4.0_wp*sin(1.0_wp), 1.0e-10_wp, 'its second derivative')
+  end subroutine use_procedures
 end program test_plain_values_linked
