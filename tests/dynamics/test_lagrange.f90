@@ -1,0 +1,88 @@
+!> Coefficients of motion, velocity terms and generalized forces against (21), (19) and (25) taken
+!> literally, on open, planar, spatial and multi-chain mechanisms with all kinds of loads.
+program test_lagrange
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion
+  use mech9_energy, only: kinetic_energy
+  use mech9_literal_lagrange, only: literal_type, literal_equations
+  use mech9_loaded_mechanisms, only: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(mechanism_type) :: mechanism
+
+  call open_chain(mechanism)
+  call compare(test, mechanism, 'open chain')
+  call loaded_fig1(5, mechanism)
+  call compare(test, mechanism, 'Fig. 1')
+  call loaded_fig1(1, mechanism)
+  call compare(test, mechanism, 'Fig. 1 in its other coordinate, both chains solved together')
+  call five_bar(mechanism)
+  call compare(test, mechanism, 'five-bar')
+  call loaded_loop(mechanism)
+  call compare(test, mechanism, 'general loop')
+  call two_loops([1, 5], mechanism)
+  call compare(test, mechanism, 'two loops and a branch')
+  call two_loops([1, 11], mechanism)
+  call compare(test, mechanism, 'two loops solved together, and a branch')
+  call test%finish()
+
+contains
+
+  !> Differences of closed positions lose 2/h = 128 units of round-off, those of their differences the
+  !> square of that, 16,000 units, both times the conditioning of the chains, some hundreds: 1e-11 and
+  !> 1e-9 of the largest number are left.
+  subroutine compare(test, mechanism, why)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: why
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(literal_type) :: literal
+    type(error_type), allocatable :: err
+    integer :: i, n
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, why)
+    if (allocated(err)) return
+    call make_dynamics_plan(mechanism, plan, dynamics)
+    work = new_lagrange_work(plan, dynamics)
+    n = size(plan%independent)
+    state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, n)]
+    call find_motion(mechanism, plan, dynamics, state, work, err)
+    call test%no_error(err, why)
+    call literal_equations(mechanism, plan, state, literal, err)
+    call test%no_error(err, why//': literally')
+    if (allocated(err)) return
+    do i = 1, n
+      call check_numbers(test, work%coefficients(i:, i), literal%coefficients(i:, i), &
+                         maxval(abs(literal%coefficients)), 1.0e-11_wp, why//': coefficients, (21)')
+    end do
+    call check_numbers(test, work%velocity_terms, literal%velocity_terms, maxval(abs(literal%velocity_terms)), &
+                       1.0e-9_wp, why//': velocity terms, (19)')
+    call check_numbers(test, work%forces, literal%forces, maxval(abs(literal%forces)), 1.0e-11_wp, &
+                       why//': generalized forces, (25)')
+    call test%near(kinetic_energy(dynamics, state), &
+                   0.5_wp*dot_product(state%dq(plan%independent), &
+                                      matmul(literal%coefficients, state%dq(plan%independent))), &
+                   1.0e-11_wp, why//': kinetic energy, (20)')
+  end subroutine compare
+
+  !> Agreement against the largest number of its kind.
+  subroutine check_numbers(test, numbers, expected, scale, tolerance, why)
+    type(tester_type), intent(inout) :: test
+    real(wp), intent(in) :: numbers(:), expected(:), scale, tolerance
+    character(len=*), intent(in) :: why
+
+    call test%is_true(scale > 1.0e-3_wp, why//': there is something to compare')
+    call test%near(maxval(abs(numbers - expected))/scale, 0.0_wp, tolerance, why)
+  end subroutine check_numbers
+end program test_lagrange
