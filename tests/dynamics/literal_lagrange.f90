@@ -21,7 +21,7 @@ module mech9_literal_lagrange
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, factorize_block, apply_change
   implicit none
   private
-  public :: literal_type, literal_equations
+  public :: literal_type, literal_equations, close_chains
 
   !> Distance of neighbouring positions [rad, m]. For mechanisms that change over lengths of order one
   !> truncation is (8!)^2 h^16 = 2e-20, round-off of first derivatives some 2/h units.

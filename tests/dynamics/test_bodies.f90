@@ -1,0 +1,231 @@
+!> Bodies: the same matter described in other ways moves the same way, what has no mass does not
+!> count, and a coordinate that moves no mass is named. Closed forms of pendulums.
+program test_bodies
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_data
+  use mech9_rotation, only: identity
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion
+  use mech9_coordinate_load, only: coordinate_load_type
+  use mech9_sample_mechanisms, only: new_mechanism, add_revolute, frame
+  use mech9_loaded_mechanisms, only: open_chain, loaded_fig1, loaded_loop, two_loops, without_loads, add_body, &
+    add_load, add_point_masses
+  use mech9_random_geometry, only: random_vector
+  use mech9_testing, only: tester_type
+  implicit none
+  real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
+  type(tester_type) :: test
+
+  call test_point_masses(test)
+  call test_halves(test)
+  call test_massless(test)
+  call test_no_inertia(test)
+  call test_flywheel(test)
+  call test_double_pendulum(test)
+  call test%finish()
+
+contains
+
+  !> Assemble and work out the motion for some rates of the independent coordinates.
+  subroutine find(mechanism, plan, dynamics, work, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(out) :: plan
+    type(dynamics_plan_type), intent(out) :: dynamics
+    type(lagrange_work_type), intent(out) :: work
+    type(error_type), allocatable, intent(out) :: err
+    type(state_type) :: state
+    integer :: i
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    if (allocated(err)) return
+    call make_dynamics_plan(mechanism, plan, dynamics)
+    work = new_lagrange_work(plan, dynamics)
+    ! frames that nothing depends on must not be read
+    do i = 1, plan%n_coordinates
+      if (dynamics%carries(i)) cycle
+      work%jacobian%w(:, dynamics%first(i):dynamics%first(i + 1) - 1) = huge(1.0_wp)
+      work%jacobian%v(:, dynamics%first(i):dynamics%first(i + 1) - 1) = huge(1.0_wp)
+    end do
+    state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, size(plan%independent))]
+    call find_motion(mechanism, plan, dynamics, state, work, err)
+  end subroutine find
+
+  !> Two mechanisms have the same equations. They are sums over the same matter in another order: some
+  !> dozens of units of round-off of the largest number.
+  subroutine check_same(test, first, second, why)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type), intent(in) :: first, second
+    character(len=*), intent(in) :: why
+    type(plan_type) :: plan
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: a, b
+    type(error_type), allocatable :: err
+    real(wp), parameter :: tolerance = 1.0e-13_wp
+
+    call find(first, plan, dynamics, a, err)
+    call test%no_error(err, why)
+    call find(second, plan, dynamics, b, err)
+    call test%no_error(err, why)
+    call test%near(largest(a%coefficients - b%coefficients)/largest(a%coefficients), 0.0_wp, tolerance, &
+                   why//': coefficients')
+    call test%near(maxval(abs(a%velocity_terms - b%velocity_terms))/maxval(abs(a%velocity_terms)), 0.0_wp, tolerance, &
+                   why//': velocity terms')
+    call test%near(maxval(abs(a%forces - b%forces))/maxval(abs(a%forces)), 0.0_wp, tolerance, why//': forces')
+  end subroutine check_same
+
+  !> Of the lower triangle, which alone is kept.
+  pure real(wp) function largest(a)
+    real(wp), intent(in) :: a(:, :)
+    integer :: i
+
+    largest = maxval([(maxval(abs(a(i:, i))), i=1, size(a, 2))])
+  end function largest
+
+  !> A rigid body is its point masses: parallel axes, tensors and mass centres, on two spatial loops.
+  subroutine test_point_masses(test)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type) :: bodies, points
+    type(random_type) :: random
+    real(wp) :: masses(4, 6)
+    integer :: i, j
+
+    call two_loops([1, 5], bodies)
+    deallocate (bodies%bodies)
+    allocate (bodies%bodies(0))
+    points = bodies
+    do i = 2, 15
+      do j = 1, 6
+        masses(1:3, j) = random_vector(random)
+        masses(4, j) = 0.1_wp*j
+      end do
+      call add_point_masses(bodies, i, masses, together=.true.)
+      call add_point_masses(points, i, masses, together=.false.)
+    end do
+    call check_same(test, bodies, points, 'bodies as point masses')
+  end subroutine test_point_masses
+
+  !> Two bodies of half the mass in the same place are the whole one.
+  subroutine test_halves(test)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type) :: whole, halves
+    integer :: i
+
+    call loaded_fig1(5, whole)
+    halves = whole
+    deallocate (halves%bodies)
+    allocate (halves%bodies(0))
+    do i = 1, size(whole%bodies)
+      associate (body => whole%bodies(i))
+        call add_body(halves, body%link, 0.5_wp*body%mass, body%centre, 0.5_wp*body%inertia)
+        call add_body(halves, body%link, 0.5_wp*body%mass, body%centre, 0.5_wp*body%inertia)
+      end associate
+    end do
+    call check_same(test, whole, halves, 'bodies in halves')
+  end subroutine test_halves
+
+  !> Links without mass are not in the plan, nor is the frame; what they are left out of is the same.
+  subroutine test_massless(test)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type) :: mechanism, padded
+    type(plan_type) :: plan
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(error_type), allocatable :: err
+    integer :: i
+
+    call loaded_loop(mechanism)
+    call without_loads(mechanism)
+    mechanism%gravity = [0.0_wp, -9.81_wp, 0.0_wp]
+    call add_body(mechanism, 2, 2.0_wp, [0.3_wp, 0.1_wp, 0.2_wp], 0.1_wp*identity)
+    padded = mechanism
+    do i = 3, 7
+      call add_body(padded, i, 0.0_wp, [0.3_wp, 0.1_wp, 0.2_wp], 0.0_wp*identity)
+    end do
+    call add_body(padded, 1, 5.0_wp, [0.3_wp, 0.1_wp, 0.2_wp], identity)
+    call check_same(test, mechanism, padded, 'bodies without mass, and one of the frame')
+    call find(padded, plan, dynamics, work, err)
+    call test%is_true(size(dynamics%bodies) == 1, 'one link with mass is one body in the plan')
+    call test%is_true(dynamics%carries(plan%frame_of(2)), 'its frame is kept')
+    call test%is_true(.not. dynamics%carries(plan%closures(1)%closing), &
+                      'the frame by which the loop closes has no mass of its own')
+  end subroutine test_massless
+
+  !> The coordinate that moves no mass is named, whichever it is.
+  subroutine test_no_inertia(test)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(error_type), allocatable :: err
+
+    call open_chain(mechanism)
+    call without_loads(mechanism)
+    call find(mechanism, plan, dynamics, work, err)
+    call test%has_error(err, exit_data, 'no body at all')
+    call test%is_true(index(err%message, 'coordinate 1 ') > 0, 'the first coordinate is named: '//err%message)
+    call add_body(mechanism, 2, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
+    call add_body(mechanism, 3, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
+    call find(mechanism, plan, dynamics, work, err)
+    call test%has_error(err, exit_data, 'nothing on the last link')
+    call test%is_true(index(err%message, 'coordinate 3 ') > 0, 'the last coordinate is named: '//err%message)
+    call add_body(mechanism, 4, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
+    call find(mechanism, plan, dynamics, work, err)
+    call test%no_error(err, 'a body on every link')
+  end subroutine test_no_inertia
+
+  !> Inertia without mass, turned by a torque on its coordinate: J ddq = M.
+  subroutine test_flywheel(test)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(error_type), allocatable :: err
+
+    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], mechanism)
+    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call without_loads(mechanism)
+    call add_body(mechanism, 2, 0.0_wp, origin, 0.25_wp*identity)
+    call add_load(mechanism, coordinate_load_type(coordinate=1, force=3.0_wp))
+    call find(mechanism, plan, dynamics, work, err)
+    call test%no_error(err, 'flywheel')
+    call test%near(work%accelerations(1), 12.0_wp, 1.0e-15_wp, 'a flywheel: 3/0.25')
+  end subroutine test_flywheel
+
+  !> A double pendulum of two point masses, angles q1 and q1 + q2 from the x axis, gravity along x:
+  !> the textbook's equations with c = cos q2, s = sin q2.
+  subroutine test_double_pendulum(test)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(error_type), allocatable :: err
+    real(wp), parameter :: m1 = 0.7_wp, m2 = 1.1_wp, l1 = 0.9_wp, l2 = 0.6_wp, g = 9.81_wp, q1 = 0.4_wp, q2 = -1.1_wp
+    real(wp), parameter :: rate1 = 0.6_wp, rate2 = -0.1_wp, c = cos(q2), s = sin(q2)
+
+    call new_mechanism(3, reshape([1, 2, 2, 3], [2, 2]), [1, 2], mechanism)
+    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(mechanism, 2, 2, 3, frame([l1, 0.0_wp, 0.0_wp], z), frame(origin, z))
+    mechanism%initial_position = [q1, q2]
+    call without_loads(mechanism)
+    mechanism%gravity = [g, 0.0_wp, 0.0_wp]
+    call add_body(mechanism, 2, m1, [l1, 0.0_wp, 0.0_wp], 0.0_wp*identity)
+    call add_body(mechanism, 3, m2, [l2, 0.0_wp, 0.0_wp], 0.0_wp*identity)
+    call find(mechanism, plan, dynamics, work, err)
+    call test%no_error(err, 'double pendulum')
+    call test%near(work%coefficients(1, 1), (m1 + m2)*l1**2 + m2*l2**2 + 2.0_wp*m2*l1*l2*c, 1.0e-15_wp, 'a11')
+    call test%near(work%coefficients(2, 1), m2*l2**2 + m2*l1*l2*c, 1.0e-15_wp, 'a12')
+    call test%near(work%coefficients(2, 2), m2*l2**2, 1.0e-15_wp, 'a22')
+    call test%near(work%velocity_terms(1), -m2*l1*l2*s*(2.0_wp*rate1*rate2 + rate2**2), 1.0e-15_wp, 'h1')
+    call test%near(work%velocity_terms(2), m2*l1*l2*s*rate1**2, 1.0e-15_wp, 'h2')
+    call test%near(work%forces(1), -(m1 + m2)*g*l1*sin(q1) - m2*g*l2*sin(q1 + q2), 1.0e-15_wp, 'Q1')
+    call test%near(work%forces(2), -m2*g*l2*sin(q1 + q2), 1.0e-15_wp, 'Q2')
+  end subroutine test_double_pendulum
+end program test_bodies
