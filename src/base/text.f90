@@ -114,6 +114,7 @@ contains
     end do
   end function lower
 
+  !> Whether a text has this beginning, blanks at its end included.
   pure logical function starts_with(text, beginning)
     character(len=*), intent(in) :: text, beginning
 

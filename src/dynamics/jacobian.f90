@@ -22,6 +22,7 @@ module mech9_jacobian
 
 contains
 
+  !> Room for the entries that the dynamics plan lists, all zero.
   pure function new_jacobian(dynamics) result(jacobian)
     type(dynamics_plan_type), intent(in) :: dynamics
     type(jacobian_type) :: jacobian

@@ -12,6 +12,7 @@ module mech9_body_reader
 
 contains
 
+  !> All groups &body: masses, centres and inertia tensors, checked.
   pure subroutine read_bodies(document, n_links, bodies, diagnostics)
     type(document_type), intent(in) :: document
     integer, intent(in) :: n_links                           !< 0 where it is not known

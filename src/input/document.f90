@@ -14,6 +14,7 @@ module mech9_document
   integer, parameter :: value_null = 0, value_integer = 1, value_real = 2, value_logical = 3
   integer, parameter :: value_text = 4, value_word = 5, value_bad = 6
 
+  !> One value as it is written.
   type :: value_type
     integer :: kind = value_null
     integer :: times = 1                         !< written as times*value
@@ -31,6 +32,7 @@ module mech9_document
     logical :: section = .false.
   end type subscript_type
 
+  !> One name with the values it is given.
   type :: item_type
     character(len=:), allocatable :: name        !< in lower case
     type(subscript_type), allocatable :: subscripts(:)
@@ -39,6 +41,7 @@ module mech9_document
     logical :: overrides = .false.               !< comes from --set and replaces what the file says
   end type item_type
 
+  !> One group with its items, in the order of the file.
   type :: group_type
     character(len=:), allocatable :: name        !< in lower case
     type(item_type), allocatable :: items(:)

@@ -8,6 +8,7 @@ module mech9_grammar
   public :: find_group_row, rows_of_group, find_item_rows, item_row_for_kind, takes_kind, words_of
   public :: names_of_groups, names_in_group
 
+  !> One kind of group.
   type :: group_row_type
     character(len=9) :: name
     logical :: repeats             !< may stand more than once
@@ -221,6 +222,7 @@ contains
     rows = pack([(i, i=1, size(item_table))], item_table%group == lower(group))
   end function rows_of_group
 
+  !> The names of all groups, blank-padded.
   pure function names_of_groups() result(names)
     character(len=len(group_table%name)), allocatable :: names(:)
 

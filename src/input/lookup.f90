@@ -70,6 +70,7 @@ contains
     end do
   end function find_item
 
+  !> Whether the group gives this name.
   pure logical function has_name(group, name)
     type(group_type), intent(in) :: group
     character(len=*), intent(in) :: name
@@ -93,6 +94,7 @@ contains
       span = group%items(i)%values(value_number)%span
   end function span_of
 
+  !> The numbers given under a name, or those of its default.
   pure function get_reals(group, name) result(numbers)
     type(group_type), intent(in) :: group
     character(len=*), intent(in) :: name
@@ -107,6 +109,7 @@ contains
     end if
   end function get_reals
 
+  !> The first of them; for names that take one number.
   pure real(wp) function get_real(group, name)
     type(group_type), intent(in) :: group
     character(len=*), intent(in) :: name
@@ -116,6 +119,7 @@ contains
     get_real = numbers(1)
   end function get_real
 
+  !> Whole numbers given under a name, or those of its default.
   pure function get_integers(group, name) result(numbers)
     type(group_type), intent(in) :: group
     character(len=*), intent(in) :: name
@@ -124,6 +128,7 @@ contains
     numbers = nint(get_reals(group, name))
   end function get_integers
 
+  !> The first of them.
   pure integer function get_integer(group, name)
     type(group_type), intent(in) :: group
     character(len=*), intent(in) :: name

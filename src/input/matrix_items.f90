@@ -9,6 +9,7 @@ module mech9_matrix_items
   private
   public :: matrix_type, read_matrix
 
+  !> The coincidence matrix as the data file gives it.
   type :: matrix_type
     integer, allocatable :: c(:, :)
     type(span_type), allocatable :: spans(:, :)    !< where each element is written; source 0: nowhere

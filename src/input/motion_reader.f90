@@ -25,6 +25,7 @@ module mech9_motion_reader
 
 contains
 
+  !> All groups &initial: positions and velocities that are given, in rad and m.
   pure subroutine read_initial(document, structure, pairs, angle_unit, initial, diagnostics)
     type(document_type), intent(in) :: document
     type(structure_type), intent(in) :: structure            !< without coordinates where it is not known
@@ -61,6 +62,7 @@ contains
     end do
   end subroutine read_initial
 
+  !> All groups &point: names, links and positions of the points to be traced.
   pure subroutine read_points(document, n_links, points, diagnostics)
     type(document_type), intent(in) :: document
     integer, intent(in) :: n_links                           !< 0 where it is not known

@@ -24,6 +24,7 @@ module mech9_scanner
 
 contains
 
+  !> Whether a letter stands there; false beyond the end.
   pure logical function is_letter(text, at)
     character(len=*), intent(in) :: text
     integer, intent(in) :: at

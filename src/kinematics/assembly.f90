@@ -20,6 +20,7 @@ module mech9_assembly
   integer, parameter :: most_restarts = 24
   integer, parameter :: most_steps = 200
 
+  !> How an assembly went.
   type :: assembly_outcome_type
     logical :: closed = .false.
     integer :: restarts = 0           !< changed guesses that were needed

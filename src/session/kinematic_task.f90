@@ -22,6 +22,7 @@ module mech9_kinematic_task
 
 contains
 
+  !> What mech9k does.
   pure function kinematic_task() result(task)
     type(kinematic_task_type) :: task
 

@@ -1,0 +1,86 @@
+"""Every module has the same head, and says what it offers: reads the Fortran files of src.
+
+The head: one sentence on what the module is and what it uses, as a comment; `use` statements; implicit none;
+private; the list of public names. Above each public procedure, type and interface block stands a comment
+that begins with !>. Operators, and intrinsic functions extended to other types, explain themselves; a type that
+has its module's name is explained by the head.
+"""
+import os
+import re
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from check_floors import sources
+from mech9_cases import TREE, Checks
+
+MODULE = re.compile(r'\A((?:!>[^\n]*\n)+)module (mech9_\w+)\n(.*?)^end module \2\n?\Z', re.S | re.M)
+DEFINITION = re.compile(
+    r'^\s*(?:(?:pure|impure|elemental|recursive|module|integer|logical|real\(\w+\)|character\([^)]*\)|type\(\w+\))\s+)*'
+    r'(?:(?:subroutine|function)\s+(\w+)\b|type(?:\s*,[^:]*)?\s*::\s*(\w+)\s*$|interface\s+(\w+)\s*$)')
+INTRINSIC = set('sqrt exp log sin cos tan asin acos atan atan2 sinh cosh tanh abs min max'.split())
+
+
+def public_names(body):
+    """The names in the lists after `public ::`, continued lines joined."""
+    joined = re.sub(r'&\s*(?:!.*)?\n\s*&?', ' ', body)
+    names = []
+    for listed in re.findall(r'^\s*public\s*::(.*)$', joined, re.M):
+        names += re.findall(r'\b\w+\b(?!\s*\()', re.sub(r'(operator|assignment)\([^)]*\)', '', listed.split('!')[0]))
+    return names
+
+
+def explained(lines, number):
+    """Whether a comment stands above this line, with no line between but other comments."""
+    above = number - 1
+    while above >= 0 and lines[above].lstrip().startswith('!') and not lines[above].lstrip().startswith('!>'):
+        above -= 1
+    return above >= 0 and lines[above].lstrip().startswith('!>')
+
+
+def definitions(body):
+    """Line numbers where names are defined, and the lines."""
+    lines = body.split('\n')
+    found = {}
+    for number, line in enumerate(lines):
+        match = DEFINITION.match(line.split('!')[0].rstrip())
+        if match and not line.lstrip().startswith('end'):
+            name = next(group for group in match.groups() if group).lower()
+            found.setdefault(name, []).append(number)
+    return lines, found
+
+
+def check_module(checks, path, text):
+    match = MODULE.match(text)
+    if not checks.true(match, f'{path}: begins with its head and holds one module'):
+        return
+    head, name, body = match.groups()
+    checks.true(re.search(r'\bUses\b', head), f'{path}: the head says what it uses')
+    order = [re.search(pattern, body, re.M) for pattern in (r'^  implicit none$', r'^  private$', r'^  public ::')]
+    if checks.true(all(order), f'{path}: implicit none, private and a list of public names'):
+        places = [found.start() for found in order]
+        checks.true(places == sorted(places), f'{path}: in this order')
+        checks.true(not re.search(r'^  use\b', body[places[0]:], re.M), f'{path}: `use` stands before them')
+    lines, defined = definitions(body)
+    for public in public_names(body):
+        if public.lower() in INTRINSIC or public.lower() not in defined:
+            continue   # constants, and what is handed on from elsewhere
+        if f'mech9_{public.lower()}' == f'{name}_type':
+            continue
+        checks.true(any(explained(lines, number) for number in defined[public.lower()]),
+                    f'{path}: a comment above {public}')
+
+
+def main():
+    checks = Checks()
+    modules = 0
+    for floor, path, text in sources(os.path.join(TREE, 'src')):
+        if floor == 'programs' or re.search(r'^submodule\b', text, re.M):
+            continue
+        modules += 1
+        check_module(checks, os.path.relpath(path, TREE), text)
+    checks.true(modules > 50, 'the modules were found')
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
