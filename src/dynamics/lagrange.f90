@@ -47,6 +47,7 @@ module mech9_lagrange
 
 contains
 
+  !> Scratch for a mechanism with this plan.
   function new_lagrange_work(plan, dynamics) result(work)
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(in) :: dynamics
