@@ -12,6 +12,7 @@ string(TOUPPER "${CMAKE_BUILD_TYPE}" kind)
 string(STRIP "${CMAKE_Fortran_FLAGS} ${CMAKE_Fortran_FLAGS_${kind}}" link_compile_flags)
 string(STRIP "${CMAKE_EXE_LINKER_FLAGS} ${CMAKE_EXE_LINKER_FLAGS_${kind}}" link_linker_flags)
 string(REPLACE ";" " " link_fortran77_options "${MECH9_FORTRAN77_OPTIONS}")
+string(REPLACE ";" " " link_lto "${MECH9_LTO_LINK}")
 string(REPLACE ";" " " link_libraries "${MECH9_LINK_LIBRARIES}")
 
 set(link_modules "${PROJECT_BINARY_DIR}/modules")

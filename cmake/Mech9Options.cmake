@@ -35,7 +35,8 @@ endif()
 # Across files: the library carries both kinds of code (fat objects). mech9k and mech9d are linked with the one,
 # which takes seconds; unit tests and users' programs with the other, at once.
 if(MECH9_LTO AND CMAKE_BUILD_TYPE STREQUAL "Release")
-  set(MECH9_LTO_COMPILE -flto=auto -ffat-lto-objects)
-  set(MECH9_LTO_LINK -flto=auto)
+  set(MECH9_LTO_COMPILE -flto -ffat-lto-objects)
+  # in one piece: as fast as several in parallel, for which the compiler would want make
+  set(MECH9_LTO_LINK -flto -flto-partition=one)
   set(MECH9_LTO_NO_LINK -fno-lto)
 endif()

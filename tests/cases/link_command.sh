@@ -23,7 +23,7 @@ expect() {
 
 expect 0 'with your user_pair)' "$link" -o "$folder/trammel" "$samples/trammel/trammel.f90"
 expect 0 'with your user_pair_values)' \
-  "$link" "$samples/trammel/trammel_values.f90" -flto=auto -o "$folder/trammel_values"
+  "$link" "$samples/trammel/trammel_values.f90" --lto -o "$folder/trammel_values"
 expect 0 'with your user_pair_values)' \
   "$link" -o "$folder/cam_follower" "$samples/cam_follower/cam_follower.f90" "$samples/cam_follower/oldcam.f"
 expect 0 'with your user_drive)' "$link" -O2 -o "$folder/cycloidal_drive" "$samples/cycloidal_drive/cycloidal_drive.f90"
