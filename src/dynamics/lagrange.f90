@@ -27,7 +27,7 @@ module mech9_lagrange
   use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian
   implicit none
   private
-  public :: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations
+  public :: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations, show_state
 
   !> Blocks whose least pivot is below this are at a singular position.
   real(wp), parameter :: singular = 1.0e-9_wp

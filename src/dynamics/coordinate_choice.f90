@@ -1,0 +1,106 @@
+!> Other independent coordinates where the present ones come to a singular position.
+!> Uses lapack, transformation, mechanism, the kinematics floor.
+module mech9_coordinate_choice
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_text, only: to_text
+  use mech9_lapack, only: dgeqp3
+  use mech9_rotation, only: cross
+  use mech9_transformation, only: transform
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_closure, only: reduced_screw
+  use mech9_planning, only: make_plan
+  implicit none
+  private
+  public :: best_independent, with_independent
+
+contains
+
+  !> The independent coordinates that leave the best conditioned dependent ones at a closed position, by
+  !> QR with column pivoting of the closures' Jacobian over all coordinates.
+  subroutine best_independent(plan, state, independent)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state       !< frames in place
+    logical, intent(out) :: independent(:)      !< (M)
+    real(wp), allocatable :: a(:, :), tau(:), work(:)
+    integer, allocatable :: pivot(:)
+    integer :: m, n, row, c, dependent, info
+
+    n = plan%n_coordinates
+    m = sum(plan%closures%rank)
+    allocate (a(m, n), source=0.0_wp)
+    allocate (tau(min(m, n)), work(2*n + (n + 1)*32), source=0.0_wp)
+    allocate (pivot(n), source=0)
+    row = 0
+    do c = 1, size(plan%closures)
+      call add_closure(plan, state, c, row, a)
+      row = row + plan%closures(c)%rank
+    end do
+    if (m > 0) call dgeqp3(m, n, a, m, pivot, tau, work, size(work), info)
+    dependent = n - size(plan%independent)
+    independent = .true.
+    independent(pivot(:dependent)) = .false.
+  end subroutine best_independent
+
+  !> The rows of one closure: over both ways back from it to where they meet.
+  pure subroutine add_closure(plan, state, c, row, a)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: c, row
+    real(wp), intent(inout) :: a(:, :)
+    real(wp) :: w(3), v(3), arm(3), unit
+    integer :: up, down, s, k
+
+    associate (closure => plan%closures(c))
+      up = closure%closing
+      down = closure%target
+      do while (up /= down)
+        s = max(up, down)
+        k = plan%steps(s)%coordinate
+        unit = plan%unit_of(k)
+        if (up > down) then
+          up = plan%steps(s)%parent
+        else
+          unit = -unit
+          down = plan%steps(s)%parent
+        end if
+        arm = state%p(:, closure%closing) - state%p(:, s)
+        w = unit*state%axis_w(:, s)
+        v = unit*state%axis_v(:, s) + cross(w, arm)
+        call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), a(row + 1:row + closure%rank, k))
+      end do
+    end associate
+  end subroutine add_closure
+
+  !> The same mechanism and state in other independent coordinates. Fails with exit_singular where the
+  !> state cannot be carried over.
+  subroutine with_independent(mechanism, state, independent, new_mechanism, new_plan, new_state, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(state_type), intent(in) :: state             !< closed, with rates of all coordinates
+    logical, intent(in) :: independent(:)             !< (M)
+    type(mechanism_type), intent(out) :: new_mechanism
+    type(plan_type), intent(out) :: new_plan
+    type(state_type), intent(out) :: new_state
+    type(error_type), allocatable, intent(out) :: err
+    integer :: k
+
+    new_mechanism = mechanism
+    new_mechanism%structure%independent = independent
+    call transform(new_mechanism%structure, new_mechanism%vectors)
+    call make_plan(new_mechanism, state%q, new_plan, new_state, err)
+    if (allocated(err)) then
+      err%code = exit_singular
+      return
+    end if
+    k = maxloc(abs(new_state%q - state%q)/new_plan%unit_of, dim=1)
+    if (abs(new_state%q(k) - state%q(k)) > 1.0e-6_wp*new_plan%unit_of(k)) then
+      call raise(err, exit_singular, 'with other independent coordinates the chains close on another branch: '// &
+                 'coordinate '//to_text(k)//' would jump')
+      return
+    end if
+    new_state%t = state%t
+    new_state%dq = state%dq
+  end subroutine with_independent
+end module mech9_coordinate_choice
