@@ -89,7 +89,8 @@ contains
         best = error
         x = taylor(values(0), first, second)
       end if
-      if (error <= 1.0e-12_wp*maxval(abs(values))) exit
+      ! good enough, or truncation is below round-off, which only grows as steps get narrower
+      if (error <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))) exit
     end do
     ok = best < huge(best)
   end subroutine differentiate

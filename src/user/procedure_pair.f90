@@ -157,7 +157,8 @@ contains
         best = worst
         r = trial
       end if
-      if (worst <= 1.0e-12_wp*maxval(abs(values))) exit
+      ! good enough, or truncation is below round-off, which only grows as steps get narrower
+      if (worst <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))) exit
     end do
     ok = best < huge(best)
   end subroutine differentiate
