@@ -1,0 +1,19 @@
+!> A user's force that has a value up to a time only, parameters(1); after it, not a number.
+submodule (mech9_user_force) failing_force
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  implicit none
+
+contains
+
+  module subroutine user_force(t, state, parameters, loads)
+    real(wp), intent(in) :: t
+    type(motion_view_type), intent(in) :: state
+    real(wp), intent(in) :: parameters(:)
+    type(force_sum_type), intent(inout) :: loads
+    real(wp) :: force
+
+    force = 1.0_wp
+    if (t > parameters(1)) force = ieee_value(force, ieee_quiet_nan)
+    call loads%add_generalized(1, force)
+  end subroutine user_force
+end submodule failing_force

@@ -1,0 +1,25 @@
+!> Air drag on points of links: a force k |v| v against the velocity v of each point.
+!>
+!> Parameters: five numbers for each point: link, its place x, y, z in the link [m], k [N s^2/m^2]. For a
+!> plate across the wind k is half the density of air times drag coefficient times area.
+submodule (mech9_user_force) air_drag
+  implicit none
+
+contains
+
+  module subroutine user_force(t, state, parameters, loads)
+    real(wp), intent(in) :: t
+    type(motion_view_type), intent(in) :: state
+    real(wp), intent(in) :: parameters(:)
+    type(force_sum_type), intent(inout) :: loads
+    real(wp) :: point(3), v(3)
+    integer :: i, link
+
+    do i = 1, size(parameters) - 4, 5
+      link = nint(parameters(i))
+      point = parameters(i + 1:i + 3)
+      v = state%velocity(link, point)
+      call loads%add_force(state, link, point, -parameters(i + 4)*norm2(v)*v)
+    end do
+  end subroutine user_force
+end submodule air_drag
