@@ -54,7 +54,9 @@ def parse(text):
 def text_of(value):
     if isinstance(value, str):
         return "'" + value.replace("'", "''") + "'"
-    return repr(value)   # repr of a float gives its shortest text that reads back the same
+    if isinstance(value, int):
+        return str(value)
+    return repr(float(value))   # the shortest text that reads back the same
 
 
 def write(groups):
