@@ -111,13 +111,16 @@ contains
     type(closure_type), intent(in) :: closure
     type(state_type), intent(in) :: state
     real(wp), intent(out) :: w(3), v(3), place(3)
-    real(wp) :: r_target(3, 3)
+    real(wp) :: r_target(3, 3), r_error(3, 3), turn(3)
 
+    ! each product in an array of its own: as an argument it would be put on the heap
     associate (g => closure%target)
       r_target = matmul(state%r(:, :, g), closure%in_target%r)
       place = state%p(:, closure%closing)
       v = place - state%p(:, g) - matmul(state%r(:, :, g), closure%in_target%p)
-      w = matmul(r_target, rotation_vector(matmul(transpose(r_target), state%r(:, :, closure%closing))))
+      r_error = matmul(transpose(r_target), state%r(:, :, closure%closing))
+      turn = rotation_vector(r_error)
+      w = matmul(r_target, turn)
     end associate
   end subroutine error_screw
 

@@ -61,11 +61,12 @@ contains
     type(state_type), intent(in) :: state
     type(point_type), intent(in) :: point
     real(wp), intent(out) :: position(3), velocity(3), acceleration(3)   !< [m], [m/s], [m/s^2]
-    real(wp) :: arm(3)
+    real(wp) :: arm(3), in_frame(3)
     integer :: f
 
     f = plan%frame_of(point%link)
-    arm = matmul(state%r(:, :, f), transformed(plan%link_in_frame(point%link), point%position))
+    in_frame = transformed(plan%link_in_frame(point%link), point%position)
+    arm = matmul(state%r(:, :, f), in_frame)
     position = state%p(:, f) + arm + plan%origin
     velocity = state%v(:, f) + cross(state%omega(:, f), arm)
     acceleration = state%a(:, f) + cross(state%alpha(:, f), arm) &

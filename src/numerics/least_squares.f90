@@ -61,11 +61,12 @@ contains
 
   !> x with |a x - b| least, and the length of what remains; columns at and beyond the numerical rank
   !> are not used.
-  subroutine solve(self, b, x, remainder)
+  subroutine solve(self, b, x, remainder, tolerance)
     class(least_squares_type), intent(inout) :: self
     real(wp), intent(inout) :: b(:)              !< (m); overwritten
     real(wp), intent(out) :: x(:)                !< (n)
     real(wp), intent(out), optional :: remainder
+    real(wp), intent(in), optional :: tolerance   !< of the rank; round-off unless given
     integer :: i, j, k, info, rank
     real(wp) :: s
 
@@ -85,7 +86,7 @@ contains
     else
       call dormqr('L', 'T', self%m, 1, k, self%a, self%m, self%tau, b, self%m, self%work, size(self%work), info)
     end if
-    rank = self%rank()
+    rank = self%rank(tolerance)
     if (present(remainder)) remainder = norm2(b(rank + 1:self%m))
     do j = rank, 1, -1
       b(j) = b(j)/self%a(j, j)
