@@ -2,7 +2,7 @@
 !> count, and a coordinate that moves no mass is named. Closed forms of pendulums.
 program test_bodies
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, exit_data
+  use mech9_error, only: error_type, exit_data, exit_integrator
   use mech9_rotation, only: identity
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
@@ -12,7 +12,8 @@ program test_bodies
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
   use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion
   use mech9_coordinate_load, only: coordinate_load_type
-  use mech9_sample_mechanisms, only: new_mechanism, add_revolute, frame
+  use mech9_spring_load, only: spring_load_type
+  use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame
   use mech9_loaded_mechanisms, only: open_chain, loaded_fig1, loaded_loop, two_loops, without_loads, add_body, &
     add_load, add_point_masses
   use mech9_random_geometry, only: random_vector
@@ -27,6 +28,7 @@ program test_bodies
   call test_no_inertia(test)
   call test_flywheel(test)
   call test_double_pendulum(test)
+  call test_spring_without_length(test)
   call test%finish()
 
 contains
@@ -228,4 +230,27 @@ contains
     call test%near(work%forces(1), -(m1 + m2)*g*l1*sin(q1) - m2*g*l2*sin(q1 + q2), 1.0e-15_wp, 'Q1')
     call test%near(work%forces(2), -m2*g*l2*sin(q1 + q2), 1.0e-15_wp, 'Q2')
   end subroutine test_double_pendulum
+
+  !> A spring of free length zero may shrink to nothing, where its damper alone is left; any other may not.
+  subroutine test_spring_without_length(test)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(error_type), allocatable :: err
+
+    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], mechanism)
+    call add_prismatic(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call without_loads(mechanism)
+    call add_body(mechanism, 2, 2.0_wp, origin, 0.0_wp*identity)
+    call add_load(mechanism, spring_load_type(links=[1, 2], stiffness=5.0_wp, damping=3.0_wp))
+    call find(mechanism, plan, dynamics, work, err)
+    call test%no_error(err, 'a spring of free length zero')
+    ! the rate that `find` gives to a first coordinate is 0.6
+    call test%near(work%accelerations(1), -3.0_wp*0.6_wp/2.0_wp, 1.0e-15_wp, 'its damper alone: -3 v/2')
+    call add_load(mechanism, spring_load_type(links=[1, 2], stiffness=5.0_wp, free_length=0.1_wp))
+    call find(mechanism, plan, dynamics, work, err)
+    call test%has_error(err, exit_integrator, 'a spring of free length 0.1 m shrunk to nothing')
+  end subroutine test_spring_without_length
 end program test_bodies
