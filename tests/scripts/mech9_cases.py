@@ -2,7 +2,9 @@
 
 Needs numpy only. A script makes a Checks, checks, and leaves through its finish().
 """
+import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -83,11 +85,21 @@ def table_of(program, data, *options):
             return read_table(file.read())
 
 
+def table_and_report(program, data, *options):
+    """The table of a run and its report, read from JSON; fails loudly where the run fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = os.path.join(folder, 'report.json')
+        table = table_of(program, data, '--report', report, *options)
+        with open(report, encoding='utf-8') as file:
+            return table, json.load(file)
+
+
 def read_csv(path):
-    """Columns by name of a file of reference values."""
+    """Columns by name of a file of reference values: lines of '#', a line of names, rows of numbers."""
     with open(path, encoding='utf-8') as file:
-        names = file.readline().strip().split(',')
-        rows = np.array([[float(word) for word in line.split(',')] for line in file if line.strip()])
+        lines = [line.strip() for line in file if line.strip() and not line.startswith('#')]
+    names = re.split(r',(?![^(]*\))', lines[0])   # a(1,5) is one name
+    rows = np.array([[float(word) for word in line.split(',')] for line in lines[1:]])
     return {name: rows[:, i] for i, name in enumerate(names)}
 
 
