@@ -1,7 +1,7 @@
 !> Kinetic (20) and potential energy of a state. Uses kinds, rotation, mechanism, plan, state, dynamics_plan.
 module mech9_energy
   use mech9_kinds, only: wp
-  use mech9_rotation, only: cross
+  use mech9_rotation, only: turn, turn_back, cross
   use mech9_mechanism, only: mechanism_type
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type
@@ -23,10 +23,10 @@ contains
     energy = 0.0_wp
     do i = 1, size(dynamics%bodies)
       associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
-        arm = matmul(state%r(:, :, f), body%centre)
+        arm = turn(state%r(:, :, f), body%centre)
         v = state%v(:, f) + cross(state%omega(:, f), arm)
-        omega = matmul(state%omega(:, f), state%r(:, :, f))
-        energy = energy + 0.5_wp*(body%mass*dot_product(v, v) + dot_product(omega, matmul(body%inertia, omega)))
+        omega = turn_back(state%r(:, :, f), state%omega(:, f))
+        energy = energy + 0.5_wp*(body%mass*dot_product(v, v) + dot_product(omega, turn(body%inertia, omega)))
       end associate
     end do
   end function kinetic_energy
@@ -44,7 +44,7 @@ contains
     energy = 0.0_wp
     do i = 1, size(dynamics%bodies)
       associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
-        centre = state%p(:, f) + matmul(state%r(:, :, f), body%centre) + plan%origin
+        centre = state%p(:, f) + turn(state%r(:, :, f), body%centre) + plan%origin
         energy = energy - body%mass*dot_product(dynamics%gravity, centre)
       end associate
     end do

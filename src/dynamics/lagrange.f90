@@ -12,8 +12,7 @@ module mech9_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular
   use mech9_text, only: to_text
-  use mech9_rotation, only: cross
-  use mech9_pose, only: pose_type
+  use mech9_rotation, only: turn, turn_back, combine, cross
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_mechanism, only: mechanism_type
   use mech9_motion_view, only: motion_view_type
@@ -22,7 +21,6 @@ module mech9_lagrange
   use mech9_state, only: state_type
   use mech9_motion, only: spread_velocities, spread_accelerations
   use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_accelerations
-  use mech9_inertia, only: inertia_in_axes
   use mech9_dynamics_plan, only: dynamics_plan_type, frame_body_type
   use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian
   implicit none
@@ -154,19 +152,17 @@ contains
     type(frame_body_type), intent(in) :: body
     type(state_type), intent(in) :: state
     type(lagrange_work_type), intent(inout) :: work
-    real(wp) :: arm(3), inertia(3, 3), force(3), torque(3), j_c(3), momentum(3), spin(3)
+    real(wp) :: arm(3), force(3), torque(3), j_c(3), momentum(3), spin(3)
     integer :: f, e, d, p, r
 
     f = body%frame
-    arm = matmul(state%r(:, :, f), body%centre)
+    arm = turn(state%r(:, :, f), body%centre)
     force = body%mass*(state%a(:, f) + cross(state%alpha(:, f), arm) &
                        + cross(state%omega(:, f), cross(state%omega(:, f), arm)))
     torque = 0.0_wp
-    inertia = 0.0_wp
     if (.not. body%is_point) then
-      inertia = inertia_in_axes(state%r(:, :, f), body%inertia)
-      spin = matmul(inertia, state%omega(:, f))
-      torque = matmul(inertia, state%alpha(:, f)) + cross(state%omega(:, f), spin)
+      spin = inertia_times(body, state%r(:, :, f), state%omega(:, f))
+      torque = inertia_times(body, state%r(:, :, f), state%alpha(:, f)) + cross(state%omega(:, f), spin)
     end if
     do e = dynamics%first(f), dynamics%first(f + 1) - 1
       p = dynamics%column(e)
@@ -175,7 +171,8 @@ contains
                                + dot_product(work%jacobian%w(:, e), torque)
       work%forces(p) = work%forces(p) + body%mass*dot_product(j_c, dynamics%gravity)
       momentum = body%mass*j_c
-      spin = matmul(inertia, work%jacobian%w(:, e)) + cross(arm, momentum)
+      spin = cross(arm, momentum)
+      if (.not. body%is_point) spin = spin + inertia_times(body, state%r(:, :, f), work%jacobian%w(:, e))
       ! J_c,r = J_v,r + J_w,r x arm, so that J_c,r . m J_c,p splits into J_v,r and J_w,r
       do d = e, dynamics%first(f + 1) - 1
         r = dynamics%column(d)
@@ -184,6 +181,16 @@ contains
       end do
     end do
   end subroutine add_body
+
+  !> The body's inertia tensor, in fixed axes, times a vector.
+  pure function inertia_times(body, r, vector) result(product)
+    type(frame_body_type), intent(in) :: body
+    real(wp), intent(in) :: r(3, 3)          !< of its frame
+    real(wp), intent(in) :: vector(3)
+    real(wp) :: product(3)
+
+    product = turn(r, turn(body%inertia, turn_back(r, vector)))
+  end function inertia_times
 
   !> Q_p (25): what the loads exert, on the frames and on the coordinates.
   subroutine collect_forces(mechanism, plan, dynamics, state, work, err)
@@ -239,8 +246,8 @@ contains
     do i = 1, plan%n_links
       if (.not. dynamics%load_links(i)) cycle
       f = plan%frame_of(i)
-      arm = matmul(state%r(:, :, f), plan%link_in_frame(i)%p)
-      view%links(i)%r = matmul(state%r(:, :, f), plan%link_in_frame(i)%r)
+      arm = turn(state%r(:, :, f), plan%link_in_frame(i)%p)
+      view%links(i)%r = combine(state%r(:, :, f), plan%link_in_frame(i)%r)
       view%links(i)%p = state%p(:, f) + arm + plan%origin
       view%links(i)%omega = state%omega(:, f)
       view%links(i)%v = state%v(:, f) + cross(state%omega(:, f), arm)

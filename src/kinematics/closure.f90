@@ -8,7 +8,7 @@
 !> count in rad, translations in lengths of the mechanism.
 module mech9_closure
   use mech9_kinds, only: wp
-  use mech9_rotation, only: cross, rotation_vector
+  use mech9_rotation, only: turn, turn_back, combine, cross, rotation_vector
   use mech9_plan, only: plan_type, closure_type, block_type
   use mech9_state, only: state_type, velocity_known
   implicit none
@@ -111,16 +111,17 @@ contains
     type(closure_type), intent(in) :: closure
     type(state_type), intent(in) :: state
     real(wp), intent(out) :: w(3), v(3), place(3)
-    real(wp) :: r_target(3, 3), r_error(3, 3), turn(3)
+    real(wp) :: r_target(3, 3), r_error(3, 3)
+    integer :: i
 
-    ! each product in an array of its own: as an argument it would be put on the heap
     associate (g => closure%target)
-      r_target = matmul(state%r(:, :, g), closure%in_target%r)
+      r_target = combine(state%r(:, :, g), closure%in_target%r)
       place = state%p(:, closure%closing)
-      v = place - state%p(:, g) - matmul(state%r(:, :, g), closure%in_target%p)
-      r_error = matmul(transpose(r_target), state%r(:, :, closure%closing))
-      turn = rotation_vector(r_error)
-      w = matmul(r_target, turn)
+      v = place - state%p(:, g) - turn(state%r(:, :, g), closure%in_target%p)
+      do i = 1, 3
+        r_error(:, i) = turn_back(r_target, state%r(:, i, closure%closing))
+      end do
+      w = turn(r_target, rotation_vector(r_error))
     end associate
   end subroutine error_screw
 
@@ -159,8 +160,8 @@ contains
       screw(1:3) = w
       screw(4:6) = v_base
     else
-      screw(1:3) = matmul(w, state%r(:, :, closure%base))
-      screw(4:6) = matmul(v_base, state%r(:, :, closure%base))
+      screw(1:3) = turn_back(state%r(:, :, closure%base), w)
+      screw(4:6) = turn_back(state%r(:, :, closure%base), v_base)
     end if
   end function loop_screw
 end module mech9_closure

@@ -3,7 +3,7 @@
 module mech9_composition
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_rotation, only: cross
+  use mech9_rotation, only: turn, combine, cross
   use mech9_pair, only: pair_motion_type
   use mech9_pose, only: inverse
   use mech9_plan, only: plan_type, step_type
@@ -75,15 +75,15 @@ contains
       call plan%pairs(step%coordinate)%pair%evaluate(state%q(step%coordinate), motion, err)
       if (allocated(err)) return
       if (step%reversed) motion = reversed_motion(motion)
-      r_departing = matmul(state%r(:, :, step%parent), step%before%r)
-      p_departing = state%p(:, step%parent) + matmul(state%r(:, :, step%parent), step%before%p)
+      r_departing = combine(state%r(:, :, step%parent), step%before%r)
+      p_departing = state%p(:, step%parent) + turn(state%r(:, :, step%parent), step%before%p)
     end associate
-    state%r(:, :, s) = matmul(r_departing, motion%pose%r)
-    state%p(:, s) = p_departing + matmul(r_departing, motion%pose%p)
-    state%axis_w(:, s) = matmul(r_departing, motion%w)
-    state%axis_v(:, s) = matmul(r_departing, motion%v)
-    state%axis_w_rate(:, s) = matmul(r_departing, motion%w_rate)
-    state%axis_v_rate(:, s) = matmul(r_departing, motion%v_rate)
+    state%r(:, :, s) = combine(r_departing, motion%pose%r)
+    state%p(:, s) = p_departing + turn(r_departing, motion%pose%p)
+    state%axis_w(:, s) = turn(r_departing, motion%w)
+    state%axis_v(:, s) = turn(r_departing, motion%v)
+    state%axis_w_rate(:, s) = turn(r_departing, motion%w_rate)
+    state%axis_v_rate(:, s) = turn(r_departing, motion%v_rate)
   end subroutine place_user
 
   !> The motion of the reference link in the moving link, from that of the moving in the reference link.
@@ -95,10 +95,10 @@ contains
     r_back = transpose(motion%pose%r)
     back%pose = inverse(motion%pose)
     g = motion%v - cross(motion%w, motion%pose%p)
-    back%w = -matmul(r_back, motion%w)
-    back%v = -matmul(r_back, g)
-    back%w_rate = -matmul(r_back, motion%w_rate)
-    back%v_rate = matmul(r_back, cross(motion%w, g) + cross(motion%w, motion%v) &
+    back%w = -turn(r_back, motion%w)
+    back%v = -turn(r_back, g)
+    back%w_rate = -turn(r_back, motion%w_rate)
+    back%v_rate = turn(r_back, cross(motion%w, g) + cross(motion%w, motion%v) &
                          + cross(motion%w_rate, motion%pose%p) - motion%v_rate)
   end function reversed_motion
 end module mech9_composition

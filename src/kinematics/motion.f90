@@ -2,7 +2,7 @@
 !> Uses kinds, rotation, plan, state, point.
 module mech9_motion
   use mech9_kinds, only: wp
-  use mech9_rotation, only: cross
+  use mech9_rotation, only: turn, cross
   use mech9_pose, only: transformed
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -66,7 +66,7 @@ contains
 
     f = plan%frame_of(point%link)
     in_frame = transformed(plan%link_in_frame(point%link), point%position)
-    arm = matmul(state%r(:, :, f), in_frame)
+    arm = turn(state%r(:, :, f), in_frame)
     position = state%p(:, f) + arm + plan%origin
     velocity = state%v(:, f) + cross(state%omega(:, f), arm)
     acceleration = state%a(:, f) + cross(state%alpha(:, f), arm) &

@@ -2,7 +2,7 @@
 !> Uses kinds, rotation, motion_view.
 module mech9_force_sum
   use mech9_kinds, only: wp
-  use mech9_rotation, only: cross
+  use mech9_rotation, only: turn, cross
   use mech9_motion_view, only: motion_view_type
   implicit none
   private
@@ -49,7 +49,7 @@ contains
     real(wp), intent(in) :: force(3)      !< fixed axes [N]
     real(wp) :: arm(3)
 
-    arm = matmul(state%links(link)%r, point)
+    arm = turn(state%links(link)%r, point)
     self%force(:, link) = self%force(:, link) + force
     self%torque(:, link) = self%torque(:, link) + cross(arm, force)
   end subroutine add_force

@@ -1,7 +1,7 @@
 !> The motion of links and coordinates as loads see it. Uses kinds, rotation.
 module mech9_motion_view
   use mech9_kinds, only: wp
-  use mech9_rotation, only: identity, cross
+  use mech9_rotation, only: identity, turn, cross
   implicit none
   private
   public :: motion_view_type, link_motion_type
@@ -35,7 +35,7 @@ contains
     real(wp), intent(in) :: point(3)      !< in the link's system [m]
     real(wp) :: position(3)
 
-    position = self%links(link)%p + matmul(self%links(link)%r, point)
+    position = self%links(link)%p + turn(self%links(link)%r, point)
   end function position
 
   !> Velocity of a point of a link [m/s].
@@ -45,7 +45,7 @@ contains
     real(wp), intent(in) :: point(3)      !< in the link's system [m]
     real(wp) :: velocity(3), arm(3)
 
-    arm = matmul(self%links(link)%r, point)
+    arm = turn(self%links(link)%r, point)
     velocity = self%links(link)%v + cross(self%links(link)%omega, arm)
   end function velocity
 
@@ -56,6 +56,6 @@ contains
     real(wp), intent(in) :: vector(3)
     real(wp) :: turned(3)
 
-    turned = matmul(self%links(link)%r, vector)
+    turned = turn(self%links(link)%r, vector)
   end function turned
 end module mech9_motion_view

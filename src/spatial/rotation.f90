@@ -5,7 +5,7 @@ module mech9_rotation
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: identity, cross, unit, about_axis, about_z, rotation_vector, axial_vector
+  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, rotation_vector, axial_vector
 
   !> The rotation that turns nothing.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, &
@@ -13,6 +13,43 @@ module mech9_rotation
                                                    0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
 
 contains
+
+  ! Written out for fixed sizes: matmul of sections of unknown size makes temporaries and is slower.
+
+  !> r x: components in A from components in B, for r_ab.
+  pure function turn(r, x) result(y)
+    real(wp), intent(in) :: r(3, 3), x(3)
+    real(wp) :: y(3)
+    integer :: i
+
+    do i = 1, 3
+      y(i) = r(i, 1)*x(1) + r(i, 2)*x(2) + r(i, 3)*x(3)
+    end do
+  end function turn
+
+  !> r^T x: components in B from components in A, for r_ab.
+  pure function turn_back(r, x) result(y)
+    real(wp), intent(in) :: r(3, 3), x(3)
+    real(wp) :: y(3)
+    integer :: i
+
+    do i = 1, 3
+      y(i) = r(1, i)*x(1) + r(2, i)*x(2) + r(3, i)*x(3)
+    end do
+  end function turn_back
+
+  !> a b: r_ac from r_ab and r_bc.
+  pure function combine(a, b) result(c)
+    real(wp), intent(in) :: a(3, 3), b(3, 3)
+    real(wp) :: c(3, 3)
+    integer :: i, j
+
+    do j = 1, 3
+      do i = 1, 3
+        c(i, j) = a(i, 1)*b(1, j) + a(i, 2)*b(2, j) + a(i, 3)*b(3, j)
+      end do
+    end do
+  end function combine
 
   !> Vector product a x b.
   pure function cross(a, b) result(c)
