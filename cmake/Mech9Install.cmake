@@ -15,6 +15,13 @@ string(REPLACE ";" " " link_fortran77_options "${MECH9_FORTRAN77_OPTIONS}")
 string(REPLACE ";" " " link_lto "${MECH9_LTO_LINK}")
 string(REPLACE ";" " " link_libraries "${MECH9_LINK_LIBRARIES}")
 
+set(link_letters "")
+foreach(letter k d)
+  if(TARGET mech9${letter})
+    string(APPEND link_letters " ${letter}")
+  endif()
+endforeach()
+
 set(link_modules "${PROJECT_BINARY_DIR}/modules")
 set(link_library "${PROJECT_BINARY_DIR}/libmech9.a")
 set(link_programs "${MECH9_PROGRAMS_DIR}")

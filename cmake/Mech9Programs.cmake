@@ -21,7 +21,7 @@ function(mech9_add_programs)
 
   foreach(letter k d)
     set(main "${MECH9_PROGRAMS_DIR}/mech9${letter}.f90")
-    if(EXISTS "${main}")
+    if(EXISTS "${main}" AND (NOT TARGET mech9 OR TARGET mech9${letter}))   # in this tree: what it builds itself
       set(program ${arg_NAME}_${letter})
       add_executable(${program} "${main}" ${arg_PROCEDURES})
       target_link_libraries(${program} PRIVATE mech9::mech9 ${arg_LIBRARIES})
