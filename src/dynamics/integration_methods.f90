@@ -1,0 +1,41 @@
+!> The methods of integration by name. Uses nothing.
+module mech9_integration_methods
+  implicit none
+  private
+  public :: integration_method_type, integration_methods, method_index
+  public :: runge_kutta, multistep
+
+  !> Families of methods.
+  integer, parameter :: runge_kutta = 1   !< explicit, one step
+  integer, parameter :: multistep = 2     !< of variable order
+
+  type :: integration_method_type
+    character(len=15) :: name
+    integer :: family        !< runge_kutta or multistep
+    integer :: order         !< of its error; the highest one where it varies
+    integer :: stages        !< rates of change worked out in a step; 0 where that varies
+    logical :: reuses_last   !< the last stage is the first one of the next step
+    character(len=64) :: help
+  end type integration_method_type
+
+  !> All of them, in the order in which they are told.
+  type(integration_method_type), parameter :: integration_methods(*) = [ &
+    integration_method_type('dormand-prince', runge_kutta, 5, 7, .true., 'Dormand-Prince 5(4), Runge-Kutta'), &
+    integration_method_type('verner', runge_kutta, 6, 8, .false., 'Verner 6(5), Runge-Kutta'), &
+    integration_method_type('fehlberg', runge_kutta, 8, 13, .false., &
+                            'Fehlberg 8(7), Runge-Kutta; blind to forces of time alone'), &
+    integration_method_type('merson', runge_kutta, 4, 5, .false., 'Kutta-Merson 4(3), the MERSOL of 1995'), &
+    integration_method_type('adams', multistep, 12, 0, .false., 'Adams-Moulton, orders 1 to 12'), &
+    integration_method_type('bdf', multistep, 5, 0, .false., 'backward differences, orders 1 to 5; for stiff motions')]
+
+contains
+
+  !> Place of a name in the list; 0 when it is not there.
+  pure integer function method_index(name)
+    character(len=*), intent(in) :: name
+
+    do method_index = size(integration_methods), 1, -1
+      if (integration_methods(method_index)%name == name) return
+    end do
+  end function method_index
+end module mech9_integration_methods
