@@ -1,0 +1,166 @@
+!> The motion as differential equations for an integrator. Uses the kinematics floor, mechanism,
+!> ode_system, dynamics_plan, lagrange.
+!>
+!> The vector that is integrated holds all coordinates and the rates of the independent ones. An
+!> evaluation takes the positions as they are, and the chains are closed after each accepted step:
+!> half the cost of closing them in every evaluation, at the same error (docs/performance.md).
+module mech9_motion_system
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type, acceleration_known
+  use mech9_composition, only: place_frames
+  use mech9_solver, only: newton_outcome_type, close_block
+  use mech9_planning, only: chain_names
+  use mech9_ode_system, only: ode_system_type
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations, show_state
+  implicit none
+  private
+  public :: motion_system_type, set_motion_system
+
+  !> Largest change of a coordinate, in its unit, by which closing may move what the integrator found:
+  !> its error is far below; more, and the chains might close on another branch.
+  real(wp), parameter :: trusted_correction = 0.02_wp
+
+  type, extends(ode_system_type) :: motion_system_type
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(state_type) :: state                        !< of the last evaluation, or as settled
+    integer(long) :: iterations = 0                  !< of Newton's method, all blocks
+  contains
+    procedure :: size_of_vector
+    procedure :: vector
+    procedure :: rate
+    procedure :: settle
+    procedure :: present
+    procedure :: conditioning
+  end type motion_system_type
+
+contains
+
+  !> The system from an assembled start with the independent rates in `start`; its motion there is worked out.
+  subroutine set_motion_system(mechanism, plan, start, system, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    class(motion_system_type), intent(inout) :: system
+    type(error_type), allocatable, intent(out) :: err
+
+    system%settles = .true.
+    system%mechanism = mechanism
+    system%plan = plan
+    call make_dynamics_plan(mechanism, plan, system%dynamics)
+    system%work = new_lagrange_work(plan, system%dynamics)
+    system%state = start
+    call system%present(err)
+  end subroutine set_motion_system
+
+  !> Length of the vector that is integrated.
+  pure integer function size_of_vector(self)
+    class(motion_system_type), intent(in) :: self
+
+    size_of_vector = self%plan%n_coordinates + size(self%plan%independent)
+  end function size_of_vector
+
+  !> The vector of the present state.
+  pure function vector(self) result(y)
+    class(motion_system_type), intent(in) :: self
+    real(wp) :: y(self%plan%n_coordinates + size(self%plan%independent))
+
+    y(:self%plan%n_coordinates) = self%state%q
+    y(self%plan%n_coordinates + 1:) = self%state%dq(self%plan%independent)
+  end function vector
+
+  !> Derivatives of the vector. A trial state in a singular position fails with exit_singular.
+  subroutine rate(self, t, y, ydot, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    real(wp), intent(out) :: ydot(:)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i, m
+
+    call take(self, t, y)
+    call place_frames(self%plan, 1, self%plan%n_coordinates, self%state, err)
+    if (allocated(err)) return
+    call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    if (allocated(err)) return
+    m = self%plan%n_coordinates
+    do i = 1, m
+      ydot(i) = self%state%dq(i)
+    end do
+    do i = 1, size(self%work%accelerations)
+      ydot(m + i) = self%work%accelerations(i)
+    end do
+  end subroutine rate
+
+  !> Positions and independent rates of a vector into the state.
+  pure subroutine take(self, t, y)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t, y(:)
+    integer :: i, m
+
+    self%state%t = t
+    m = self%plan%n_coordinates
+    do i = 1, m
+      self%state%q(i) = y(i)
+    end do
+    do i = 1, size(self%plan%independent)
+      self%state%dq(self%plan%independent(i)) = y(m + i)
+    end do
+  end subroutine take
+
+  !> After an accepted step: close the chains, and put the closed positions back into the vector.
+  subroutine settle(self, t, y, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(inout) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: outcome
+    integer :: b, i
+
+    call take(self, t, y)
+    do b = 1, size(self%plan%blocks)
+      call close_block(self%plan, self%plan%blocks(b), self%state, self%work%blocks(b), outcome, err)
+      if (allocated(err)) return
+      self%iterations = self%iterations + outcome%iterations
+      if (.not. outcome%converged .or. outcome%correction > trusted_correction) then
+        call raise(err, exit_singular, chain_names(self%plan%blocks(b))//' cannot be closed near the position at t = '// &
+                   to_text(t, 10)//' s')
+        return
+      end if
+    end do
+    do i = 1, self%plan%n_coordinates
+      y(i) = self%state%q(i)
+    end do
+  end subroutine settle
+
+  !> At the start or after `settle`: all velocities and accelerations of the state, and the state as
+  !> loads see it in work%view, for results.
+  subroutine present(self, err)
+    class(motion_system_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    if (allocated(err)) return
+    call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
+    call show_state(self%plan, self%dynamics, self%state, self%work%view)
+    self%state%known = acceleration_known
+  end subroutine present
+
+  !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.
+  pure real(wp) function conditioning(self)
+    class(motion_system_type), intent(in) :: self
+    integer :: b
+
+    conditioning = 1.0_wp
+    do b = 1, size(self%work%blocks)
+      conditioning = min(conditioning, self%work%blocks(b)%equations%conditioning())
+    end do
+  end function conditioning
+end module mech9_motion_system

@@ -1,0 +1,153 @@
+!> What mech9d says at the end of a run: a few lines for a person, JSON for a program.
+!> Uses text, json, mechanism, dynamic_run, recording, run_words.
+module mech9_dynamic_report
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_json, only: json_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_recording, only: recording_outcome_type
+  use mech9_integration_methods, only: integration_methods
+  use mech9_integrator, only: integration_statistics_type
+  use mech9_dynamic_run, only: dynamic_run_type
+  use mech9_run_words, only: duration, each, add_provenance, add_structure
+  implicit none
+  private
+  public :: print_dynamic_report, save_dynamic_report, print_coefficients
+
+contains
+
+  !> The short report of a run.
+  subroutine print_dynamic_report(unit, table_path, outcome, run)
+    integer, intent(in) :: unit
+    character(len=*), intent(in) :: table_path
+    type(recording_outcome_type), intent(in) :: outcome
+    type(dynamic_run_type), intent(inout) :: run
+    type(integration_statistics_type) :: counts
+    integer :: i
+
+    counts = run%statistics()
+    write (unit, '(a)') to_text(outcome%rows)//' outputs: '//duration(outcome%seconds_solving)//' to solve, '// &
+      duration(outcome%seconds_writing)//' to write'
+    write (unit, '(a)') method_of(run)//': '//to_text(counts%steps)//' steps, '// &
+      to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
+      to_text(counts%rate_evaluations)//' evaluations'//each(outcome%seconds_solving, int(counts%rate_evaluations))
+    write (unit, '(a)') 'largest closure '//to_text(run%worst_closure, 3)//' m; largest change of energy '// &
+      to_text(run%largest_energy_change, 3)//' J'
+    do i = 1, size(run%events)
+      write (unit, '(a)') 't = '//to_text(run%events(i)%t, 8)//' s: independent coordinates are now '// &
+        to_text(run%events(i)%independent)
+    end do
+    if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
+  end subroutine print_dynamic_report
+
+  !> The method in use.
+  pure function method_of(run) result(name)
+    type(dynamic_run_type), intent(in) :: run
+    character(len=:), allocatable :: name
+
+    name = run%system%mechanism%solver%method
+    if (name == '') name = trim(integration_methods(1)%name)
+  end function method_of
+
+  !> The coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
+  subroutine print_coefficients(unit, plan, coefficients)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    real(wp), intent(in) :: coefficients(:, :)   !< lower triangle
+    integer :: p, r
+
+    write (unit, '(a)') 'coefficients of motion at the start:'
+    do p = 1, size(plan%independent)
+      do r = p, size(plan%independent)
+        write (unit, '(2x,a,es24.16)') 'a('//to_text(plan%independent(p))//','//to_text(plan%independent(r))//') =', &
+          coefficients(r, p)
+      end do
+    end do
+  end subroutine print_coefficients
+
+  !> The same, and more, as JSON.
+  subroutine save_dynamic_report(path, mechanism, plan, table_path, exit_code, outcome, run, err)
+    character(len=*), intent(in) :: path
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan             !< at the start
+    character(len=*), intent(in) :: table_path
+    integer, intent(in) :: exit_code                !< that the program is going to answer
+    type(recording_outcome_type), intent(in) :: outcome
+    type(dynamic_run_type), intent(inout) :: run
+    type(error_type), allocatable, intent(out) :: err
+    type(integration_statistics_type) :: counts
+    type(json_type) :: json
+
+    call json%begin_object()
+    call add_provenance(json, 'mech9d')
+    call json%add('title', mechanism%title)
+    call json%add('exit_code', exit_code)
+    call json%add('table', table_path)
+    call json%add('outputs', outcome%rows)
+    counts = run%statistics()
+    call json%add('method', method_of(run))
+    call json%add('relative_tolerance', mechanism%solver%relative_tolerance)
+    call json%add('absolute_tolerance', mechanism%solver%absolute_tolerance)
+    call json%add('steps', counts%steps)
+    call json%add('evaluations', counts%rate_evaluations)
+    call json%add('jacobian_evaluations', counts%jacobian_evaluations)
+    call json%add('error_test_failures', counts%error_test_failures)
+    call json%add('convergence_failures', counts%convergence_failures)
+    call json%add('refusals', counts%refusals)
+    call json%add('newton_iterations', run%system%iterations)
+    call json%add('largest_closure', run%worst_closure)
+    call json%add('size', plan%length)
+    call json%add('energy_at_start', run%energy_at_start)
+    call json%add('largest_energy_change', run%largest_energy_change)
+    call json%add('least_conditioning', run%least_conditioning)
+    call json%add('seconds_solving', outcome%seconds_solving)
+    call json%add('seconds_writing', outcome%seconds_writing)
+    call add_coefficients(json, plan, run%coefficients)
+    call add_events(json, run)
+    call add_structure(json, mechanism, plan)
+    call json%end_object()
+    call json%save(path, err)
+  end subroutine save_dynamic_report
+
+  !> [{"p": 1, "r": 5, "value": ...}, ...]
+  subroutine add_coefficients(json, plan, coefficients)
+    type(json_type), intent(inout) :: json
+    type(plan_type), intent(in) :: plan
+    real(wp), intent(in) :: coefficients(:, :)
+    integer :: p, r
+
+    call json%begin_array('coefficients')
+    do p = 1, size(plan%independent)
+      do r = p, size(plan%independent)
+        call json%begin_object()
+        call json%add('p', plan%independent(p))
+        call json%add('r', plan%independent(r))
+        call json%add('value', coefficients(r, p))
+        call json%end_object()
+      end do
+    end do
+    call json%end_array()
+  end subroutine add_coefficients
+
+  !> Changes of the independent coordinates.
+  subroutine add_events(json, run)
+    type(json_type), intent(inout) :: json
+    type(dynamic_run_type), intent(in) :: run
+    integer :: i, k
+
+    call json%begin_array('events')
+    do i = 1, size(run%events)
+      call json%begin_object()
+      call json%add('t', run%events(i)%t)
+      call json%begin_array('independent')
+      do k = 1, size(run%events(i)%independent)
+        call json%add(run%events(i)%independent(k))
+      end do
+      call json%end_array()
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_events
+end module mech9_dynamic_report

@@ -1,0 +1,244 @@
+!> The run of mech9d: integrating the motion from output to output, in other independent coordinates
+!> where the present ones come to a singular position. Uses the kinematics and dynamics floors,
+!> columns, recording.
+module mech9_dynamic_run
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data, exit_singular, exit_integrator
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_tracking, only: largest_closure
+  use mech9_energy, only: kinetic_energy, potential_energy
+  use mech9_coordinate_choice, only: best_independent, with_independent
+  use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_columns, only: kinematic_columns
+  use mech9_recording, only: motion_source_type
+  implicit none
+  private
+  public :: dynamic_run_type, event_type, start_dynamic_run, assemble_initial_state
+
+  !> Below this conditioning other independent coordinates are looked for ...
+  real(wp), parameter :: doubtful = 0.02_wp
+  !> ... and taken if they are so many times better conditioned; else the next look is at so many
+  !> times worse conditioning.
+  real(wp), parameter :: worth_it = 4.0_wp
+
+  !> A change of the independent coordinates.
+  type :: event_type
+    real(wp) :: t = 0.0_wp
+    integer, allocatable :: independent(:)   !< from then on
+  end type event_type
+
+  type, extends(motion_source_type) :: dynamic_run_type
+    type(motion_system_type), pointer :: system => null()   !< owned; the integrator keeps hold of it
+    type(integrator_type) :: integrator
+    real(wp), allocatable :: y(:)                 !< the integrated vector
+    real(wp), allocatable :: coefficients(:, :)   !< a_pr at the start, lower triangle
+    type(event_type), allocatable :: events(:)
+    real(wp) :: t = 0.0_wp
+    real(wp) :: look_below = doubtful             !< conditioning at which other coordinates are looked for
+    logical :: started = .false.
+    type(integration_statistics_type) :: before   !< of the integrators before the present one
+    real(wp) :: energy_at_start = 0.0_wp          !< [J]
+    real(wp) :: largest_energy_change = 0.0_wp    !< of kinetic + potential, against the start [J]
+    real(wp) :: worst_closure = 0.0_wp            !< [m]
+    real(wp) :: least_conditioning = 1.0_wp
+  contains
+    procedure :: row_at
+    procedure :: statistics
+    procedure :: close => close_run
+    procedure, private :: step
+    procedure, private :: start_integrator
+    procedure, private :: stop_integrator
+    procedure, private :: change_coordinates
+  end type dynamic_run_type
+
+contains
+
+  !> Plan and assembled initial state: positions and rates of the independent coordinates as given; those
+  !> at rest need no velocity.
+  subroutine assemble_initial_state(mechanism, plan, state, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(out) :: plan
+    type(state_type), intent(out) :: state
+    type(error_type), allocatable, intent(out) :: err
+    integer :: k
+
+    do k = 1, size(mechanism%pairs)
+      if (mechanism%position_given(k) .or. .not. mechanism%structure%independent(k)) cycle
+      call raise(err, exit_data, 'the independent coordinate '//to_text(k)//' of this pair has no initial position; '// &
+                 'give &initial coordinate='//to_text(k)//', position=..., velocity=... /', &
+                 mechanism%pairs(k)%pair%place)
+      return
+    end do
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    if (allocated(err)) return
+    state%t = mechanism%time%start
+    state%dq(plan%independent) = mechanism%initial_velocity(plan%independent)
+  end subroutine assemble_initial_state
+
+  !> A run from an assembled initial state; its motion at the start is worked out. To be closed at the end.
+  subroutine start_dynamic_run(mechanism, plan, start, run, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    type(dynamic_run_type), intent(out) :: run
+    type(error_type), allocatable, intent(out) :: err
+
+    run%program_name = 'mech9d'
+    run%columns = kinematic_columns(mechanism)
+    call run%columns%append('E.kinetic', 'J')
+    call run%columns%append('E.potential', 'J')
+    call run%columns%append('E.total', 'J')
+    call run%columns%append('closure', 'm')
+    run%t = mechanism%time%start
+    allocate (run%events(0))
+    allocate (run%system)
+    call set_motion_system(mechanism, plan, start, run%system, err)
+    if (allocated(err)) return
+    run%coefficients = run%system%work%coefficients
+  end subroutine start_dynamic_run
+
+  !> State, energies and closure at time t.
+  subroutine row_at(self, t, row, err)
+    class(dynamic_run_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(inout) :: row(:)
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: kinetic, potential
+    integer :: used
+
+    if (self%started) then
+      do while (abs(t - self%t) > 0.0_wp)
+        call self%step(t, err)
+        if (allocated(err)) return
+      end do
+      call self%system%present(err)
+    else
+      call self%start_integrator(err)
+    end if
+    if (allocated(err)) return
+    associate (system => self%system)
+      call self%columns%fill(system%mechanism, system%plan, system%state, row, used)
+      kinetic = kinetic_energy(system%dynamics, system%state)
+      potential = potential_energy(system%mechanism, system%plan, system%dynamics, system%state, system%work%view)
+      row(used + 1:used + 3) = [kinetic, potential, kinetic + potential]
+      row(used + 4) = largest_closure(system%plan, system%state)
+    end associate
+    if (.not. self%started) self%energy_at_start = kinetic + potential
+    self%started = .true.
+    self%largest_energy_change = max(self%largest_energy_change, abs(kinetic + potential - self%energy_at_start))
+    self%worst_closure = max(self%worst_closure, row(used + 4))
+  end subroutine row_at
+
+  !> One accepted step towards t, with a change of coordinates before it where that helps.
+  subroutine step(self, t, err)
+    class(dynamic_run_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: refused
+    logical :: changed
+
+    if (self%system%conditioning() < self%look_below) then
+      call self%change_coordinates(changed, err)
+      if (allocated(err)) return
+    end if
+    call self%integrator%step(t, self%t, self%y, refused)
+    self%least_conditioning = min(self%least_conditioning, self%system%conditioning())
+    if (.not. allocated(refused)) return
+    ! perhaps the integrator stopped at a singular position of these coordinates only
+    if (refused%code == exit_singular .or. refused%code == exit_integrator) then
+      call self%change_coordinates(changed, err)
+      if (changed .or. allocated(err)) return
+    end if
+    call move_alloc(refused, err)
+  end subroutine step
+
+  subroutine start_integrator(self, err)
+    class(dynamic_run_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+    real(wp), allocatable :: absolute(:)
+
+    self%y = self%system%vector()
+    allocate (absolute(size(self%y)), source=self%system%mechanism%solver%absolute_tolerance)
+    associate (solver => self%system%mechanism%solver)
+      call self%integrator%create(self%system, solver%method, solver%relative_tolerance, absolute, self%t, self%y, err)
+      if (.not. allocated(err)) call self%integrator%limit(err, maximum_steps=solver%maximum_steps)
+    end associate
+  end subroutine start_integrator
+
+  !> What all integrators of the run took together.
+  function statistics(self) result(all)
+    class(dynamic_run_type), intent(inout) :: self
+    type(integration_statistics_type) :: all
+
+    all = self%integrator%statistics()
+    all%steps = all%steps + self%before%steps
+    all%rate_evaluations = all%rate_evaluations + self%before%rate_evaluations
+    all%jacobian_evaluations = all%jacobian_evaluations + self%before%jacobian_evaluations
+    all%error_test_failures = all%error_test_failures + self%before%error_test_failures
+    all%convergence_failures = all%convergence_failures + self%before%convergence_failures
+    all%refusals = all%refusals + self%before%refusals
+  end function statistics
+
+  !> Keep its counts and give back what it holds.
+  subroutine stop_integrator(self)
+    class(dynamic_run_type), intent(inout) :: self
+
+    self%before = self%statistics()
+    call self%integrator%destroy()
+  end subroutine stop_integrator
+
+  !> Go on in better conditioned independent coordinates, if there are any.
+  subroutine change_coordinates(self, changed, err)
+    class(dynamic_run_type), intent(inout) :: self
+    logical, intent(out) :: changed
+    type(error_type), allocatable, intent(out) :: err
+    type(motion_system_type), allocatable :: other
+    type(error_type), allocatable :: refused
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: state
+    logical :: independent(self%system%plan%n_coordinates)
+
+    changed = .false.
+    ! the state of the last accepted step, with the rates of all coordinates
+    call self%system%settle(self%t, self%y, refused)
+    if (.not. allocated(refused)) call self%system%present(refused)
+    if (allocated(refused)) return
+    call best_independent(self%system%plan, self%system%state, independent)
+    if (all(independent .eqv. self%system%mechanism%structure%independent)) then
+      self%look_below = self%system%conditioning()/worth_it
+      return
+    end if
+    call with_independent(self%system%mechanism, self%system%state, independent, mechanism, plan, state, refused)
+    if (allocated(refused)) return
+    allocate (other)
+    call set_motion_system(mechanism, plan, state, other, refused)
+    if (allocated(refused)) return
+    if (other%conditioning() < worth_it*self%system%conditioning()) then
+      self%look_below = self%system%conditioning()/worth_it
+      return
+    end if
+    call self%stop_integrator()
+    other%iterations = self%system%iterations
+    deallocate (self%system)
+    allocate (self%system, source=other)
+    self%events = [self%events, event_type(self%t, plan%independent)]
+    self%look_below = min(doubtful, self%system%conditioning()/worth_it)
+    changed = .true.
+    call self%start_integrator(err)
+  end subroutine change_coordinates
+
+  !> Give back what the integrator and the system hold.
+  subroutine close_run(self)
+    class(dynamic_run_type), intent(inout) :: self
+
+    call self%stop_integrator()
+    if (associated(self%system)) deallocate (self%system)
+    self%system => null()
+  end subroutine close_run
+end module mech9_dynamic_run

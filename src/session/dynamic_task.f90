@@ -1,0 +1,76 @@
+!> What mech9d does with a mechanism. Uses task, recording, dynamic_run, dynamic_report.
+module mech9_dynamic_task
+  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mech9_error, only: error_type
+  use mech9_command_line, only: command_line_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_task, only: task_type, table_path_of, print_check, announce
+  use mech9_recording, only: recording_outcome_type, record
+  use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
+  use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients
+  implicit none
+  private
+  public :: dynamic_task_type, dynamic_task
+
+  type, extends(task_type) :: dynamic_task_type
+  contains
+    procedure :: work
+  end type dynamic_task_type
+
+contains
+
+  pure function dynamic_task() result(task)
+    type(dynamic_task_type) :: task
+
+    task%program_name = 'mech9d'
+    task%needs_drives = .false.
+  end function dynamic_task
+
+  !> Plan, assemble, work out the start, and run unless only a check is asked for.
+  subroutine work(self, options, mechanism, diagnostics)
+    class(dynamic_task_type), intent(in) :: self
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(dynamic_run_type) :: run
+    type(error_type), allocatable :: err
+
+    call assemble_initial_state(mechanism, plan, start, err)
+    if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+    else if (options%check .or. options%plan) then
+      call print_check(options, mechanism, plan, start)
+      call print_coefficients(output_unit, plan, run%coefficients)
+    else
+      call carry_out(options, mechanism, plan, run, diagnostics)
+    end if
+    call run%close()
+  end subroutine work
+
+  !> The run itself and its report.
+  subroutine carry_out(options, mechanism, plan, run, diagnostics)
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamic_run_type), intent(inout) :: run
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(recording_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: table_path
+
+    table_path = table_path_of(options, mechanism)
+    call announce(options, mechanism, plan)
+    call record(run, mechanism, table_path, options%quiet, outcome, err)
+    if (.not. options%quiet) call print_dynamic_report(error_unit, table_path, outcome, run)
+    if (allocated(err)) call diagnostics%add_error(err)
+    if (options%report == '') return
+    call save_dynamic_report(options%report, mechanism, plan, table_path, diagnostics%code(), outcome, run, err)
+    if (allocated(err)) call diagnostics%add_error(err)
+  end subroutine carry_out
+end module mech9_dynamic_task
