@@ -2,7 +2,7 @@
 against each other.
 
 usage: user_programs.py FOLDER      FOLDER holds trammel_k, trammel_values_k, cam_follower_k,
-                                    cycloidal_drive_k, cycloidal_drive_values_k
+                                    cycloidal_drive_k, cycloidal_drive_values_k, air_drag_d
 """
 import os
 import sys
@@ -55,6 +55,21 @@ def check_cycloid(checks, table, why):
     check_point(checks, table, 'A', (0.3 * cos(crank), 0.3 * sin(crank), 0.0), why)
 
 
+def check_air(checks, table, why):
+    """The weight falls towards its final speed, the wheel runs out; what is lost is the work of the drag."""
+    t = table['t']
+    final = np.sqrt(2.0 * 9.81 / 0.10)
+    slowing = 2 * 0.04 * 0.3 ** 3 / 0.05
+    expected = {'q1': final ** 2 / 9.81 * np.log(np.cosh(9.81 * t / final)), 'dq1': final * np.tanh(9.81 * t / final),
+                'q2': np.log(1 + 20 * slowing * t) / slowing, 'dq2': 20 / (1 + 20 * slowing * t)}
+    for column, values in expected.items():
+        # 50 outputs and some steps between them, each with an error of 1e-10, in a motion that damps errors
+        checks.near(table[column], values, 1e-8, f'{why}: {column} by its closed form')
+    lost = table['E.total'][0] - table['E.total']
+    kinetic = 0.5 * 2.0 * expected['dq1'] ** 2 + 0.5 * 0.05 * expected['dq2'] ** 2
+    checks.near(lost, 10.0 - kinetic + 2.0 * 9.81 * expected['q1'], 1e-8, f'{why}: the energy falls by the work of the drag')
+
+
 def check_same(checks, first, second, why):
     for column in first:
         if column != 'closure':
@@ -73,6 +88,8 @@ def main():
         data = os.path.join(TREE, 'user_procs', sample, sample + '.nml')
         forms[program] = table_of(os.path.join(folder, program + '_k'), data)
         check(checks, forms[program], program)
+    air = table_of(os.path.join(folder, 'air_drag_d'), os.path.join(TREE, 'user_procs', 'air_drag', 'air_drag.nml'))
+    check_air(checks, air, 'air drag')
     for name in ('trammel', 'cycloidal_drive'):
         check_same(checks, forms[name], forms[name + '_values'], f'{name}: Taylor arithmetic and plain values agree')
     checks.finish()

@@ -1,0 +1,105 @@
+"""Energy over long runs: without dissipation it stays, with dampers and given forces it changes by their power.
+
+usage: dynamics_energy.py MECH9D
+"""
+import os
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+import data_file
+from mech9_cases import REFERENCE, Checks, table_of
+
+CONSERVATIVE = ('dynamics_fig1', 'dynamics_fivebar', 'dynamics_open_chain', 'dynamics_spatial_slider_crank')
+
+
+def groups_of(name):
+    with open(os.path.join(REFERENCE, name + '.nml'), encoding='utf-8') as file:
+        return data_file.parse(file.read())
+
+
+def table(mech9d, groups, *options):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'case.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(data_file.write(groups))
+        return table_of(mech9d, path, *options)
+
+
+def check_balance(checks, mech9d, name):
+    """Ten times the run of the reference mechanism without its damper: the energy within 100 tolerances of its scale."""
+    groups = groups_of(name)
+    for group, items in groups:
+        items.pop('damping', None)
+        if group == 'time':
+            items['end'], items['intervals'] = [10.0], [200]
+    for tolerance in (1e-6, 1e-9):
+        found = table(mech9d, groups + [('solver', {'relative_tolerance': [tolerance], 'absolute_tolerance': [tolerance]})])
+        total = found['E.total']
+        scale = max(1.0, np.max(found['E.kinetic']))
+        checks.true(np.max(np.abs(found['ddq1'])) > 0.5, f'{name}: it is accelerated')
+        checks.true(np.max(np.abs(total - total[0])) <= 100 * tolerance * scale,
+                    f'{name}: energy within 100 tolerances of {tolerance:.0e}',
+                    f'it changed by {np.max(np.abs(total - total[0])):.3e} of {scale:.3g} J')
+
+
+# Generalized and spatial loads whose power can be told from the columns of the table. Link 4 of Fig. 1 is at the
+# angle q6 to the frame, link 2 at q5.
+POWERED = """
+&load kind='force', link=5, position=1.0, 0.3, 0.0, force=2.0, -3.0, 1.0 /
+&load kind='force', link=4, position=2.6, 0.0, 0.0, force=1.5, 2.5, 0.0, frame='link' /
+&load kind='torque', link=2, torque=0.5, 0.4, 1.2 /
+&load kind='torque', link=4, torque=0.3, 0.2, -0.8, frame='link' /
+&load kind='coordinate', coordinate=7, stiffness=3.0, rest=1.0, damping=0.6, force=1.1 /
+&point name='R', link=4, position=2.6, 0.0, 0.0 /
+"""
+
+
+def power_of_loads(found):
+    """Power of what has no potential energy, load by load [W]."""
+    to_p = np.array([found['P.x'], found['P.y'] + 1.5, found['P.z']])
+    v_p = np.array([found['P.vx'], found['P.vy'], found['P.vz']])
+    v_r = np.array([found['R.vx'], found['R.vy']])
+    c, s = np.cos(found['q6']), np.sin(found['q6'])
+    return {'damper of the spring': -0.8 * (np.sum(to_p * v_p, axis=0) / np.linalg.norm(to_p, axis=0)) ** 2,
+            'fixed force': np.array([2.0, -3.0, 1.0]) @ v_p,
+            'force that turns': (1.5 * c - 2.5 * s) * v_r[0] + (1.5 * s + 2.5 * c) * v_r[1],
+            'fixed torque': 1.2 * found['dq5'],
+            'torque that turns': -0.8 * found['dq6'],
+            'coordinate': 1.1 * found['dq7'] - 0.6 * found['dq7'] ** 2}
+
+
+def check_power(checks, mech9d):
+    """Eighth-order differences of E.total over the rows against the power from rates in the same rows."""
+    groups = groups_of('dynamics_fig1') + data_file.parse(POWERED)
+    for group, items in groups:
+        if group == 'time':
+            items['end'], items['intervals'] = [1.0], [1000]
+    tolerance = 1e-12
+    found = table(mech9d, groups + [('solver', {'relative_tolerance': [tolerance], 'absolute_tolerance': [tolerance]})])
+    h = found['t'][1] - found['t'][0]
+    total = found['E.total']
+    n = len(total)
+    weights = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
+    slope = sum(w * (total[4 + i:n - 4 + i] - total[4 - i:n - 4 - i]) for i, w in weights.items()) / h
+    powers = {load: power[4:-4] for load, power in power_of_loads(found).items()}
+    scale = np.max(np.abs(slope))
+    for load, power in powers.items():
+        checks.true(np.max(np.abs(power)) > 1e-3 * scale, f'{load}: it has power', np.max(np.abs(power)) / scale)
+    # the integration's noise, 1e-12 of some 100 J, divided by h; truncation, h^8/630 of the ninth derivative, is
+    # smaller while the motion changes over 20 ms and more
+    checks.near(slope / scale, sum(powers.values()) / scale, 1e-7, 'dE/dt is the power of the loads')
+
+
+def main():
+    mech9d = sys.argv[1]
+    checks = Checks()
+    for name in CONSERVATIVE:
+        check_balance(checks, mech9d, name)
+    check_power(checks, mech9d)
+    checks.finish()
+
+
+main()
