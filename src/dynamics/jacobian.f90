@@ -10,7 +10,11 @@ module mech9_jacobian
   use mech9_dynamics_plan, only: dynamics_plan_type
   implicit none
   private
-  public :: jacobian_type, new_jacobian, find_jacobian
+  public :: jacobian_type, new_jacobian, find_jacobian, noise_of_rates
+
+  !> Round-off of rates where a block is well conditioned. Near a singular position closed positions
+  !> are uncertain by round-off over the pivot, and rates by that over the pivot again.
+  real(wp), parameter :: noise_of_rates = 64.0_wp*epsilon(1.0_wp)
 
   !> Entries as in the dynamics plan: derivatives of a frame's angular velocity and of the velocity of its
   !> origin (fixed axes) by the rate of an independent coordinate; `b` is dq_k/dq_i of the step's coordinate.
@@ -32,21 +36,23 @@ contains
   end function new_jacobian
 
   !> The entries of a block's frames and its part of B = dq/dq_i. Frames must be in place, the block's
-  !> Jacobian factorized, earlier blocks done.
-  subroutine find_jacobian(plan, dynamics, block, state, work, jacobian)
+  !> Jacobian factorized, earlier blocks done. Where a dependent coordinate is determined no better than
+  !> by noise, near a position where branches meet, it keeps to `expected`: the tangent is continued.
+  subroutine find_jacobian(plan, dynamics, block, state, expected, work, jacobian)
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(in) :: dynamics
     type(block_type), intent(in) :: block
     type(state_type), intent(in) :: state
+    real(wp), intent(in) :: expected(:)       !< (entries) B as it was found before, continued
     type(block_work_type), intent(inout) :: work
     type(jacobian_type), intent(inout) :: jacobian
     integer :: s, e, c
 
     do s = block%first_step, block%last_step
       do e = dynamics%first(s), dynamics%first(s + 1) - 1
-        jacobian%b(e) = 0.0_wp
-        if (.not. plan%steps(s)%dependent .and. dynamics%column(e) == dynamics%place_of(plan%steps(s)%coordinate)) &
-          jacobian%b(e) = 1.0_wp
+        jacobian%b(e) = expected(e)
+        if (plan%steps(s)%dependent) cycle
+        jacobian%b(e) = merge(1.0_wp, 0.0_wp, dynamics%column(e) == dynamics%place_of(plan%steps(s)%coordinate))
       end do
     end do
     if (size(block%unknowns) > 0) then
@@ -84,7 +90,7 @@ contains
   end subroutine spread_jacobian
 
   !> Rates of the block's dependent coordinates for one independent coordinate, number `offset` + 1
-  !> of the block's: J_d b_d = -(what opens the closures).
+  !> of the block's, from what is expected: J_d (change of b_d) = -(what opens the closures).
   subroutine eliminate(plan, dynamics, block, state, offset, work, jacobian)
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(in) :: dynamics
@@ -94,7 +100,7 @@ contains
     type(block_work_type), intent(inout) :: work
     type(jacobian_type), intent(inout) :: jacobian
     real(wp) :: w(3), v(3), arm(3)
-    integer :: c, e, t, row, i, s
+    integer :: c, e, t, row, i, s, k
 
     row = 0
     do c = block%first_closure, block%last_closure
@@ -114,10 +120,12 @@ contains
       end associate
     end do
     work%right = -work%right
-    call work%equations%solve(work%right, work%change)
+    k = plan%independent(dynamics%column(dynamics%first(block%first_step) + offset))
+    call work%equations%solve(work%right, work%change, noise=noise_of_rates/plan%unit_of(k))
     do i = 1, size(block%unknowns)
       s = block%unknowns(i)
-      jacobian%b(dynamics%first(s) + offset) = work%change(i)*plan%unit_of(plan%steps(s)%coordinate)
+      e = dynamics%first(s) + offset
+      jacobian%b(e) = jacobian%b(e) + work%change(i)*plan%unit_of(plan%steps(s)%coordinate)
     end do
   end subroutine eliminate
 end module mech9_jacobian

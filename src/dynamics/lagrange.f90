@@ -17,12 +17,13 @@ module mech9_lagrange
   use mech9_mechanism, only: mechanism_type
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type, acceleration_known
   use mech9_motion, only: spread_velocities, spread_accelerations
-  use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_accelerations
+  use mech9_closure, only: closure_rates
+  use mech9_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_dynamics_plan, only: dynamics_plan_type, frame_body_type
-  use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian
+  use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian, noise_of_rates
   implicit none
   private
   public :: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations, show_state
@@ -34,6 +35,10 @@ module mech9_lagrange
   type :: lagrange_work_type
     type(block_work_type), allocatable :: blocks(:)
     type(jacobian_type) :: jacobian
+    !> What rates and accelerations are expected to be, by continuation from before: B, entry by entry, and
+    !> the accelerations that rates alone give. They only count beside noise; zero will do.
+    real(wp), allocatable :: expected_b(:)
+    real(wp), allocatable :: expected_ddq(:)
     real(wp), allocatable :: coefficients(:, :)      !< a_pr, lower triangle
     real(wp), allocatable :: factors(:, :)
     real(wp), allocatable :: velocity_terms(:)       !< h_p
@@ -58,6 +63,7 @@ contains
       work%blocks(b) = new_block_work(plan%blocks(b))
     end do
     work%jacobian = new_jacobian(dynamics)
+    allocate (work%expected_b(size(dynamics%column)), work%expected_ddq(plan%n_coordinates), source=0.0_wp)
     allocate (work%coefficients(n, n), work%factors(n, n), source=0.0_wp)
     allocate (work%velocity_terms(n), work%forces(n), work%accelerations(n), source=0.0_wp)
     allocate (work%view%links(plan%n_links))
@@ -118,7 +124,7 @@ contains
           return
         end if
       end if
-      call find_jacobian(plan, dynamics, block, state, work%blocks(b), work%jacobian)
+      call find_jacobian(plan, dynamics, block, state, work%expected_b, work%blocks(b), work%jacobian)
       do i = 1, size(block%unknowns)
         s = block%unknowns(i)
         rate = 0.0_wp
@@ -128,9 +134,40 @@ contains
         state%dq(plan%steps(s)%coordinate) = rate
       end do
       call spread_velocities(plan, block%first_step, block%last_step, state)
-      call solve_accelerations(plan, block, state, work%blocks(b))
+      call find_bias(plan, block, work%expected_ddq, state, work%blocks(b))
     end associate
   end subroutine move_block
+
+  !> Accelerations that rates alone give a block, from what is expected; see find_jacobian.
+  subroutine find_bias(plan, block, expected, state, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    real(wp), intent(in) :: expected(:)       !< (M)
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    real(wp) :: scale
+    integer :: i, k
+
+    if (size(block%unknowns) == 0) then
+      call spread_accelerations(plan, block%first_step, block%last_step, state)
+      return
+    end if
+    scale = 0.0_wp
+    do i = 1, size(block%unknowns)
+      k = plan%steps(block%unknowns(i))%coordinate
+      state%ddq(k) = expected(k)
+      scale = max(scale, (state%dq(k)/plan%unit_of(k))**2)
+    end do
+    call spread_accelerations(plan, block%first_step, block%last_step, state)
+    call closure_rates(plan, block, state, acceleration_known, work%right)
+    work%right = -work%right
+    call work%equations%solve(work%right, work%change, noise=noise_of_rates*scale)
+    do i = 1, size(block%unknowns)
+      k = plan%steps(block%unknowns(i))%coordinate
+      state%ddq(k) = state%ddq(k) + work%change(i)*plan%unit_of(k)
+    end do
+    call spread_accelerations(plan, block%first_step, block%last_step, state)
+  end subroutine find_bias
 
   !> a_pr (21) and the velocity terms of (19).
   subroutine collect_inertia(dynamics, state, work)

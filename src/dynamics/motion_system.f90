@@ -25,6 +25,14 @@ module mech9_motion_system
   !> its error is far below; more, and the chains might close on another branch.
   real(wp), parameter :: trusted_correction = 0.02_wp
 
+  !> What the next rates are expected from.
+  type :: past_type
+    logical :: known = .false.
+    real(wp) :: t = 0.0_wp
+    real(wp), allocatable :: b(:)      !< dependent rates per independent ones, as in the Jacobian
+    real(wp), allocatable :: ddq(:)    !< (M) accelerations that rates alone give
+  end type past_type
+
   type, extends(ode_system_type) :: motion_system_type
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
@@ -32,6 +40,8 @@ module mech9_motion_system
     type(lagrange_work_type) :: work
     type(state_type) :: state                        !< of the last evaluation, or as settled
     integer(long) :: iterations = 0                  !< of Newton's method, all blocks
+    type(past_type), private :: past(2)              !< the last two settled states, the later one first
+    logical, private :: just_settled = .false.
   contains
     procedure :: size_of_vector
     procedure :: vector
@@ -88,8 +98,10 @@ contains
     call take(self, t, y)
     call place_frames(self%plan, 1, self%plan%n_coordinates, self%state, err)
     if (allocated(err)) return
+    call expect(self)
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
+    if (self%just_settled) call remember(self)
     m = self%plan%n_coordinates
     do i = 1, m
       ydot(i) = self%state%dq(i)
@@ -98,6 +110,42 @@ contains
       ydot(m + i) = self%work%accelerations(i)
     end do
   end subroutine rate
+
+  !> What B and the accelerations from rates are expected to be at the state's time, by a straight line
+  !> through the last two settled states.
+  pure subroutine expect(self)
+    class(motion_system_type), intent(inout) :: self
+    real(wp) :: part
+
+    if (.not. self%past(1)%known) return
+    if (self%past(2)%known) then
+      part = (self%state%t - self%past(1)%t)/(self%past(1)%t - self%past(2)%t)
+      self%work%expected_b = self%past(1)%b + part*(self%past(1)%b - self%past(2)%b)
+      self%work%expected_ddq = self%past(1)%ddq + part*(self%past(1)%ddq - self%past(2)%ddq)
+    else
+      self%work%expected_b = self%past(1)%b
+      self%work%expected_ddq = self%past(1)%ddq
+    end if
+  end subroutine expect
+
+  !> Keep what the first evaluation after an accepted step found there.
+  pure subroutine remember(self)
+    class(motion_system_type), intent(inout) :: self
+
+    self%just_settled = .false.
+    if (self%past(1)%known) then
+      ! no straight line through two states at one time
+      if (.not. abs(self%state%t - self%past(1)%t) > 0.0_wp) return
+      self%past(2)%known = .true.
+      self%past(2)%t = self%past(1)%t
+      self%past(2)%b = self%past(1)%b
+      self%past(2)%ddq = self%past(1)%ddq
+    end if
+    self%past(1)%known = .true.
+    self%past(1)%t = self%state%t
+    self%past(1)%b = self%work%jacobian%b
+    self%past(1)%ddq = self%state%ddq
+  end subroutine remember
 
   !> Positions and independent rates of a vector into the state.
   pure subroutine take(self, t, y)
@@ -138,6 +186,7 @@ contains
     do i = 1, self%plan%n_coordinates
       y(i) = self%state%q(i)
     end do
+    self%just_settled = .true.
   end subroutine settle
 
   !> At the start or after `settle`: all velocities and accelerations of the state, and the state as
@@ -146,6 +195,7 @@ contains
     class(motion_system_type), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: err
 
+    call expect(self)
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)

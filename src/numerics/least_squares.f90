@@ -12,6 +12,8 @@ module mech9_least_squares
 
   !> From this number of columns on LAPACK is called.
   integer, parameter :: lapack_from = 24
+  !> Columns with a pivot below this part of the largest are looked at for noise.
+  real(wp), parameter :: nearly_dependent = 0.05_wp
 
   type :: least_squares_type
     integer :: m = 0                            !< equations
@@ -61,12 +63,15 @@ contains
 
   !> x with |a x - b| least, and the length of what remains; columns at and beyond the numerical rank
   !> are not used.
-  subroutine solve(self, b, x, remainder, tolerance)
+  subroutine solve(self, b, x, remainder, tolerance, noise)
     class(least_squares_type), intent(inout) :: self
     real(wp), intent(inout) :: b(:)              !< (m); overwritten
     real(wp), intent(out) :: x(:)                !< (n)
     real(wp), intent(out), optional :: remainder
     real(wp), intent(in), optional :: tolerance   !< of the rank; round-off unless given
+    !> What of x is noise in a well determined column; in a nearly dependent one it is more, by the square
+    !> of how much smaller the pivot is, and all that does not exceed it is left at zero.
+    real(wp), intent(in), optional :: noise
     integer :: i, j, k, info, rank
     real(wp) :: s
 
@@ -90,6 +95,10 @@ contains
     if (present(remainder)) remainder = norm2(b(rank + 1:self%m))
     do j = rank, 1, -1
       b(j) = b(j)/self%a(j, j)
+      if (present(noise)) then
+        s = abs(self%a(j, j)/self%a(1, 1))
+        if (s < nearly_dependent .and. abs(b(j))*s**2 <= noise) b(j) = 0.0_wp
+      end if
       do i = 1, j - 1
         b(i) = b(i) - self%a(i, j)*b(j)
       end do

@@ -22,6 +22,7 @@ module mech9_dynamic_task
 
 contains
 
+  !> The task of mech9d.
   pure function dynamic_task() result(task)
     type(dynamic_task_type) :: task
 
