@@ -12,7 +12,7 @@ module mech9_solver
   implicit none
   private
   public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, apply_change
-  public :: closed_enough, newton_outcome_type
+  public :: closed_enough, newton_outcome_type, least_pivot
 
   !> A chain counts as closed when its independent equations hold to this many times round-off,
   !> rotations in rad, translations in lengths of the mechanism: a sum over the steps of a loop
@@ -101,6 +101,17 @@ contains
     call closure_jacobian(plan, block, state, work%column_of, work%equations%a)
     call work%equations%factorize()
   end subroutine factorize_block
+
+  !> Least pivot of a block's factorized Jacobian: about its least singular value, somewhat above it
+  !> (rotations in rad, lengths in the mechanism's); 0 where rows are missing.
+  pure real(wp) function least_pivot(work)
+    type(block_work_type), intent(in) :: work
+
+    least_pivot = 0.0_wp
+    associate (m => work%equations%m, n => work%equations%n)
+      if (n > 0 .and. m >= n) least_pivot = abs(work%equations%a(n, n))
+    end associate
+  end function least_pivot
 
   !> Add a change, given in units of the coordinates, to the block's dependent coordinates.
   pure subroutine apply_change(plan, block, change, state)

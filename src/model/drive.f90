@@ -11,6 +11,7 @@ module mech9_drive
     type(place_type) :: place     !< of its group in the data file
   contains
     procedure(evaluate_interface), deferred :: evaluate
+    procedure :: greatest_rate
   end type drive_type
 
   !> One of several drives of different kinds.
@@ -28,4 +29,25 @@ module mech9_drive
       type(error_type), allocatable, intent(out) :: err
     end subroutine evaluate_interface
   end interface
+
+contains
+
+  !> A bound of |dq/dt| between t and t + h, so that no movement between two times is overlooked. Drives
+  !> whose formula is known bound it for certain; this one, for all others, looks at uneven times
+  !> between and leaves room. Times at which the drive has no value do not count.
+  function greatest_rate(self, t, h) result(rate)
+    class(drive_type), intent(in) :: self
+    real(wp), intent(in) :: t, h      !< [s]; h may be negative
+    real(wp) :: rate
+    real(wp), parameter :: between(4) = [0.0_wp, 0.29_wp, 0.62_wp, 1.0_wp]
+    type(error_type), allocatable :: err
+    real(wp) :: q, dq, ddq
+    integer :: i
+
+    rate = 0.0_wp
+    do i = 1, size(between)
+      call self%evaluate(t + between(i)*h, q, dq, ddq, err)
+      if (.not. allocated(err)) rate = max(rate, abs(dq) + 0.25_wp*abs(h*ddq))
+    end do
+  end function greatest_rate
 end module mech9_drive

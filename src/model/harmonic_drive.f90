@@ -14,6 +14,7 @@ module mech9_harmonic_drive
     real(wp) :: phase = 0.0_wp               !< [rad]
   contains
     procedure :: evaluate
+    procedure :: greatest_rate
   end type harmonic_drive_type
 
 contains
@@ -31,4 +32,13 @@ contains
     dq = self%amplitude*self%angular_frequency*cos(angle)
     ddq = -self%angular_frequency**2*swing
   end subroutine evaluate
+
+  !> That of the whole swing.
+  function greatest_rate(self, t, h) result(rate)
+    class(harmonic_drive_type), intent(in) :: self
+    real(wp), intent(in) :: t, h
+    real(wp) :: rate
+
+    rate = abs(self%amplitude*self%angular_frequency)
+  end function greatest_rate
 end module mech9_harmonic_drive

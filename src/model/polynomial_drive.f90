@@ -11,6 +11,7 @@ module mech9_polynomial_drive
     real(wp), allocatable :: coefficients(:)   !< c0, c1, ... [rad or m, per s^i]
   contains
     procedure :: evaluate
+    procedure :: greatest_rate
   end type polynomial_drive_type
 
 contains
@@ -31,4 +32,29 @@ contains
       q = q*t + self%coefficients(i)
     end do
   end subroutine evaluate
+
+  !> By the sizes of all terms of its Taylor series at t, k |q^(k)|/k! |h|^(k-1): exact for a constant
+  !> rate, close for small h, never too small.
+  function greatest_rate(self, t, h) result(rate)
+    class(polynomial_drive_type), intent(in) :: self
+    real(wp), intent(in) :: t, h
+    real(wp) :: rate, term, binomial
+    integer :: i, k, n
+
+    n = size(self%coefficients) - 1
+    rate = 0.0_wp
+    do k = n, 1, -1
+      ! q^(k)/k! by Horner's rule, with i over k as factors of the coefficients
+      binomial = 1.0_wp
+      do i = 1, k
+        binomial = binomial*real(n - k + i, wp)/i
+      end do
+      term = 0.0_wp
+      do i = n, k, -1
+        term = term*t + binomial*self%coefficients(i + 1)
+        binomial = binomial*real(i - k, wp)/i
+      end do
+      rate = rate*abs(h) + k*abs(term)
+    end do
+  end function greatest_rate
 end module mech9_polynomial_drive

@@ -14,6 +14,7 @@ module mech9_table_drive
     type(spline_type) :: spline   !< q over t
   contains
     procedure :: evaluate
+    procedure :: greatest_rate
   end type table_drive_type
 
 contains
@@ -36,4 +37,13 @@ contains
     end associate
     call self%spline%evaluate(t, q, dq, ddq)
   end subroutine evaluate
+
+  !> That of the pieces of the curve between the two times.
+  function greatest_rate(self, t, h) result(rate)
+    class(table_drive_type), intent(in) :: self
+    real(wp), intent(in) :: t, h
+    real(wp) :: rate
+
+    rate = self%spline%steepest(min(t, t + h), max(t, t + h))
+  end function greatest_rate
 end module mech9_table_drive

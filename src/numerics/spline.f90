@@ -15,6 +15,8 @@ module mech9_spline
     real(wp), allocatable :: second(:)   !< second derivatives at x
   contains
     procedure :: evaluate
+    procedure :: steepest
+    procedure, private :: piece
   end type spline_type
 
 contains
@@ -73,8 +75,41 @@ contains
     class(spline_type), intent(in) :: self
     real(wp), intent(in) :: x
     real(wp), intent(out) :: y, dy, ddy
-    integer :: low, high, middle
+    integer :: low, high
     real(wp) :: h, a, b
+
+    low = self%piece(x)
+    high = low + 1
+    h = self%x(high) - self%x(low)
+    a = (self%x(high) - x)/h
+    b = (x - self%x(low))/h
+    associate (m0 => self%second(low), m1 => self%second(high), y0 => self%y(low), y1 => self%y(high))
+      y = a*y0 + b*y1 + ((a**3 - a)*m0 + (b**3 - b)*m1)*h**2/6.0_wp
+      dy = (y1 - y0)/h + ((3.0_wp*b**2 - 1.0_wp)*m1 - (3.0_wp*a**2 - 1.0_wp)*m0)*h/6.0_wp
+      ddy = a*m0 + b*m1
+    end associate
+  end subroutine evaluate
+
+  !> A bound of |dy/dx| for x between two values, from the slope and the bending of each piece there.
+  pure real(wp) function steepest(self, from, to)
+    class(spline_type), intent(in) :: self
+    real(wp), intent(in) :: from, to      !< from <= to
+    integer :: i
+    real(wp) :: h
+
+    steepest = 0.0_wp
+    do i = self%piece(from), self%piece(to)
+      h = self%x(i + 1) - self%x(i)
+      steepest = max(steepest, abs(self%y(i + 1) - self%y(i))/h &
+                     + h*(abs(self%second(i)) + abs(self%second(i + 1)))/3.0_wp)
+    end do
+  end function steepest
+
+  !> Number of the piece in which x lies; the first or the last one for x outside.
+  pure integer function piece(self, x) result(low)
+    class(spline_type), intent(in) :: self
+    real(wp), intent(in) :: x
+    integer :: high, middle
 
     low = 1
     high = size(self%x)
@@ -86,13 +121,5 @@ contains
         low = middle
       end if
     end do
-    h = self%x(high) - self%x(low)
-    a = (self%x(high) - x)/h
-    b = (x - self%x(low))/h
-    associate (m0 => self%second(low), m1 => self%second(high), y0 => self%y(low), y1 => self%y(high))
-      y = a*y0 + b*y1 + ((a**3 - a)*m0 + (b**3 - b)*m1)*h**2/6.0_wp
-      dy = (y1 - y0)/h + ((3.0_wp*b**2 - 1.0_wp)*m1 - (3.0_wp*a**2 - 1.0_wp)*m0)*h/6.0_wp
-      ddy = a*m0 + b*m1
-    end associate
-  end subroutine evaluate
+  end function piece
 end module mech9_spline

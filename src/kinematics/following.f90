@@ -1,0 +1,438 @@
+!> Following a driven motion through regular positions, step by step, on one branch. Uses kinds, error,
+!> mechanism, plan, state, solver, closure.
+!>
+!> Each block is predicted by the polynomial through the last two positions with their rates and
+!> accelerations, corrected by Newton's method, and judged. A step is accepted if the block's Jacobian
+!> at its end cannot have passed a singular matrix on the way: then the closed position near the
+!> prediction is the only one there, and it belongs to the branch. What is judged is in units of
+!> the least pivot, which measures how far away other branches are.
+module mech9_following
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type, nothing_known, acceleration_known
+  use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, least_pivot, &
+    solve_rates, solve_accelerations
+  use mech9_closure, only: closure_jacobian
+  implicit none
+  private
+  public :: follower_type, departure_type, watch_type, new_follower, settle, factorize_trial, step_towards, set_inputs, go_back
+
+  !> A driven coordinate moves no farther in a step than this [rad, lengths of the mechanism], ...
+  real(wp), parameter :: longest_drive = 0.25_wp
+  !> ... and a dependent one than this.
+  real(wp), parameter :: longest_move = 0.5_wp
+  !> Change of the Jacobian against its least pivot, as a sum of squares, that needs no closer look.
+  real(wp), parameter :: harmless_change = 0.25_wp
+  !> Change of the Jacobian, divided by the Jacobian: below 1 no singular matrix lies between; the
+  !> rest is room for what lies beside the straight way.
+  real(wp), parameter :: trusted_change = 0.5_wp
+  !> Correction of the prediction against the least pivot. By Kantorovich's theorem Newton's method
+  !> stays with the only solution near by while this is below about 1/2 over the curvature.
+  real(wp), parameter :: trusted_correction = 0.05_wp
+  !> Change of the rates in a step times its length, against the movement: beyond it the movement turned back.
+  real(wp), parameter :: trusted_bend = 1.0_wp
+  !> Newton must at least quarter its correction from the first to the second iteration, ...
+  real(wp), parameter :: trusted_contraction = 0.25_wp
+  !> ... unless that is small anyway, against the least pivot.
+  real(wp), parameter :: small_correction = 1.0e-4_wp
+  !> A measure of steps that are too long without a measure.
+  real(wp), parameter :: hopeless = 1.0e30_wp
+  !> A prediction uses the polynomial through two positions up to this many times their distance.
+  real(wp), parameter :: longest_prediction = 3.0_wp
+  !> The highest term of the polynomial is nothing but round-off below this.
+  real(wp), parameter :: only_round_off = 64.0_wp*epsilon(1.0_wp)
+  !> Steps below this part of the time are given up.
+  real(wp), parameter :: least_step = 1.0e-14_wp
+
+  !> Where a step starts from.
+  type :: departure_type
+    real(wp) :: t = 0.0_wp
+    real(wp), allocatable :: q(:), dq(:), ddq(:)
+    real(wp) :: before = 0.0_wp                 !< distance of the position accepted before it [s]
+    real(wp), allocatable :: higher(:, :)       !< (3,M) factors of h^3, h^4, h^5 of the prediction
+  end type departure_type
+
+  !> What is known of a block's Jacobian: at the departure and at the end of the step on trial.
+  type :: watch_type
+    real(wp), allocatable :: jacobian(:, :), trial_jacobian(:, :)
+    integer :: sign = 1, trial_sign = 1                        !< of the determinant of a square one
+    real(wp) :: pivot = 1.0_wp, trial_pivot = 1.0_wp           !< the least
+    real(wp) :: largest_pivot = 0.0_wp                         !< largest least pivot of any position so far
+  end type watch_type
+
+  !> What follows the branch: state, departure and scratch, and counts for the report.
+  type :: follower_type
+    type(state_type) :: state                     !< during a step the trial, then the accepted position
+    type(departure_type) :: departure             !< the position accepted last
+    type(block_work_type), allocatable :: work(:)
+    type(watch_type), allocatable :: watches(:)
+    integer, allocatable :: drives(:)             !< those that move closed chains
+    real(wp) :: reach = huge(1.0_wp)              !< a step that will probably be accepted [s]
+    integer(long) :: steps = 0                    !< taken
+    integer(long) :: halvings = 0                 !< steps refused
+    integer(long) :: iterations = 0               !< of Newton's method, all blocks
+  end type follower_type
+
+contains
+
+  !> Independent coordinates and their derivatives at a time, from the drives.
+  subroutine set_inputs(mechanism, t, q, dq, ddq, err)
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), intent(in) :: t
+    real(wp), intent(inout) :: q(:), dq(:), ddq(:)   !< (M)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i, k
+
+    do i = 1, size(mechanism%drives)
+      k = mechanism%drives(i)%drive%coordinate
+      call mechanism%drives(i)%drive%evaluate(t, q(k), dq(k), ddq(k), err)
+      if (allocated(err)) return
+    end do
+  end subroutine set_inputs
+
+  !> A follower at an assembled position; nothing but the position is known yet.
+  pure function new_follower(mechanism, plan, assembled) result(follower)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: assembled
+    type(follower_type) :: follower
+    integer :: b, m, n
+
+    follower%state = assembled
+    m = plan%n_coordinates
+    allocate (follower%departure%q(m), follower%departure%dq(m), follower%departure%ddq(m), source=0.0_wp)
+    allocate (follower%departure%higher(3, m), source=0.0_wp)
+    allocate (follower%work(size(plan%blocks)), follower%watches(size(plan%blocks)))
+    do b = 1, size(plan%blocks)
+      follower%work(b) = new_block_work(plan%blocks(b))
+      m = plan%blocks(b)%equations
+      n = size(plan%blocks(b)%unknowns)
+      allocate (follower%watches(b)%jacobian(m, n), follower%watches(b)%trial_jacobian(m, n), source=0.0_wp)
+    end do
+    follower%drives = drives_of_chains(mechanism, plan)
+  end function new_follower
+
+  !> Numbers of the drives whose coordinates belong to closed chains. Those of open chains may move as far
+  !> as they like in a step.
+  pure function drives_of_chains(mechanism, plan) result(drives)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    integer, allocatable :: drives(:)
+    logical :: marked(0:plan%n_coordinates), drives_chain(size(mechanism%drives))
+    integer :: c, i, s
+
+    marked = .false.
+    do c = 1, size(plan%closures)
+      do i = 1, 2
+        s = merge(plan%closures(c)%closing, plan%closures(c)%target, i == 1)
+        do while (s > 0)
+          marked(plan%steps(s)%coordinate) = .true.
+          s = plan%steps(s)%parent
+        end do
+      end do
+    end do
+    do i = 1, size(mechanism%drives)
+      drives_chain(i) = marked(mechanism%drives(i)%drive%coordinate)
+    end do
+    drives = pack([(i, i=1, size(mechanism%drives))], drives_chain)
+  end function drives_of_chains
+
+  !> Take the state, complete with its accelerations, as the place of departure with nothing known before it.
+  !> The Jacobians of all blocks must be on trial (see judge) or unchanged.
+  pure subroutine settle(follower)
+    type(follower_type), intent(inout) :: follower
+
+    follower%state%known = acceleration_known
+    associate (here => follower%state, last => follower%departure)
+      last%t = here%t
+      last%q = here%q
+      last%dq = here%dq
+      last%ddq = here%ddq
+      last%before = 0.0_wp
+      last%higher = 0.0_wp
+    end associate
+    call keep_watches(follower)
+  end subroutine settle
+
+  !> One accepted step towards time t, as far as it can be trusted. `stuck` tells that even the shortest one
+  !> cannot, and `refused_by` because of which block. Fails where a drive or a pair has no value.
+  subroutine step_towards(mechanism, plan, follower, t, stuck, refused_by, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(inout) :: follower
+    real(wp), intent(in) :: t
+    logical, intent(out) :: stuck
+    integer, intent(out) :: refused_by
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: remaining, h, worst
+    logical :: no_drive
+
+    stuck = .false.
+    do
+      remaining = t - follower%departure%t
+      h = min(abs(remaining), follower%reach)
+      call limit_by_drives(mechanism, plan, follower, sign(1.0_wp, remaining), h)
+      follower%state%t = follower%departure%t + sign(h, remaining)
+      ! two like steps rather than a long one and a rest
+      if (h < abs(remaining) .and. 2.0_wp*h > abs(remaining)) &
+        follower%state%t = follower%departure%t + 0.5_wp*remaining
+      if (h >= abs(remaining)) follower%state%t = t
+      h = abs(follower%state%t - follower%departure%t)
+      call try_step(mechanism, plan, follower, worst, refused_by, no_drive, err)
+      if (no_drive) return
+      if (worst <= 1.0_wp) then
+        follower%reach = min(2.0_wp*min(max(follower%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
+        call accept(follower)
+        return
+      end if
+      follower%halvings = follower%halvings + 1
+      follower%reach = h*max(0.1_wp, min(0.6_wp, 0.8_wp/worst))
+      stuck = follower%reach <= least_step*max(abs(t), abs(follower%departure%t))
+      if (stuck) return
+    end do
+  end subroutine step_towards
+
+  !> Shorten a step until no driven coordinate of a closed chain can move far within it.
+  subroutine limit_by_drives(mechanism, plan, follower, direction, h)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(inout) :: follower
+    real(wp), intent(in) :: direction         !< +1, or -1 backwards in time
+    real(wp), intent(inout) :: h              !< > 0
+    real(wp) :: part
+    integer :: i, trial
+
+    do i = 1, size(follower%drives)
+      associate (drive => mechanism%drives(follower%drives(i))%drive)
+        ! the bound of the rate itself gets smaller with the step
+        do trial = 1, 100
+          part = h*drive%greatest_rate(follower%departure%t, direction*h)/(longest_drive*plan%unit_of(drive%coordinate))
+          if (.not. part > 1.0_wp) exit
+          h = h*max(0.2_wp, 0.99_wp/part)
+          follower%reach = h
+        end do
+      end associate
+    end do
+  end subroutine limit_by_drives
+
+  !> Predict, correct and judge one step of all blocks, from the departure to the time in the state.
+  subroutine try_step(mechanism, plan, follower, worst, refused_by, no_drive, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(inout) :: follower
+    real(wp), intent(out) :: worst              !< at most 1: accepted; else about how much too long it was
+    integer, intent(out) :: refused_by          !< number of the block
+    logical, intent(out) :: no_drive            !< failed because a drive has no value
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: newton
+    integer :: b
+
+    refused_by = 0
+    worst = 0.0_wp
+    call set_inputs(mechanism, follower%state%t, follower%state%q, follower%state%dq, follower%state%ddq, err)
+    no_drive = allocated(err)
+    if (no_drive) return
+    do b = 1, size(plan%blocks)
+      refused_by = b
+      associate (block => plan%blocks(b), work => follower%work(b))
+        call predict(plan, block, follower%departure, follower%state)
+        call close_block(plan, block, follower%state, work, newton, err)
+        follower%iterations = follower%iterations + newton%iterations
+        ! a pair may have no pose where a step that is too long leads
+        if (allocated(err) .or. .not. newton%converged) worst = 4.0_wp
+        if (worst > 1.0_wp) return
+        if (size(block%unknowns) > 0) &
+          call watch_jacobian(plan, block, follower%state, work, follower%watches(b), worst)
+        if (worst > 1.0_wp) return
+        call solve_rates(plan, block, follower%state, work)
+        call judge(plan, block, follower%departure, follower%state, newton, follower%watches(b)%trial_pivot, worst)
+        if (worst > 1.0_wp) return
+        call solve_accelerations(plan, block, follower%state, work)
+      end associate
+    end do
+  end subroutine try_step
+
+  !> Polynomial prediction of a block's dependent coordinates.
+  pure subroutine predict(plan, block, departure, state)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(departure_type), intent(in) :: departure
+    type(state_type), intent(inout) :: state
+    real(wp) :: h, near
+    integer :: i, k
+
+    h = state%t - departure%t
+    ! far beyond two positions that are close together their round-off would be all there is
+    near = 0.0_wp
+    if (abs(h) <= longest_prediction*departure%before) near = h
+    do i = 1, size(block%unknowns)
+      k = plan%steps(block%unknowns(i))%coordinate
+      state%q(k) = departure%q(k) + h*(departure%dq(k) + h*(0.5_wp*departure%ddq(k) + near*(departure%higher(1, k) &
+                   + near*(departure%higher(2, k) + near*departure%higher(3, k)))))
+    end do
+  end subroutine predict
+
+  !> Put the block's Jacobian at the position in `state` on trial, and factorize it.
+  subroutine factorize_trial(plan, block, state, work, watch)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(inout) :: watch
+
+    if (size(block%unknowns) == 0) return
+    call closure_jacobian(plan, block, state, work%column_of, watch%trial_jacobian)
+    work%equations%a = watch%trial_jacobian
+    call work%equations%factorize()
+    watch%trial_pivot = least_pivot(work)
+    watch%trial_sign = work%equations%determinant_sign()
+  end subroutine factorize_trial
+
+  !> Factorize the block's Jacobian at the end of a step and judge whether a singular one lies between.
+  subroutine watch_jacobian(plan, block, state, work, watch, worst)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(inout) :: watch
+    real(wp), intent(inout) :: worst
+    real(wp) :: change
+
+    call factorize_trial(plan, block, state, work, watch)
+    if (.not. watch%trial_pivot > 0.0_wp) then
+      worst = hopeless
+      return
+    end if
+    change = length_of(watch%trial_jacobian, watch%jacobian)
+    if (change <= harmless_change*watch%trial_pivot) then
+      change = change/(harmless_change*watch%trial_pivot)
+    else
+      change = relative_change(work, watch)/trusted_change
+    end if
+    worst = max(worst, change)
+    if (watch%trial_sign /= watch%sign) worst = max(worst, 2.0_wp)
+  end subroutine watch_jacobian
+
+  !> Root of the sum of squares of the differences of two matrices.
+  pure real(wp) function length_of(a, b)
+    real(wp), intent(in) :: a(:, :), b(:, :)
+    integer :: i, j
+
+    length_of = 0.0_wp
+    do j = 1, size(a, 2)
+      do i = 1, size(a, 1)
+        length_of = length_of + (a(i, j) - b(i, j))**2
+      end do
+    end do
+    length_of = sqrt(length_of)
+  end function length_of
+
+  !> The change of the Jacobian in a step divided by the Jacobian at its end, as a sum of squares; hopeless
+  !> where that is singular.
+  real(wp) function relative_change(work, watch) result(change)
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(in) :: watch
+    integer :: j
+
+    change = hopeless
+    if (work%equations%rank() < work%equations%n) return
+    change = 0.0_wp
+    do j = 1, work%equations%n
+      work%right = watch%trial_jacobian(:, j) - watch%jacobian(:, j)
+      call work%equations%solve(work%right, work%change)
+      change = change + dot_product(work%change, work%change)
+    end do
+    change = sqrt(change)
+  end function relative_change
+
+  !> Judge a block's prediction against its correction, and its movement against its rates.
+  pure subroutine judge(plan, block, departure, state, newton, pivot, worst)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(departure_type), intent(in) :: departure
+    type(state_type), intent(in) :: state
+    type(newton_outcome_type), intent(in) :: newton
+    real(wp), intent(in) :: pivot
+    real(wp), intent(inout) :: worst
+    real(wp) :: move, bend
+    integer :: i, k
+
+    if (size(block%unknowns) == 0) return
+    worst = max(worst, newton%correction/(trusted_correction*pivot))
+    if (newton%correction > small_correction*pivot) worst = max(worst, newton%contraction/trusted_contraction)
+    move = 0.0_wp
+    bend = 0.0_wp
+    do i = 1, size(block%unknowns)
+      k = plan%steps(block%unknowns(i))%coordinate
+      move = max(move, abs(state%q(k) - departure%q(k))/plan%unit_of(k))
+      bend = max(bend, abs(state%dq(k) - departure%dq(k))/plan%unit_of(k))
+    end do
+    bend = bend*abs(state%t - departure%t)
+    worst = max(worst, move/longest_move, bend/(trusted_bend*max(move, trusted_correction*pivot)))
+  end subroutine judge
+
+  !> The trial becomes the place of departure.
+  pure subroutine accept(follower)
+    type(follower_type), intent(inout) :: follower
+    real(wp) :: h, d0, d1, d2, x, y, z
+    integer :: k
+
+    follower%steps = follower%steps + 1
+    follower%state%known = acceleration_known
+    associate (here => follower%state, last => follower%departure)
+      h = here%t - last%t
+      do k = 1, size(last%q)
+        ! the polynomial through both positions, about the later one: its terms of third to fifth order at h
+        d0 = last%q(k) - (here%q(k) - h*(here%dq(k) - 0.5_wp*h*here%ddq(k)))
+        d1 = h*(last%dq(k) - here%dq(k) + h*here%ddq(k))
+        d2 = h**2*(last%ddq(k) - here%ddq(k))
+        x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
+        z = x + d1 + 4.0_wp*d0
+        y = d0 + x + z
+        if (abs(z) <= only_round_off*max(1.0_wp, abs(here%q(k)))) then
+          ! without the positions, whose round-off is all there is to the last term
+          z = 0.0_wp
+          y = 0.25_wp*d2 + 0.5_wp*d1
+          x = d1 + d2/3.0_wp
+        end if
+        last%higher(1, k) = x/h**3
+        last%higher(2, k) = y/h**4
+        last%higher(3, k) = z/h**5
+        last%q(k) = here%q(k)
+        last%dq(k) = here%dq(k)
+        last%ddq(k) = here%ddq(k)
+      end do
+      last%t = here%t
+      last%before = abs(h)
+    end associate
+    call keep_watches(follower)
+  end subroutine accept
+
+  !> The Jacobians on trial become those of the departure.
+  pure subroutine keep_watches(follower)
+    type(follower_type), intent(inout) :: follower
+    integer :: b
+
+    do b = 1, size(follower%watches)
+      associate (watch => follower%watches(b))
+        watch%jacobian = watch%trial_jacobian
+        watch%sign = watch%trial_sign
+        watch%pivot = watch%trial_pivot
+        watch%largest_pivot = max(watch%largest_pivot, watch%pivot)
+      end associate
+    end do
+  end subroutine keep_watches
+
+  !> After a step that was given up: the coordinates of the last position again.
+  pure subroutine go_back(follower)
+    type(follower_type), intent(inout) :: follower
+
+    follower%state%t = follower%departure%t
+    follower%state%q = follower%departure%q
+    follower%state%dq = follower%departure%dq
+    follower%state%ddq = follower%departure%ddq
+    follower%state%known = nothing_known
+  end subroutine go_back
+end module mech9_following

@@ -1,0 +1,254 @@
+!> Passing a special position where branches cross, on the branch whose velocities are continuous.
+!> Uses kinds, error, least_squares, hermite, mechanism, plan, state, composition, closure, solver, motion,
+!> following.
+!>
+!> There the equations of the block do not tell one branch from the other, but each branch is smooth:
+!> the polynomial through regular positions before it leads to regular positions after it, where
+!> Newton's method has only one solution near by. What lies between is the polynomial through all of
+!> them, with its positions closed in the directions that the equations do determine.
+module mech9_passage
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_hermite, only: hermite_type, build_hermite
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type, acceleration_known
+  use mech9_composition, only: place_frames
+  use mech9_closure, only: closure_errors
+  use mech9_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, &
+    apply_change
+  use mech9_motion, only: spread_velocities, spread_accelerations
+  use mech9_following, only: follower_type, watch_type, settle, factorize_trial, step_towards, set_inputs
+  implicit none
+  private
+  public :: passage_type, build_passage, position_within
+
+  !> The way through, from one regular position to another.
+  type :: passage_type
+    logical :: exists = .false.
+    real(wp) :: from = 0.0_wp, to = 0.0_wp       !< [s]
+    type(hermite_type) :: way                    !< all coordinates over time
+    type(follower_type) :: beyond                !< at its end
+    logical :: ends = .false.                    !< at the special position: the drives have no value beyond
+  end type passage_type
+
+  !> Halves of the passage that are tried, against the distance at which the position was found near.
+  integer, parameter :: most_trials = 4
+  real(wp), parameter :: shorter = 1.0_wp/3.0_wp
+  !> A landing must be that close to its prediction: against the least pivot, ...
+  real(wp), parameter :: trusted_correction = 0.02_wp
+  !> ... and rates against the largest one.
+  real(wp), parameter :: trusted_rates = 0.02_wp
+  !> A block is interpolated where its least pivot is below this part of the largest it was.
+  real(wp), parameter :: near = 0.03_wp
+
+contains
+
+  !> The way through the crossing at time t of the branch on which `follower` departs, which must be near but
+  !> regular. It does not exist where no smooth motion goes on. Fails where a pair has no pose.
+  subroutine build_passage(mechanism, plan, follower, t, passage, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(in) :: follower
+    real(wp), intent(in) :: t
+    type(passage_type), intent(inout) :: passage
+    type(error_type), allocatable, intent(out) :: err
+    type(follower_type) :: scout
+    real(wp) :: half
+    integer :: trial
+
+    half = t - follower%departure%t
+    passage%exists = .false.
+    do trial = 1, most_trials
+      scout = follower
+      if (trial > 1) call walk(mechanism, plan, scout, t - half, passage%exists, err)
+      if (allocated(err)) return
+      if (trial == 1 .or. passage%exists) call try_passage(mechanism, plan, scout, t, half, passage, err)
+      if (allocated(err) .or. passage%exists) return
+      half = half*shorter
+    end do
+  end subroutine build_passage
+
+  !> Two positions before, two after.
+  subroutine try_passage(mechanism, plan, scout, t, half, passage, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(inout) :: scout       !< departs at t - half
+    real(wp), intent(in) :: t, half
+    type(passage_type), intent(inout) :: passage
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: no_drive
+    real(wp), dimension(plan%n_coordinates, 4) :: q, dq, ddq
+    real(wp) :: times(4)
+    logical :: ok
+
+    times = t + half*[-1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp]
+    call take(1)
+    call walk(mechanism, plan, scout, times(2), passage%exists, err)
+    if (allocated(err) .or. .not. passage%exists) return
+    call take(2)
+    passage%from = times(1)
+    passage%to = times(4)
+    passage%ends = .false.
+    call build_hermite(times(:2), q(:, :2), dq(:, :2), ddq(:, :2), passage%way)
+    call land(mechanism, plan, passage%way, times(3), scout, ok, err, no_drive)
+    passage%exists = ok
+    if (allocated(no_drive)) then
+      call end_there()
+      return
+    end if
+    if (allocated(err) .or. .not. ok) return
+    call take(3)
+    call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), passage%way)
+    call land(mechanism, plan, passage%way, times(4), scout, ok, err, no_drive)
+    passage%exists = ok
+    if (allocated(err) .or. .not. ok) return
+    call take(4)
+    call build_hermite(times, q, dq, ddq, passage%way)
+    passage%beyond = scout
+
+  contains
+
+    subroutine take(i)
+      integer, intent(in) :: i
+
+      q(:, i) = scout%departure%q
+      dq(:, i) = scout%departure%dq
+      ddq(:, i) = scout%departure%ddq
+    end subroutine take
+
+    !> The last result may lie just there: one more position before it.
+    subroutine end_there()
+      times(3) = t - 0.25_wp*half
+      call walk(mechanism, plan, scout, times(3), passage%exists, err)
+      if (allocated(err) .or. .not. passage%exists) return
+      call take(3)
+      call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), passage%way)
+      passage%ends = .true.
+    end subroutine end_there
+  end subroutine try_passage
+
+  !> Regular steps to a time.
+  subroutine walk(mechanism, plan, scout, t, arrived, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(inout) :: scout
+    real(wp), intent(in) :: t
+    logical, intent(out) :: arrived
+    type(error_type), allocatable, intent(out) :: err
+    logical :: stuck
+    integer :: refused_by
+
+    stuck = .false.
+    do while (abs(t - scout%departure%t) > 0.0_wp .and. .not. stuck)
+      call step_towards(mechanism, plan, scout, t, stuck, refused_by, err)
+      if (allocated(err)) exit
+    end do
+    arrived = .not. (stuck .or. allocated(err))
+  end subroutine walk
+
+  !> Close all blocks at time t from their prediction; `ok` if each is as good as met, and so are the rates.
+  subroutine land(mechanism, plan, way, t, scout, ok, err, no_drive)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(hermite_type), intent(in) :: way
+    real(wp), intent(in) :: t
+    type(follower_type), intent(inout) :: scout
+    logical, intent(out) :: ok
+    type(error_type), allocatable, intent(out) :: err        !< a pair has no pose
+    type(error_type), allocatable, intent(out) :: no_drive   !< a drive has no value
+    real(wp), dimension(plan%n_coordinates) :: q, dq, ddq
+    type(newton_outcome_type) :: newton
+    integer :: b
+
+    ok = .false.
+    call way%evaluate(t, q, dq, ddq)
+    scout%state%t = t
+    scout%state%q = q
+    call set_inputs(mechanism, t, scout%state%q, scout%state%dq, scout%state%ddq, no_drive)
+    if (allocated(no_drive)) then
+      scout%state%q = scout%departure%q
+      return
+    end if
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b), work => scout%work(b), watch => scout%watches(b))
+        call close_block(plan, block, scout%state, work, newton, err)
+        scout%iterations = scout%iterations + newton%iterations
+        if (allocated(err) .or. .not. newton%converged) return
+        call factorize_trial(plan, block, scout%state, work, watch)
+        if (size(block%unknowns) > 0 .and. newton%correction > trusted_correction*watch%trial_pivot) return
+        call solve_rates(plan, block, scout%state, work)
+        call solve_accelerations(plan, block, scout%state, work)
+      end associate
+    end do
+    ok = maxval(abs(scout%state%dq - dq)/plan%unit_of) <= trusted_rates*maxval(abs(dq)/plan%unit_of)
+    if (.not. ok) return
+    scout%steps = scout%steps + 1
+    call settle(scout)
+  end subroutine land
+
+  !> Position, rates and accelerations at a time within a passage.
+  subroutine position_within(mechanism, plan, passage, t, state, work, watches, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(passage_type), intent(in) :: passage
+    real(wp), intent(in) :: t
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work(:)
+    type(watch_type), intent(inout) :: watches(:)
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: newton
+    real(wp), dimension(plan%n_coordinates) :: dq, ddq
+    integer :: b
+
+    state%t = t
+    call passage%way%evaluate(t, state%q, dq, ddq)
+    state%dq = dq
+    state%ddq = ddq
+    call set_inputs(mechanism, t, state%q, state%dq, state%ddq, err)
+    if (allocated(err)) return
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b))
+        call place_frames(plan, block%first_step, block%last_step, state, err)
+        if (allocated(err)) return
+        call factorize_trial(plan, block, state, work(b), watches(b))
+        if (size(block%unknowns) > 0 .and. watches(b)%trial_pivot < near*watches(b)%largest_pivot) then
+          call close_where_determined(plan, block, state, work(b), watches(b), err)
+          if (allocated(err)) return
+          state%dq(plan%steps(block%unknowns)%coordinate) = dq(plan%steps(block%unknowns)%coordinate)
+          state%ddq(plan%steps(block%unknowns)%coordinate) = ddq(plan%steps(block%unknowns)%coordinate)
+          call spread_velocities(plan, block%first_step, block%last_step, state)
+          call spread_accelerations(plan, block%first_step, block%last_step, state)
+        else
+          call close_block(plan, block, state, work(b), newton, err)
+          if (allocated(err)) return
+          call factorize_trial(plan, block, state, work(b), watches(b))
+          call solve_rates(plan, block, state, work(b))
+          call solve_accelerations(plan, block, state, work(b))
+        end if
+      end associate
+    end do
+    state%known = acceleration_known
+  end subroutine position_within
+
+  !> Close a block as far as its equations determine it: what the least pivots belong to is left as predicted.
+  subroutine close_where_determined(plan, block, state, work, watch, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(in) :: watch
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    do i = 1, 2
+      call closure_errors(plan, block, state, work%right)
+      work%right = -work%right
+      call work%equations%solve(work%right, work%change, &
+                                tolerance=near*watch%largest_pivot/abs(work%equations%a(1, 1)))
+      call apply_change(plan, block, work%change, state)
+      call place_frames(plan, block%first_step, block%last_step, state, err)
+      if (allocated(err)) return
+    end do
+  end subroutine close_where_determined
+end module mech9_passage

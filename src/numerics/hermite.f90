@@ -1,0 +1,60 @@
+!> Polynomials through points with two derivatives each, for many quantities at once. Uses kinds only.
+module mech9_hermite
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: hermite_type, build_hermite
+
+  !> Newton's form with every abscissa three times over.
+  type :: hermite_type
+    real(wp), allocatable :: x(:)         !< (3 points)
+    real(wp), allocatable :: d(:, :)      !< (quantities, 3 points): divided differences
+  contains
+    procedure :: evaluate
+  end type hermite_type
+
+contains
+
+  !> The polynomials of least degree that have these values and first two derivatives.
+  pure subroutine build_hermite(x, y, dy, ddy, hermite)
+    real(wp), intent(in) :: x(:)                             !< (points), all different
+    real(wp), intent(in) :: y(:, :), dy(:, :), ddy(:, :)     !< (quantities, points)
+    type(hermite_type), intent(out) :: hermite
+    integer :: i, j, n
+
+    n = 3*size(x)
+    allocate (hermite%x(n), hermite%d(size(y, 1), n))
+    do i = 1, n
+      hermite%x(i) = x((i + 2)/3)
+      hermite%d(:, i) = y(:, (i + 2)/3)
+    end do
+    do j = 1, n - 1
+      do i = n, j + 1, -1
+        if ((i + 2)/3 /= (i - j + 2)/3) then
+          hermite%d(:, i) = (hermite%d(:, i) - hermite%d(:, i - 1))/(hermite%x(i) - hermite%x(i - j))
+        else if (j == 1) then
+          hermite%d(:, i) = dy(:, (i + 2)/3)
+        else
+          hermite%d(:, i) = 0.5_wp*ddy(:, (i + 2)/3)
+        end if
+      end do
+    end do
+  end subroutine build_hermite
+
+  !> Values and first two derivatives at x.
+  pure subroutine evaluate(self, x, y, dy, ddy)
+    class(hermite_type), intent(in) :: self
+    real(wp), intent(in) :: x
+    real(wp), intent(out) :: y(:), dy(:), ddy(:)
+    integer :: i
+
+    y = 0.0_wp
+    dy = 0.0_wp
+    ddy = 0.0_wp
+    do i = size(self%x), 1, -1
+      ddy = ddy*(x - self%x(i)) + 2.0_wp*dy
+      dy = dy*(x - self%x(i)) + y
+      y = y*(x - self%x(i)) + self%d(:, i)
+    end do
+  end subroutine evaluate
+end module mech9_hermite
