@@ -9,6 +9,7 @@ module mech9_integration_methods
   integer, parameter :: runge_kutta = 1   !< explicit, one step
   integer, parameter :: multistep = 2     !< of variable order
 
+  !> A method, as it is told to the user and to those who choose its parts.
   type :: integration_method_type
     character(len=15) :: name
     integer :: family        !< runge_kutta or multistep
@@ -20,6 +21,7 @@ module mech9_integration_methods
 
   !> All of them, in the order in which they are told.
   type(integration_method_type), parameter :: integration_methods(*) = [ &
+    integration_method_type('prince-dormand', runge_kutta, 8, 13, .false., 'Prince-Dormand 8(7), Runge-Kutta'), &
     integration_method_type('dormand-prince', runge_kutta, 5, 7, .true., 'Dormand-Prince 5(4), Runge-Kutta'), &
     integration_method_type('verner', runge_kutta, 6, 8, .false., 'Verner 6(5), Runge-Kutta'), &
     integration_method_type('fehlberg', runge_kutta, 8, 13, .false., &

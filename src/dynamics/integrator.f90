@@ -5,7 +5,7 @@ module mech9_integrator
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, add_place, exit_internal, exit_data, exit_integrator
   use mech9_text, only: to_text, nearest_name
-  use mech9_ode_system, only: ode_system_type, is_recoverable
+  use mech9_ode_system, only: ode_system_type
   use mech9_integration_methods, only: integration_methods, method_index, runge_kutta
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     not_convergent, too_accurate, out_of_memory
@@ -27,7 +27,7 @@ module mech9_integrator
     integer(long) :: jacobian_evaluations = 0   !< asked of the system
     integer(long) :: error_test_failures = 0    !< steps made again because of their error
     integer(long) :: convergence_failures = 0   !< implicit steps made again
-    integer(long) :: refusals = 0               !< restarts because the system refused a trial
+    integer(long) :: refusals = 0               !< trials that the system refused
     integer :: last_order = 0
     real(wp) :: last_step = 0.0_wp              !< [s]
   end type integration_statistics_type
@@ -41,11 +41,11 @@ module mech9_integrator
     real(wp), allocatable :: y(:)          !< there
     real(wp), allocatable :: trial(:)      !< where a step ends
     logical :: fresh = .true.              !< no step since the creation or the last restart
+    logical :: stopped = .false.           !< the last step ended at its stop
     real(wp) :: t_stop = 0.0_wp            !< of the last call [s]
     integer :: maximum_steps = 1000000     !< to one stop
     integer :: steps_to_stop = 0
     integer(long) :: steps = 0
-    integer(long) :: refusals = 0
   contains
     procedure :: create
     procedure :: step
@@ -147,40 +147,35 @@ contains
     t = self%t
     y = self%y
     if (.not. abs(t_stop - self%t) > 0.0_wp) return
-    call prepare(self, t_stop, err)
+    call count_steps(self, t_stop, err)
     if (.not. allocated(err)) call take_step(self, t_stop, t_new, err)
     if (allocated(err)) return
     self%t = t_new
     self%y = self%trial
     self%fresh = .false.
+    self%stopped = abs(t_new - t_stop) <= 0.0_wp
     self%steps = self%steps + 1
     self%steps_to_stop = self%steps_to_stop + 1
     t = self%t
     y = self%y
   end subroutine step
 
-  !> Count the steps to each stop, and begin anew where time turns back.
-  subroutine prepare(self, t_stop, err)
+  !> Count the steps to each stop. Fails when there were too many.
+  subroutine count_steps(self, t_stop, err)
     class(integrator_type), intent(inout) :: self
     real(wp), intent(in) :: t_stop
     type(error_type), allocatable, intent(out) :: err
-    real(wp) :: h
 
-    h = self%stepper%next_step()
     if (abs(t_stop - self%t_stop) > 0.0_wp) then
-      if (.not. self%fresh .and. (t_stop - self%t)*h < 0.0_wp) then
-        call self%restart(self%t, self%y, err)
-        if (allocated(err)) return
-      end if
       self%t_stop = t_stop
       self%steps_to_stop = 0
     end if
     if (self%steps_to_stop < self%maximum_steps) return
     call raise(err, exit_integrator, stands(self)//to_text(self%maximum_steps)// &
                ' steps were not enough to come to t = '//to_text(t_stop, 10)//' s, and they are now '// &
-               to_text(abs(h), 3)//' s long. The motion is stiff (try method ''bdf''), or the'// &
+               to_text(abs(self%stepper%next_step()), 3)//' s long. The motion is stiff (try method ''bdf''), or the'// &
                ' tolerances are too small, or maximum_steps is')
-  end subroutine prepare
+  end subroutine count_steps
 
   !> One accepted step into `trial`. What the system refuses is tried again with less.
   subroutine take_step(self, t_stop, t_new, err)
@@ -191,18 +186,16 @@ contains
     real(wp) :: reach
     integer :: outcome, trials
 
+    self%box%broken = .false.
     do trials = 1, most_refusals
       call self%stepper%advance(next_stop(self, t_stop), t_new, self%trial, outcome)
       if (outcome == stepped) then
         if (.not. abs(t_new - self%t) > 0.0_wp) call explain_full_stop(self, err)
         return
       end if
-      if (outcome /= evaluation_failed) exit
-      if (.not. allocated(self%box%err)) exit
-      if (.not. is_recoverable(self%box%err)) exit
-      reach = self%box%t - self%t
+      if (outcome /= evaluation_failed .or. self%box%broken .or. .not. self%box%has_cause()) exit
+      reach = self%box%t_failed - self%t
       if (abs(reach) < 16.0_wp*spacing(self%t)) exit   ! it fails here, whatever the step
-      self%refusals = self%refusals + 1
       call self%stepper%restart(self%t, self%y, 0.25_wp*reach, outcome)
       if (outcome /= stepped) exit
       self%fresh = .true.
@@ -215,13 +208,20 @@ contains
   real(wp) function next_stop(self, t_stop)
     class(integrator_type), intent(inout) :: self
     real(wp), intent(in) :: t_stop
-    real(wp) :: h, rest, half
+    real(wp) :: h, rest, half, enough
 
     next_stop = t_stop
     if (self%fresh) return
     h = abs(self%stepper%next_step())
     rest = abs(t_stop - self%t)
-    if (rest <= 1.000001_wp*h .or. rest >= 2.0_wp*h) return
+    if (self%stopped) then
+      ! h is the last step, which the stop may have cut short: equal intervals are not to be halved
+      enough = 1.000001_wp*h
+    else
+      ! h is what comes next, and the method itself takes what round-off leaves for reached
+      enough = h + 50.0_wp*epsilon(h)*(abs(self%t) + h)
+    end if
+    if (rest <= enough .or. rest >= 2.0_wp*h) return
     half = self%t + 0.5_wp*(t_stop - self%t)
     if (abs(half - self%t) > 0.0_wp .and. abs(t_stop - half) > 0.0_wp) next_stop = half
   end function next_stop
@@ -287,7 +287,7 @@ contains
     statistics%jacobian_evaluations = self%box%jacobian_evaluations
     statistics%error_test_failures = counts%error_test_failures
     statistics%convergence_failures = counts%convergence_failures
-    statistics%refusals = self%refusals
+    statistics%refusals = self%box%refusals
     statistics%last_order = counts%last_order
     statistics%last_step = counts%last_step
   end function statistics
@@ -306,9 +306,8 @@ contains
     integer, intent(in) :: outcome
     type(error_type), allocatable, intent(out) :: err
 
-    if (outcome == evaluation_failed .and. allocated(self%box%err)) then
-      err = self%box%err
-      call add_place(err, stands(self)//'at t = '//to_text(self%box%t, 10)//' s')
+    if (self%box%has_cause()) then
+      call explain_by_system(self, err)
       return
     end if
     select case (outcome)
@@ -328,11 +327,24 @@ contains
     end select
   end subroutine explain
 
+  !> The failure of the system, which keeps its code.
+  subroutine explain_by_system(self, err)
+    class(integrator_type), intent(in) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    err = self%box%failure
+    call add_place(err, stands(self)//'at t = '//to_text(self%box%t_failed, 10)//' s')
+  end subroutine explain_by_system
+
   !> The step has become shorter than time can be told apart.
   subroutine explain_full_stop(self, err)
     class(integrator_type), intent(in) :: self
     type(error_type), allocatable, intent(out) :: err
 
+    if (self%box%has_cause()) then
+      call explain_by_system(self, err)
+      return
+    end if
     call raise(err, exit_integrator, stands(self)//'the steps have become too short for time to advance.'// &
                ' The motion becomes infinitely fast there, or comes to a position that it cannot pass')
   end subroutine explain_full_stop
@@ -351,7 +363,6 @@ contains
     if (allocated(self%trial)) deallocate (self%trial)
     self%steps = 0
     self%steps_to_stop = 0
-    self%refusals = 0
     self%maximum_steps = 1000000
     self%fresh = .true.
   end subroutine destroy

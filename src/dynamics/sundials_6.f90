@@ -17,8 +17,8 @@ module mech9_sundials_6
   !> Kind of the integers that count the parts of vectors and matrices.
   integer, parameter :: index_kind = c_int64_t
   !> ERKStep takes the last stage for the rate at the end of the step wherever it stands at the end in
-  !> time, which is wrong unless it also stands there in y. It works the rate out where a function
-  !> follows each step.
+  !> time, which costs other methods than Dormand-Prince's their order: Verner's falls to 3. It works the
+  !> rate out where a function follows each step, then for all methods, needed or not.
   logical, parameter :: last_stage_mistaken = .true.
 
 contains

@@ -30,6 +30,7 @@ module mech9_sundials_multistep
   !> Each makes it a quarter or a fifth.
   integer(c_int), parameter :: most_failures = 20
 
+  !> A multistep method at work.
   type, extends(stepper_type) :: multistep_type
     private
     type(system_box_type), pointer :: box => null()
@@ -42,7 +43,8 @@ module mech9_sundials_multistep
     type(SUNLinearSolver), pointer :: linear => null()
     type(SUNNonlinearSolver), pointer :: nonlinear => null()
     type(stepper_counts_type) :: earlier                          !< counted before the last restart
-    logical :: begun = .false.                                    !< a step was taken since
+    real(wp) :: t = 0.0_wp                                        !< where it stands [s]
+    real(wp) :: last_step = 0.0_wp                                !< 0 before the first one since a restart [s]
   contains
     procedure :: advance
     procedure :: correct
@@ -69,6 +71,7 @@ contains
 
     outcome = out_of_memory
     stepper%box => box
+    stepper%t = t
     call open_context(stepper%context, flag)
     if (flag /= 0) return
     stepper%vector => FN_VNew_Serial(int(size(y), index_kind), stepper%context)
@@ -165,21 +168,30 @@ contains
     integer, intent(out) :: outcome
     real(c_double) :: t_reached(1)
     integer(c_int) :: flag
+    logical :: settled
 
+    if ((t_stop - self%t)*self%last_step < 0.0_wp) then
+      call self%restart(self%t, self%history, 0.0_wp, outcome)
+      if (outcome /= stepped) return
+    end if
     flag = FCVodeSetStopTime(self%memory, t_stop)
     if (flag == 0) flag = FCVode(self%memory, t_stop, self%vector, t_reached, CV_ONE_STEP)
     outcome = meaning(flag)
     if (outcome /= stepped) return
     t = t_reached(1)
     y = self%values
-    self%begun = .true.
-    if (.not. self%box%system%settles) return
-    self%box%t = t
-    call self%box%system%settle(t, y, self%box%err)
-    if (allocated(self%box%err)) then
+    self%last_step = t - self%t
+    self%t = t
+    if (self%box%broken) then
       outcome = evaluation_failed
-    else
+      return
+    end if
+    if (.not. self%box%system%settles) return
+    call self%box%settle(t, y, settled)
+    if (settled) then
       self%history = y
+    else
+      outcome = evaluation_failed
     end if
   end subroutine advance
 
@@ -212,7 +224,7 @@ contains
     real(wp), intent(in) :: y(:)
     integer, intent(out) :: outcome
 
-    if (self%begun) then
+    if (abs(self%last_step) > 0.0_wp) then
       self%history = y
       outcome = stepped
     else
@@ -235,7 +247,8 @@ contains
     self%values = y
     flag = FCVodeReInit(self%memory, t, self%vector)
     if (flag == 0) flag = FCVodeSetInitStep(self%memory, first_step)
-    self%begun = .false.
+    self%t = t
+    self%last_step = 0.0_wp
     outcome = meaning(flag)
   end subroutine restart
 

@@ -4,7 +4,7 @@ module mech9_sundials_runge_kutta
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_associated, c_int, c_long, c_double, c_loc, c_funloc
   use mech9_kinds, only: wp, long
   use mech9_integration_methods, only: integration_method_type, integration_methods
-  use mech9_butcher_tables, only: butcher_table_type, kutta_merson
+  use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     too_accurate, out_of_memory, refused
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, index_kind, last_stage_mistaken, &
@@ -26,6 +26,7 @@ module mech9_sundials_runge_kutta
   !> Failures of the error test in one step before it is given up: each makes it a third at most.
   integer(c_int), parameter :: most_failures = 20
 
+  !> A Runge-Kutta method at work.
   type, extends(stepper_type) :: runge_kutta_type
     private
     type(system_box_type), pointer :: box => null()
@@ -34,6 +35,8 @@ module mech9_sundials_runge_kutta
     type(N_Vector), pointer :: vector => null()                  !< where steps end
     real(c_double), pointer :: values(:) => null()   !< of the vector
     integer :: order = 0
+    real(wp) :: t = 0.0_wp            !< where it stands [s]
+    real(wp) :: last_step = 0.0_wp    !< 0 before the first one [s]
   contains
     procedure :: advance
     procedure :: correct
@@ -61,6 +64,7 @@ contains
     outcome = out_of_memory
     stepper%box => box
     stepper%order = method%order
+    stepper%t = t
     call open_context(stepper%context, flag)
     if (flag /= 0) return
     stepper%vector => FN_VNew_Serial(int(size(y), index_kind), stepper%context)
@@ -106,6 +110,8 @@ contains
       flag = FERKStepSetTableNum(self%memory, ARKODE_VERNER_8_5_6)
     case ('fehlberg')
       flag = FERKStepSetTableNum(self%memory, ARKODE_FEHLBERG_13_7_8)
+    case ('prince-dormand')
+      call set_own_table(self, prince_dormand(), flag)
     case default
       call set_own_table(self, kutta_merson(), flag)
     end select
@@ -141,6 +147,7 @@ contains
     if (flag == 0) flag = FERKStepSetMaxHnilWarns(self%memory, -1_c_int)
     if (flag == 0) flag = FERKStepSetMaxErrTestFails(self%memory, most_failures)
     if (flag /= 0) return
+    self%box%reuses_last_rate = last_stage_mistaken .and. method%reuses_last
     if (self%box%system%settles .or. (last_stage_mistaken .and. .not. method%reuses_last)) &
       flag = FERKStepSetPostprocessStepFn(self%memory, c_funloc(settle_step))
   end subroutine set_habits
@@ -154,13 +161,32 @@ contains
     real(c_double) :: t_reached(1)
     integer(c_int) :: flag
 
-    flag = FERKStepSetStopTime(self%memory, t_stop)
+    if ((t_stop - self%t)*self%last_step < 0.0_wp) then
+      call turn_back(self, t_stop, flag)
+    else
+      flag = FERKStepSetStopTime(self%memory, t_stop)
+    end if
     if (flag == 0) flag = FERKStepEvolve(self%memory, t_stop, self%vector, t_reached, ARK_ONE_STEP)
     outcome = meaning(flag)
     if (outcome /= stepped) return
     t = t_reached(1)
     y = self%values
+    self%last_step = t - self%t
+    self%t = t
   end subroutine advance
+
+  !> ERKStep accepts no stop against the direction of its last step. A first step back of half the rest at
+  !> most, which can only be made smaller, needs none.
+  subroutine turn_back(self, t_stop, flag)
+    class(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: t_stop
+    integer(c_int), intent(out) :: flag
+    real(wp) :: half
+
+    half = 0.5_wp*(t_stop - self%t)
+    flag = FERKStepSetInitStep(self%memory, sign(min(abs(self%last_step), abs(half)), half))
+    if (flag == 0) flag = FERKStepReset(self%memory, self%t, self%vector)
+  end subroutine turn_back
 
   !> What SUNDIALS' answer means.
   pure integer function meaning(flag)
@@ -203,6 +229,7 @@ contains
     integer(c_int) :: flag
 
     self%values = y
+    self%t = t
     flag = FERKStepSetInitStep(self%memory, first_step)
     if (flag == 0) flag = FERKStepReset(self%memory, t, self%vector)
     outcome = meaning(flag)

@@ -1,50 +1,3 @@
-!> Counts calls of malloc, realloc and calloc: the linker sends them here.
-module counted_memory
-  use, intrinsic :: iso_c_binding, only: c_ptr, c_size_t
-  implicit none
-  integer :: calls = 0
-
-  interface
-    type(c_ptr) function real_malloc(size) bind(c, name='__real_malloc')
-      import :: c_ptr, c_size_t
-      integer(c_size_t), value :: size
-    end function real_malloc
-    type(c_ptr) function real_realloc(old, size) bind(c, name='__real_realloc')
-      import :: c_ptr, c_size_t
-      type(c_ptr), value :: old
-      integer(c_size_t), value :: size
-    end function real_realloc
-    type(c_ptr) function real_calloc(count, size) bind(c, name='__real_calloc')
-      import :: c_ptr, c_size_t
-      integer(c_size_t), value :: count, size
-    end function real_calloc
-  end interface
-
-contains
-
-  type(c_ptr) function counted_malloc(size) bind(c, name='__wrap_malloc')
-    integer(c_size_t), value :: size
-
-    calls = calls + 1
-    counted_malloc = real_malloc(size)
-  end function counted_malloc
-
-  type(c_ptr) function counted_realloc(old, size) bind(c, name='__wrap_realloc')
-    type(c_ptr), value :: old
-    integer(c_size_t), value :: size
-
-    calls = calls + 1
-    counted_realloc = real_realloc(old, size)
-  end function counted_realloc
-
-  type(c_ptr) function counted_calloc(count, size) bind(c, name='__wrap_calloc')
-    integer(c_size_t), value :: count, size
-
-    calls = calls + 1
-    counted_calloc = real_calloc(count, size)
-  end function counted_calloc
-end module counted_memory
-
 !> A position step, with velocities, accelerations and its row of results, allocates nothing.
 program test_no_allocation
   use mech9_kinds, only: wp
@@ -58,7 +11,7 @@ program test_no_allocation
   use mech9_point, only: point_type
   use mech9_sample_mechanisms, only: drive, fig1, general_loop
   use mech9_testing, only: tester_type
-  use counted_memory, only: calls
+  use mech9_counted_memory, only: calls
   implicit none
   type(tester_type) :: test
   type(mechanism_type) :: mechanism

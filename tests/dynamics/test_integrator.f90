@@ -1,0 +1,161 @@
+!> Methods of integration against closed forms: orders, tolerances, and each other.
+program test_integrator
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
+  use mech9_ode_system, only: ode_system_type
+  use mech9_integration_methods, only: integration_methods, runge_kutta
+  use mech9_integrator, only: integration_statistics_type
+  use mech9_integration_problems, only: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, &
+    swing_type, stiff_type, integrate
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  integer :: i
+
+  do i = 1, size(integration_methods)
+    if (integration_methods(i)%family == runge_kutta) call check_order(test, i)
+    call check_tolerances(test, i)
+    call check_pendulum(test, i)
+  end do
+  call check_agreement(test)
+  call check_stiff(test)
+  call test%finish()
+
+contains
+
+  !> Equal steps, halved: on an orbit of eccentricity 0.5 the error falls by 2**order. The steps are so short
+  !> that the next term is some percent, and so long that the errors (1e-10 and more) stand out of round-off.
+  subroutine check_order(test, method)
+    type(tester_type), intent(inout) :: test
+    integer, intent(in) :: method
+    type(orbit_type), target :: orbit
+    type(integration_statistics_type) :: statistics
+    real(wp) :: error(2), order, h
+    integer :: k, steps
+
+    associate (m => integration_methods(method))
+      h = 2.0_wp**(-6)
+      if (m%order == 4) h = 2.0_wp**(-7)
+      if (m%order == 8) h = 2.0_wp**(-3)
+      do k = 1, 2
+        steps = nint(5.0_wp/h)
+        call run(test, orbit, orbit_start(0.5_wp), 5.0_wp, method, 1.0e6_wp, orbit_at(0.5_wp, 5.0_wp), &
+                 error(k), statistics, h)
+        call test%is_true(statistics%steps == steps, trim(m%name)//' makes equal steps when it must')
+        ! all stages of all steps but those the last one gave, and a few evaluations at the start
+        call test%is_true(statistics%rate_evaluations <= steps*(m%stages - merge(1, 0, m%reuses_last)) + 4, &
+                          trim(m%name)//' works out no more rates than its stages')
+        h = 0.5_wp*h
+      end do
+      order = log(error(1)/error(2))/log(2.0_wp)
+      call test%near(order/m%order, 1.0_wp, 0.06_wp, 'order of '//m%name)
+    end associate
+  end subroutine check_order
+
+  !> The error at the end of an orbit follows the tolerance down to 1e-12: in the mean as its power one,
+  !> a little unevenly where the order varies. An orbit takes ten to some thousand steps, and makes early
+  !> errors some ten times larger: at 1e-12, below 2e-8.
+  subroutine check_tolerances(test, method)
+    type(tester_type), intent(inout) :: test
+    integer, intent(in) :: method
+    type(orbit_type), target :: orbit
+    type(integration_statistics_type) :: statistics
+    real(wp) :: error, first_error, last_error, slope
+    integer :: k
+
+    associate (m => integration_methods(method))
+      call run(test, orbit, orbit_start(0.5_wp), 2.0_wp*pi, method, 1.0e-4_wp, orbit_start(0.5_wp), first_error, &
+               statistics)
+      last_error = first_error
+      do k = 6, 12, 2
+        call run(test, orbit, orbit_start(0.5_wp), 2.0_wp*pi, method, 10.0_wp**(-k), orbit_start(0.5_wp), error, &
+                 statistics)
+        call test%is_true(error < 0.3_wp*last_error, &
+                          m%name//': a hundredth of the tolerance makes the error much smaller')
+        last_error = error
+      end do
+      slope = log10(first_error/last_error)/8.0_wp
+      call test%is_true(slope > 0.75_wp .and. slope < 1.25_wp, m%name//': the error is proportional to the tolerance')
+      call test%is_true(last_error < 2.0e-8_wp, m%name//': error at the tolerance 1e-12')
+    end associate
+  end subroutine check_tolerances
+
+  !> A pendulum let go at 2 radians is at the lowest point after K(sin 1), at the rate of its energy.
+  subroutine check_pendulum(test, method)
+    type(tester_type), intent(inout) :: test
+    integer, intent(in) :: method
+    type(pendulum_type), target :: pendulum
+    type(integration_statistics_type) :: statistics
+    real(wp) :: error
+
+    call run(test, pendulum, [2.0_wp, 0.0_wp], pendulum_quarter_period(2.0_wp), method, 1.0e-10_wp, &
+             [0.0_wp, -2.0_wp*sin(1.0_wp)], error, statistics)
+    ! some ten to some hundred steps, each with an error of the tolerance, which grow little on the way
+    call test%is_true(error < 100.0e-10_wp, integration_methods(method)%name//': a pendulum''s quarter period')
+  end subroutine check_pendulum
+
+  !> Without a closed form: all methods come closer to each other as the tolerance falls.
+  subroutine check_agreement(test)
+    type(tester_type), intent(inout) :: test
+    type(swing_type), target :: swing
+    type(integration_statistics_type) :: statistics
+    type(error_type), allocatable :: err
+    real(wp) :: y(2, size(integration_methods)), spread, last_spread
+    integer :: i, k
+
+    last_spread = huge(1.0_wp)
+    do k = 4, 12, 4
+      do i = 1, size(integration_methods)
+        y(:, i) = [1.0_wp, 0.0_wp]
+        call integrate(swing, integration_methods(i)%name, 10.0_wp**(-k), 20.0_wp, y(:, i), statistics, err)
+        call test%no_error(err, 'a driven pendulum by '//integration_methods(i)%name)
+      end do
+      spread = maxval(maxval(y, 2) - minval(y, 2))
+      call test%is_true(spread < 0.01_wp*last_spread, 'the methods agree better at smaller tolerances')
+      last_spread = spread
+    end do
+    ! some hundred steps with an error of the tolerance each
+    call test%is_true(spread < 1.0e-9_wp, 'the methods agree at the tolerance 1e-12')
+  end subroutine check_agreement
+
+  !> An explicit method needs steps of some 3/stiffness, more than 30000 here. Backward differences follow
+  !> the slow solution, with differences as with the system's own Jacobian.
+  subroutine check_stiff(test)
+    type(tester_type), intent(inout) :: test
+    type(stiff_type), target :: stiff
+    type(integration_statistics_type) :: statistics(2)
+    real(wp) :: error
+    integer :: i, bdf
+
+    bdf = findloc(integration_methods%name, 'bdf', 1)
+    do i = 1, 2
+      stiff%has_jacobian = i == 2
+      call run(test, stiff, [1.0_wp, 1.0_wp], 10.0_wp, bdf, 1.0e-8_wp, [cos(10.0_wp), cos(10.0_wp)], error, &
+               statistics(i))
+      call test%is_true(error < 1.0e-7_wp, 'a stiff equation by backward differences')
+      call test%is_true(statistics(i)%steps < 2000, 'a stiff equation does not hold backward differences up')
+    end do
+    call test%is_true(statistics(1)%jacobian_evaluations == 0, 'a Jacobian is not asked of those who have none')
+    call test%is_true(statistics(2)%jacobian_evaluations > 0, 'a Jacobian is asked of those who have one')
+    call test%is_true(statistics(2)%rate_evaluations < statistics(1)%rate_evaluations, &
+                      'a Jacobian spares evaluations of the rate')
+  end subroutine check_stiff
+
+  !> The largest error at the end of an integration.
+  subroutine run(test, system, start, t_end, method, tolerance, expected, error, statistics, equal_step)
+    type(tester_type), intent(inout) :: test
+    class(ode_system_type), intent(inout), target :: system
+    real(wp), intent(in) :: start(:), t_end, tolerance, expected(:)
+    integer, intent(in) :: method
+    real(wp), intent(out) :: error
+    type(integration_statistics_type), intent(out) :: statistics
+    real(wp), intent(in), optional :: equal_step
+    type(error_type), allocatable :: err
+    real(wp) :: y(size(start))
+
+    y = start
+    call integrate(system, integration_methods(method)%name, tolerance, t_end, y, statistics, err, equal_step)
+    call test%no_error(err, 'an integration by '//integration_methods(method)%name)
+    error = maxval(abs(y - expected))
+  end subroutine run
+end program test_integrator
