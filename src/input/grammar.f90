@@ -30,7 +30,7 @@ module mech9_grammar
     logical :: needed              !< must be given wherever its kind allows it
     character(len=22) :: default   !< as it would be written; in parentheses where it is a rule
     character(len=4) :: range      !< empty, >0, >=0 or >=1
-    character(len=60) :: words     !< the texts allowed, with blanks between; empty: any
+    character(len=72) :: words     !< the texts allowed, with blanks between; empty: any
     character(len=40) :: kinds     !< the kinds of the group it belongs to; empty: all
     character(len=120) :: help
     character(len=44) :: example   !< a value as it would be written
@@ -184,8 +184,9 @@ module mech9_grammar
     item_row_type('time', 'end', 'real', 1, 1, 's', optional, '1', '', '', '', 'time of the last result', '2.5'), &
     item_row_type('time', 'intervals', 'integer', 1, 1, '', optional, '100', '>=0', '', '', &
                   'number of steps between results; 0 for the start alone', '200'), &
-    item_row_type('solver', 'method', 'text', 1, 1, '', optional, '(chosen)', '', &
-                  'dormand-prince verner fehlberg merson adams bdf', '', 'the integrator', '''adams'''), &
+    item_row_type('solver', 'method', 'text', 1, 1, '', optional, '''prince-dormand''', '', &
+                  'prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
+                  'the integrator; bdf for stiff motions', '''adams'''), &
     item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0', '', '', &
                   'error allowed in a step, relative to the coordinates and their rates', '1e-8'), &
     item_row_type('solver', 'absolute_tolerance', 'real', 1, 1, '', optional, '1e-10', '>0', '', '', &
