@@ -1,0 +1,202 @@
+!> The branch is kept however coarse the outputs are: four-bars, slider-cranks and six-bars on both
+!> branches, over several turns, with up to 3000 outputs a turn or one in two turns, against their closed forms; also where
+!> the branches come within a millionth of each other.
+program test_branch_certainty
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_sample_mechanisms, only: drive, four_bar, fig1
+  use mech9_planar_mechanisms, only: two_circles, slider_crank, watt_six_bar, four_bar_type, random_crank, &
+    four_bar_angle, four_bar_guess
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  integer, parameter :: turns = 4
+  !> Outputs; the first are two turns apart, and one.
+  integer, parameter :: outputs(8) = [2, 4, 12, 16, 28, 120, 1204, 12000]
+  integer :: i
+
+  do i = 1, 40
+    call check_four_bar(random_crank(random, 0.3_wp*abs(random%symmetric())), 'a four-bar')
+  end do
+  do i = 1, 40
+    ! the excess of the two middle lengths over the shortest and the longest: branches come as near as its root
+    call check_four_bar(random_crank(random, 10.0_wp**(-0.2_wp*i - 1.0_wp)), 'a four-bar near its change-point')
+  end do
+  do i = 1, 20
+    call check_slider_crank(i)
+    call check_six_bar()
+  end do
+  call check_swinging_fig1()
+  call test%finish()
+
+contains
+
+  subroutine begin(mechanism, plan, tracker)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(out) :: plan
+    type(tracker_type), intent(out) :: tracker
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, 'plan and assembly')
+    if (allocated(err)) call test%finish()
+    call start_tracking(mechanism, plan, state, 0.0_wp, tracker, err)
+    call test%no_error(err, 'start')
+  end subroutine begin
+
+  !> How far two angles are apart, whole turns aside.
+  real(wp) function apart(a, b)
+    real(wp), intent(in) :: a, b
+
+    apart = abs(modulo(a - b + pi, 2.0_wp*pi) - pi)
+  end function apart
+
+  !> Both branches of a crank that turns fully: the angle of the rocker at every output by its triangle, and
+  !> the number of its turns the same whatever the outputs.
+  subroutine check_four_bar(bar, name)
+    type(four_bar_type), intent(in) :: bar
+    character(len=*), intent(in) :: name
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: start, angle, worst, last
+    integer :: branch, n, j
+
+    start = 0.7_wp
+    do branch = -1, 1, 2
+      call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, start, branch), mechanism)
+      call drive(mechanism, 1, [start, 2.0_wp*pi])
+      do n = 1, size(outputs)
+        call begin(mechanism, plan, tracker)
+        worst = 0.0_wp
+        do j = 1, outputs(n)
+          call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
+          if (allocated(err)) exit
+          angle = four_bar_angle(bar, tracker%state%q(1), branch)
+          worst = max(worst, apart(tracker%state%q(4), angle))
+        end do
+        call test%no_error(err, name//' goes on')
+        ! positions are known to round-off over the least pivot, and so is the closed form; the nearest
+        ! branch is apart by at least the least pivot, 1e-5
+        call test%near(worst, 0.0_wp, 1.0e-9_wp, name//' stays on its branch')
+        if (n == 1) last = tracker%state%q(4)
+        call test%near(tracker%state%q(4), last, 1.0e-9_wp, name//': as many turns of the rocker')
+      end do
+    end do
+  end subroutine check_four_bar
+
+  !> x = r cos + - root of l^2 - (r sin - e)^2; the crank at the i-th comes nearer and nearer to what it can turn.
+  subroutine check_slider_crank(i)
+    integer, intent(in) :: i
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: crank, coupler, offset, angle, expected, worst
+    integer :: branch, n, j
+
+    crank = 0.5_wp + 0.2_wp*random%symmetric()
+    offset = 0.3_wp*random%symmetric()
+    coupler = crank + abs(offset) + 10.0_wp**(-0.4_wp*i)
+    do branch = -1, 1, 2
+      call slider_crank(crank, coupler, offset, 0.4_wp, branch, mechanism)
+      call drive(mechanism, 1, [0.4_wp, 2.0_wp*pi])
+      do n = 1, size(outputs)
+        call begin(mechanism, plan, tracker)
+        worst = 0.0_wp
+        do j = 1, outputs(n)
+          call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
+          if (allocated(err)) exit
+          angle = tracker%state%q(1)
+          expected = crank*cos(angle) + branch*sqrt(coupler**2 - (crank*sin(angle) - offset)**2)
+          worst = max(worst, abs(tracker%state%q(4) - expected))
+        end do
+        call test%no_error(err, 'a slider-crank goes on')
+        call test%near(worst, 0.0_wp, 1.0e-9_wp, 'a slider-crank stays on its branch')
+      end do
+    end do
+  end subroutine check_slider_crank
+
+  !> A four-bar with a pair of links on its coupler: all four branches, by two intersections of circles.
+  subroutine check_six_bar()
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    type(four_bar_type) :: bar
+    real(wp) :: at(2), pivot(2), expected, worst, joint(2), swing
+    integer :: branch, second, n, j
+
+    bar = random_crank(random, 0.1_wp)
+    at = [0.5_wp, 0.4_wp]
+    pivot = [0.4_wp + 0.3_wp*random%symmetric(), -2.2_wp]
+    do branch = -1, 1, 2
+      do second = -1, 1, 2
+        call watt_six_bar(bar, at, pivot, [2.6_wp, 2.5_wp], 0.3_wp, branch, second, mechanism)
+        call drive(mechanism, 1, [0.3_wp, 2.0_wp*pi])
+        do n = 1, size(outputs)
+          call begin(mechanism, plan, tracker)
+          worst = 0.0_wp
+          do j = 1, outputs(n)
+            call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
+            if (allocated(err)) exit
+            worst = max(worst, apart(tracker%state%q(4), four_bar_angle(bar, tracker%state%q(1), branch)))
+            swing = tracker%state%q(1) + tracker%state%q(2)
+            joint = bar%crank*[cos(tracker%state%q(1)), sin(tracker%state%q(1))] &
+                    + at(1)*[cos(swing), sin(swing)] + at(2)*[-sin(swing), cos(swing)]
+            joint = two_circles(joint, 2.6_wp, pivot, 2.5_wp, second) - pivot
+            expected = atan2(joint(2), joint(1))
+            worst = max(worst, apart(tracker%state%q(7), expected))
+          end do
+          call test%no_error(err, 'a six-bar goes on')
+          call test%near(worst, 0.0_wp, 1.0e-10_wp, 'a six-bar stays on its branches')
+        end do
+      end do
+    end do
+  end subroutine check_six_bar
+
+  !> Two chains that are solved together, driven to and fro many times between two outputs.
+  subroutine check_swinging_fig1()
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    type(harmonic_drive_type) :: swing
+    real(wp) :: start(7), q(7)
+    integer :: n, j
+
+    call fig1(1, mechanism)
+    deallocate (mechanism%drives)
+    allocate (mechanism%drives(1))
+    swing%coordinate = 1
+    swing%mean = -1.05_wp
+    mechanism%initial_position(1) = swing%mean
+    swing%amplitude = 0.1_wp
+    swing%angular_frequency = 2.0_wp*pi
+    do n = 1, 4
+      allocate (mechanism%drives(1)%drive, source=swing)
+      call begin(mechanism, plan, tracker)
+      start = tracker%state%q
+      do j = 1, 10**n
+        ! at the last output the drive has swung forty-seven and a quarter times
+        call advance(mechanism, plan, tracker, 47.25_wp*j/10**n, err)
+        if (allocated(err)) exit
+      end do
+      call test%no_error(err, 'Fig. 1 swings on')
+      if (n == 1) q = tracker%state%q
+      call test%is_true(maxval(abs(tracker%state%q - start)) > 0.05_wp, 'and has moved')
+      call test%near(maxval(abs(tracker%state%q - q)), 0.0_wp, 1.0e-11_wp, 'to the same position')
+      deallocate (mechanism%drives(1)%drive)
+    end do
+  end subroutine check_swinging_fig1
+end program test_branch_certainty
