@@ -54,7 +54,6 @@ module mech9_integrator
     procedure :: limit
     procedure :: statistics
     procedure :: destroy
-    final :: finalize
   end type integrator_type
 
 contains
@@ -366,10 +365,4 @@ contains
     self%maximum_steps = 1000000
     self%fresh = .true.
   end subroutine destroy
-
-  impure elemental subroutine finalize(self)
-    type(integrator_type), intent(inout) :: self
-
-    call self%destroy()
-  end subroutine finalize
 end module mech9_integrator
