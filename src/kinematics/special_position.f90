@@ -35,6 +35,8 @@ module mech9_special_position
   !> ... and at this part of the largest pivot those that have not grown so much come from a crossing.
   real(wp), parameter :: crossing_pivot = 1.0e-6_wp
   real(wp), parameter :: crossing_growth = 3.0_wp
+  !> Round-off may let no step pass already somewhat before.
+  real(wp), parameter :: stuck_pivot = 1.0e-4_wp
   !> Below this part round-off rules, and it must be decided.
   real(wp), parameter :: last_pivot = 3.0e-8_wp
   !> Steps of a scout: the movement of a driven or dependent coordinate [rad, lengths of the mechanism].
@@ -89,7 +91,8 @@ contains
         finding%kind = dead_point
         finding%t = time_of_dead_point(plan, scout, b)
         return
-      else if (part < last_pivot .or. (part < crossing_pivot .and. growth < crossing_growth)) then
+      else if (part < last_pivot .or. (growth < crossing_growth .and. &
+                                       (part < crossing_pivot .or. (stuck .and. part < stuck_pivot)))) then
         finding%kind = crossing
         if (scout%watches(b)%pivot < pivot_before) finding%t = scout%departure%t &
           + (scout%departure%t - t_before)*scout%watches(b)%pivot/(pivot_before - scout%watches(b)%pivot)

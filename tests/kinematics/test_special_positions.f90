@@ -1,0 +1,329 @@
+!> Dead points, found to 1e-9 and better, and positions where branches cross, which are passed on the branch
+!> with continuous velocities: everything against closed forms.
+program test_special_positions
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type, exit_singular
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs
+  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_sample_mechanisms, only: drive, four_bar
+  use mech9_planar_mechanisms, only: slider_crank, watt_six_bar, four_bar_type, four_bar_guess, four_bar_limit
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  !> Outputs over one and a half turns: few; some of them exactly at special positions; many.
+  integer, parameter :: outputs(5) = [1, 6, 36, 100, 3000]
+  integer :: i
+
+  do i = 1, 20
+    call check_dead_point(0.3_wp*abs(random%symmetric()) + 0.01_wp)
+    call check_dead_point(10.0_wp**(-0.35_wp*i - 1.0_wp))
+    call check_slider_dead_point()
+  end do
+  do i = 1, size(outputs)
+    call check_parallelogram(outputs(i), 0.31_wp)
+    call check_parallelogram(outputs(i), 0.5_wp*pi)
+    call check_antiparallelogram(outputs(i))
+    call check_kite(outputs(i))
+    call check_equal_arms(outputs(i), 0.25_wp*pi)
+    call check_touched_dead_point(outputs(i))
+    call check_two_at_once(outputs(i))
+  end do
+  call test%finish()
+
+contains
+
+  subroutine begin(mechanism, plan, tracker)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(out) :: plan
+    type(tracker_type), intent(out) :: tracker
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
+
+    q = mechanism%initial_position
+    call set_inputs(mechanism, 0.0_wp, q, dq, ddq, err)
+    call make_plan(mechanism, q, plan, state, err)
+    call test%no_error(err, 'plan and assembly')
+    if (allocated(err)) call test%finish()
+    call start_tracking(mechanism, plan, state, 0.0_wp, tracker, err)
+    call test%no_error(err, 'start')
+  end subroutine begin
+
+  !> How far two angles are apart, whole turns aside.
+  elemental real(wp) function apart(a, b)
+    real(wp), intent(in) :: a, b
+
+    apart = abs(modulo(a - b + pi, 2.0_wp*pi) - pi)
+  end function apart
+
+  !> A crank that cannot turn fully because the longest and the shortest link are by `lack` too long
+  !> together: it stops on both sides where coupler and rocker are in line.
+  subroutine check_dead_point(lack)
+    real(wp), intent(in) :: lack
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    real(wp) :: limit
+    integer :: branch, direction
+
+    ! not of Grashof's kind: crank and ground are the two middle links or hold the longest
+    bar = four_bar_type(ground=1.2_wp, crank=0.7_wp, coupler=0.9_wp, rocker=0.4_wp)
+    bar%ground = bar%coupler + bar%crank - bar%rocker + lack
+    limit = four_bar_limit(bar, stretched=.true.)
+    do branch = -1, 1, 2
+      do direction = -1, 1, 2
+        call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, &
+                      four_bar_guess(bar, 0.5_wp*limit, branch), mechanism)
+        call drive(mechanism, 1, [0.5_wp*limit, direction*2.0_wp])
+        if (direction > 0) call find_end(mechanism, limit, direction, 'a four-bar')
+        ! the other way: through zero to the same limit on the other side, unless the links fold before it
+        if (direction < 0 .and. bar%ground - bar%crank > abs(bar%coupler - bar%rocker)) &
+          call find_end(mechanism, -limit, direction, 'a four-bar, backwards')
+      end do
+    end do
+  end subroutine check_dead_point
+
+  !> A crank longer than what the coupler reaches: sin = (l + e)/r.
+  subroutine check_slider_dead_point()
+    type(mechanism_type) :: mechanism
+    real(wp) :: crank, coupler, offset
+    integer :: branch
+
+    crank = 1.0_wp + 0.3_wp*random%symmetric()
+    coupler = 0.6_wp + 0.05_wp*random%symmetric()
+    offset = 0.05_wp*random%symmetric()
+    do branch = -1, 1, 2
+      call slider_crank(crank, coupler, offset, 0.1_wp, branch, mechanism)
+      call drive(mechanism, 1, [0.1_wp, 0.4_wp, 0.3_wp])
+      call find_end(mechanism, asin((coupler + offset)/crank), 1, 'a slider-crank')
+    end do
+  end subroutine check_slider_dead_point
+
+  !> Run to the dead point with few and with many outputs.
+  subroutine find_end(mechanism, limit, direction, name)
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), intent(in) :: limit
+    integer, intent(in) :: direction
+    character(len=*), intent(in) :: name
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    integer :: n, j
+
+    do n = 1, 1000, 333
+      call begin(mechanism, plan, tracker)
+      do j = 1, n
+        call advance(mechanism, plan, tracker, 4.0_wp*j/n, err)
+        if (allocated(err)) exit
+        call test%is_true((limit - tracker%state%q(1))*direction > 0.0_wp, name//': no output beyond the dead point')
+      end do
+      call test%has_error(err, exit_singular, name//': a dead point is exit code 6')
+      if (.not. allocated(err)) cycle
+      ! the closed form itself loses no digits; the square-root law that the limit is taken from is exact
+      ! to the square of the last distance, about 1e-9
+      call test%near(tracker%limit(1), limit, 1.0e-10_wp, name//': the limit by its closed form')
+      call test%near(tracker%state%q(1), limit, 1.0e-6_wp, name//': it stops at the dead point')
+      call test%is_true((limit - tracker%state%q(1))*direction > 0.0_wp, name//': and just short of it')
+      call test%is_true(index(err%message, 'dead point') > 0 .and. index(err%message, 'q1') > 0, &
+                        name//': the message says so')
+    end do
+  end subroutine find_end
+
+  !> Turn the crank by one and a half turns and compare coordinates 2 to 4, their rates and accelerations
+  !> with multiples of the crank's: coupler against crank, rocker against coupler, rocker.
+  subroutine check_proportional(mechanism, n, start, expected, factors, name)
+    type(mechanism_type), intent(inout) :: mechanism
+    integer, intent(in) :: n
+    real(wp), intent(in) :: start               !< of the crank
+    real(wp), intent(in) :: expected(2:4)       !< at the crank's angle zero
+    real(wp), intent(in) :: factors(2:4)
+    character(len=*), intent(in) :: name
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    integer :: j
+
+    call drive(mechanism, 1, [start, 3.0_wp*pi, merge(0.5_wp, 0.0_wp, start < 1.0_wp)])
+    call begin(mechanism, plan, tracker)
+    do j = 1, n
+      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      if (allocated(err)) exit
+      ! between the positions beside a special one there is a polynomial of high degree: its second derivative
+      ! is exact to some 1e-9, the others better
+      associate (state => tracker%state)
+        call test%near(maxval(apart(state%q(2:), expected + factors*state%q(1))), 0.0_wp, 1.0e-11_wp, name//': positions')
+        call test%near(maxval(abs(state%dq(2:) - factors*state%dq(1))), 0.0_wp, 1.0e-9_wp, name//': rates')
+        call test%near(maxval(abs(state%ddq(2:) - factors*state%ddq(1))), 0.0_wp, 1.0e-6_wp, name//': accelerations')
+      end associate
+    end do
+    call test%no_error(err, name//' goes on')
+    call test%is_true(tracker%worst_closure < 1.0e-12_wp, name//' stays closed')
+  end subroutine check_proportional
+
+  !> The rocker turns with the crank, the coupler stays parallel to the ground, also through the flat positions.
+  subroutine check_parallelogram(n, start)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: start
+    type(mechanism_type) :: mechanism
+
+    call four_bar(1.0_wp, 0.4_wp, 1.0_wp, 0.4_wp, [start, -start, start, start], mechanism)
+    call check_proportional(mechanism, n, start, [0.0_wp, 0.0_wp, 0.0_wp], [-1.0_wp, 1.0_wp, 1.0_wp], 'a parallelogram')
+  end subroutine check_parallelogram
+
+  !> The same links crossed: the tangents of half the angles of crank and rocker have a fixed product, hence
+  !> the rate below.
+  subroutine check_antiparallelogram(n)
+    integer, intent(in) :: n
+    real(wp), parameter :: ground = 1.0_wp, crank = 0.4_wp, start = 0.5_wp*pi
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: gap, rate
+    integer :: j
+
+    bar = four_bar_type(ground, crank, ground, crank)
+    call four_bar(ground, crank, ground, crank, four_bar_guess(bar, start, -1), mechanism)
+    call drive(mechanism, 1, [start, 3.0_wp*pi])
+    call begin(mechanism, plan, tracker)
+    call test%is_true(apart(tracker%state%q(4), start) > 1.0_wp, 'it is not the parallelogram')
+    do j = 1, n
+      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      if (allocated(err)) exit
+      associate (a => tracker%state%q(1), b => tracker%state%q(4))
+        ! the pins are apart by the coupler's length, and the rocker turns against the crank
+        gap = hypot(ground + crank*(cos(b) - cos(a)), crank*(sin(b) - sin(a))) - ground
+        call test%near(gap, 0.0_wp, 1.0e-12_wp, 'an antiparallelogram: positions')
+        rate = -(ground**2 - crank**2)/(ground**2 + crank**2 - 2.0_wp*ground*crank*cos(a))*tracker%state%dq(1)
+        call test%near(tracker%state%dq(4), rate, 1.0e-9_wp, 'an antiparallelogram: rates')
+      end associate
+    end do
+    call test%no_error(err, 'an antiparallelogram goes on')
+  end subroutine check_antiparallelogram
+
+  !> Crank and ground alike, coupler and rocker alike: where the crank lies on the ground its pin is in the
+  !> pivot of the rocker, which could then turn by itself; the kite passes.
+  subroutine check_kite(n)
+    integer, intent(in) :: n
+    real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: half, expected, rate
+    integer :: j
+
+    bar = four_bar_type(short, short, long, long)
+    call four_bar(short, short, long, long, four_bar_guess(bar, 0.25_wp*pi, 1), mechanism)
+    call drive(mechanism, 1, [0.25_wp*pi, -3.0_wp*pi])
+    call begin(mechanism, plan, tracker)
+    do j = 1, n
+      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      if (allocated(err)) exit
+      ! the diagonal 2 short sin(q1/2), with its sign, points along q1/2 + 90 degrees
+      half = 0.5_wp*tracker%state%q(1)
+      expected = half + 0.5_wp*pi - acos(short*sin(half)/long)
+      rate = (0.5_wp + 0.5_wp*short*cos(half)/sqrt(long**2 - (short*sin(half))**2))*tracker%state%dq(1)
+      call test%near(apart(tracker%state%q(4), expected), 0.0_wp, 1.0e-11_wp, 'a kite: rocker')
+      call test%near(tracker%state%dq(4), rate, 1.0e-8_wp, 'a kite: rate of the rocker')
+    end do
+    call test%no_error(err, 'a kite goes on')
+  end subroutine check_kite
+
+  !> Crank and coupler alike: x = 2 r cos q1 goes through zero, where the crank could turn without the slider.
+  subroutine check_equal_arms(n, start)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: start
+    real(wp), parameter :: arm = 0.6_wp
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    integer :: j
+
+    call slider_crank(arm, arm, 0.0_wp, start, 1, mechanism)
+    call drive(mechanism, 1, [start, 3.0_wp*pi])
+    call begin(mechanism, plan, tracker)
+    do j = 1, n
+      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      if (allocated(err)) exit
+      associate (state => tracker%state)
+        call test%near(state%q(4), 2.0_wp*arm*cos(state%q(1)), 1.0e-11_wp, 'equal arms: slider')
+        call test%near(state%dq(4), -2.0_wp*arm*sin(state%q(1))*state%dq(1), 1.0e-9_wp, 'equal arms: rate of the slider')
+        call test%near(state%ddq(4), -2.0_wp*arm*cos(state%q(1))*state%dq(1)**2, 1.0e-6_wp, 'equal arms: acceleration')
+      end associate
+    end do
+    call test%no_error(err, 'equal arms go on')
+  end subroutine check_equal_arms
+
+  !> A drive that comes to rest just at the dead point and turns back: the mechanism swings through to its
+  !> other branch with continuous velocity.
+  subroutine check_touched_dead_point(n)
+    integer, intent(in) :: n
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    type(harmonic_drive_type) :: swing
+    real(wp) :: limit, guess(4)
+    integer :: j
+
+    bar = four_bar_type(ground=1.2_wp, crank=0.7_wp, coupler=0.9_wp, rocker=0.4_wp)
+    limit = four_bar_limit(bar, stretched=.true.)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.7_wp*limit, 1), mechanism)
+    swing%coordinate = 1
+    swing%mean = 0.7_wp*limit
+    swing%amplitude = 0.3_wp*limit
+    swing%angular_frequency = pi
+    deallocate (mechanism%drives)
+    allocate (mechanism%drives(1))
+    allocate (mechanism%drives(1)%drive, source=swing)
+    call begin(mechanism, plan, tracker)
+    do j = 1, n
+      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      if (allocated(err)) exit
+    end do
+    call test%no_error(err, 'a dead point that is only touched is passed')
+    ! half a period later the crank is back, and the rocker on the other side
+    guess = four_bar_guess(bar, 0.7_wp*limit, -1)
+    call test%near(maxval(apart(tracker%state%q, guess)), 0.0_wp, 1.0e-9_wp, 'a touched dead point: the other side')
+  end subroutine check_touched_dead_point
+
+  !> A parallelogram, and a second one on its coupler: both are flat at once.
+  subroutine check_two_at_once(n)
+    integer, intent(in) :: n
+    real(wp), parameter :: start = 0.8_wp, crank = 0.4_wp
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: point(2), pin(2)
+    integer :: j
+
+    bar = four_bar_type(1.0_wp, crank, 1.0_wp, crank)
+    ! link 5 is fixed to nothing but moves like a second coupler: it joins the coupler at its middle
+    point = crank*[cos(start), sin(start)] + [0.5_wp, 0.0_wp]
+    pin = [1.7_wp, 0.0_wp] + crank*[cos(start), sin(start)]
+    call watt_six_bar(bar, [0.5_wp, 0.0_wp], [1.7_wp, 0.0_wp], [1.2_wp, crank], start, 1, 1, mechanism)
+    mechanism%initial_position = [start, -start, start, start, 0.0_wp, start, start]
+    call drive(mechanism, 1, [start, 3.0_wp*pi])
+    call begin(mechanism, plan, tracker)
+    call test%near(norm2(pin - point), 1.2_wp, 1.0e-14_wp, 'the second parallelogram closes')
+    do j = 1, n
+      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      if (allocated(err)) exit
+      call test%near(apart(tracker%state%q(7), tracker%state%q(1)), 0.0_wp, 1.0e-11_wp, 'two parallelograms')
+      call test%near(tracker%state%dq(7), tracker%state%dq(1), 1.0e-8_wp, 'two parallelograms: rates')
+    end do
+    call test%no_error(err, 'two parallelograms go on')
+  end subroutine check_two_at_once
+end program test_special_positions
