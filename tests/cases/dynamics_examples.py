@@ -106,7 +106,9 @@ def main():
         # closure is round-off, whatever the tolerance
         checks.true(np.max(table['closure']) <= 1e-13, f'{name}: the chains are closed in every row')
     print(name, ' '.join(f'{tolerance:.0e}: {error:.2e}' for tolerance, error in zip(problem.tolerances, errors)))
-    checks.true(all(after <= before for before, after in zip(errors, errors[1:])), f'{name}: errors fall', errors)
+    # coarse tolerances may all be met by steps from output to output; then the errors are alike
+    checks.true(all(after <= 1.5 * before for before, after in zip(errors, errors[1:])), f'{name}: errors fall', errors)
+    checks.true(errors[-1] <= max(1e-2 * errors[0], 1e-12), f'{name}: the last error is far below the first', errors)
     checks.true(errors[-1] <= 1e-9, f'{name}: the error falls below 1e-9', errors)
     problem.also(checks, table)
 

@@ -21,7 +21,7 @@ CASE = """
 &load kind='user' /
 &user parameters = {last} /
 &time start=0.0, end=1.0, intervals=100 /
-&solver method='{method}', relative_tolerance=1e-9, absolute_tolerance=1e-9 /
+&solver {method} relative_tolerance=1e-9, absolute_tolerance=1e-9 /
 """
 
 
@@ -30,16 +30,16 @@ def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, 'case.nml')
-        for method in ('dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf'):
+        for method in ('default', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf'):
             with open(path, 'w', encoding='utf-8') as file:
-                file.write(CASE.format(last=LAST, method=method))
+                file.write(CASE.format(last=LAST, method='' if method == 'default' else f"method='{method}',"))
             done = run(failing, path, '--table', 'table.dat', folder=folder)
             checks.equal(done.returncode, 7, f'{method}: exit code 7')
             checks.true('case.nml:7:' in done.stderr, f'{method}: the message points to the load', done.stderr)
             checks.true('not finite' in done.stderr, f'{method}: the message says what is wrong', done.stderr)
             times = [float(word) for word in re.findall(r't = ([-+.\deE]+)', done.stderr)]
             # the last step that succeeds ends before the force does; an output lies every 0.01 s
-            checks.true(any(LAST - 0.01 <= t <= LAST + 0.01 for t in times), f'{method}: the message says when', done.stderr)
+            checks.true(any(abs(t - LAST) <= 0.01 for t in times), f'{method}: the message says when', done.stderr)
             checks.true('SUNDIALS' not in done.stderr and 'CVODE' not in done.stderr and 'ARK' not in done.stderr,
                         f'{method}: the integrator\'s own words do not reach the user', done.stderr)
             with open(os.path.join(folder, 'table.dat'), encoding='utf-8') as file:
