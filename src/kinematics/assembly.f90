@@ -12,13 +12,23 @@ module mech9_assembly
   use mech9_state, only: state_type
   use mech9_composition, only: place_frames
   use mech9_closure, only: closure_errors, closure_jacobian, closing_error
-  use mech9_solver, only: block_work_type, newton_outcome_type, close_block, apply_change
+  use mech9_solver, only: block_work_type, newton_outcome_type, close_block, apply_change, closed_enough
   implicit none
   private
   public :: assemble_block, assembly_outcome_type
 
   integer, parameter :: most_restarts = 24
+  !> Large blocks are restarted less often: unknowns times restarts stay below this.
+  integer, parameter :: most_restarted = 1500
   integer, parameter :: most_steps = 200
+  !> Steps in which the errors must have become clearly smaller.
+  integer, parameter :: patience = 25
+  !> From errors as small as this Newton's method takes over.
+  real(wp), parameter :: near_enough = 1.0e-8_wp
+  !> Newton's corrections from there, unless the position is singular.
+  real(wp), parameter :: regular_correction = 1.0e-5_wp
+  !> Errors that are left at a singular position where they fall slowly: still far below any tolerance.
+  real(wp), parameter :: closed_singular = 1.0e-12_wp
 
   !> How an assembly went.
   type :: assembly_outcome_type
@@ -42,17 +52,23 @@ contains
     type(error_type), allocatable, intent(out) :: err
     real(wp) :: guess(size(block%unknowns)), nearest(size(block%unknowns))
     type(random_type) :: random
-    integer :: restart, i, k
+    integer :: restart, restarts, i, k
 
+    restarts = 0
+    if (may_restart) restarts = max(2, min(most_restarts, most_restarted/max(1, size(guess))))
     guess = state%q(plan%steps(block%unknowns)%coordinate)
-    do restart = 0, merge(most_restarts, 0, may_restart)
+    do restart = 0, restarts
       do i = 1, size(guess)
         k = plan%steps(block%unknowns(i))%coordinate
         state%q(k) = guess(i)
-        if (restart > 0) state%q(k) = guess(i) + plan%unit_of(k)*random%symmetric()*pi*restart/most_restarts
+        if (restart > 0) state%q(k) = guess(i) + plan%unit_of(k)*random%symmetric()*pi*restart/restarts
       end do
       call descend(plan, block, state, work, outcome, err)
-      if (allocated(err)) return
+      if (allocated(err)) then
+        ! a user pair without a pose: only at the guess itself is that the user's affair
+        if (restart == 0) return
+        cycle
+      end if
       outcome%restarts = restart
       if (outcome%closed) then
         call unwind(plan, block, guess, state, err)
@@ -60,13 +76,16 @@ contains
       end if
       if (restart == 0) nearest = state%q(plan%steps(block%unknowns)%coordinate)
     end do
+    outcome = assembly_outcome_type(restarts=restarts)
     state%q(plan%steps(block%unknowns)%coordinate) = nearest
     call place_frames(plan, block%first_step, block%last_step, state, err)
     if (allocated(err)) return
     call find_worst(plan, block, state, outcome)
   end subroutine assemble_block
 
-  !> Damped least squares from the coordinates in `state`, then Newton.
+  !> Damped least squares from the coordinates in `state`, then Newton's method to round-off. At a
+  !> singular position Newton's method would leave the chains closed anyhow but the coordinates
+  !> elsewhere: there damped least squares goes on as far as it gets.
   subroutine descend(plan, block, state, work, outcome, err)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
@@ -75,74 +94,98 @@ contains
     type(assembly_outcome_type), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: err
     type(newton_outcome_type) :: newton
-    type(least_squares_type) :: damped
-    real(wp), allocatable :: right(:)
-    real(wp) :: before(size(block%unknowns))
-    real(wp) :: damping, lack, trial_lack
-    integer :: step, i, n, m
+    real(wp) :: before(size(block%unknowns)), lack
 
-    n = size(block%unknowns)
-    m = block%equations
-    call damped%create(m + n, n)
-    allocate (right(m + n))
-    damping = 1.0e-2_wp
+    call reduce_errors(plan, block, state, work, near_enough, 1.0e-2_wp, lack, err)
+    if (allocated(err)) return
+    outcome%closed = lack <= near_enough
+    if (outcome%closed) then
+      before = state%q(plan%steps(block%unknowns)%coordinate)
+      call close_block(plan, block, state, work, newton, err)
+      if (allocated(err)) return
+      if (.not. newton%converged .or. newton%correction > regular_correction) then
+        state%q(plan%steps(block%unknowns)%coordinate) = before
+        call reduce_errors(plan, block, state, work, closed_enough, 1.0e-10_wp, lack, err)
+        if (allocated(err)) return
+        outcome%closed = lack <= closed_singular
+      end if
+    end if
+    call find_worst(plan, block, state, outcome)
+    ! all six components of every closure count here, also those outside its space of motions
+    outcome%closed = outcome%closed .and. outcome%gap <= 1.0e-10_wp*plan%length
+  end subroutine descend
+
+  !> Damped least squares (Levenberg and Marquardt) until the errors are as small as asked for, or get
+  !> no smaller.
+  subroutine reduce_errors(plan, block, state, work, enough, damping_at_first, lack, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    real(wp), intent(in) :: enough
+    real(wp), intent(in) :: damping_at_first
+    real(wp), intent(out) :: lack            !< length of the errors that are left
+    type(error_type), allocatable, intent(out) :: err
+    type(least_squares_type) :: damped
+    real(wp) :: right(block%equations + size(block%unknowns)), before(size(block%unknowns))
+    real(wp) :: damping, trial_lack, lack_then
+    integer :: step
+
+    damping = damping_at_first
+    call damped%create(block%equations + size(block%unknowns), size(block%unknowns))
     call measure(plan, block, state, work, lack, err)
     if (allocated(err)) return
+    lack_then = lack
     do step = 1, most_steps
-      if (lack <= 1.0e-8_wp .or. n == 0) exit
-      call closure_jacobian(plan, block, state, work%column_of, damped%a(:m, :))
-      damped%a(m + 1:, :) = 0.0_wp
-      do i = 1, n
-        damped%a(m + i, i) = sqrt(damping)
-      end do
-      right(:m) = -work%right
-      right(m + 1:) = 0.0_wp
-      call damped%factorize()
-      call damped%solve(right, work%change)
-      ! no more than about a radian at once: beyond it the closures bend too much to follow
-      work%change = work%change/max(1.0_wp, maxval(abs(work%change)))
+      if (lack <= enough .or. size(before) == 0) exit
+      call damped_change(plan, block, state, damping, damped, right, work)
       before = state%q(plan%steps(block%unknowns)%coordinate)
       call apply_change(plan, block, work%change, state)
       call measure(plan, block, state, work, trial_lack, err)
-      if (allocated(err)) return
+      ! where a user pair has no pose the step was too long, like any other that does not help
+      if (allocated(err)) deallocate (err)
       if (trial_lack < lack) then
-        damping = max(damping*0.2_wp, 1.0e-14_wp)
-        if (trial_lack > 0.9999_wp*lack .and. damping < 1.0e-8_wp) exit   ! a least distance that is not zero
+        damping = max(damping*0.2_wp, 1.0e-20_wp)
         lack = trial_lack
       else
         state%q(plan%steps(block%unknowns)%coordinate) = before
         call measure(plan, block, state, work, lack, err)
         if (allocated(err)) return
-        damping = damping*5.0_wp
+        damping = max(damping, 1.0e-16_wp)*5.0_wp
         if (damping > 1.0e6_wp) exit
       end if
+      if (mod(step, patience) == 0) then
+        if (lack > 0.7_wp*lack_then) exit     ! a least distance that is not zero
+        lack_then = lack
+      end if
     end do
-    call finish(plan, block, state, work, newton, err)
-    if (allocated(err)) return
-    call find_worst(plan, block, state, outcome)
-    ! all six components of every closure count here, also those outside its space of motions
-    outcome%closed = newton%converged .and. outcome%gap <= 1.0e-10_wp*plan%length
-  end subroutine descend
+  end subroutine reduce_errors
 
-  !> Newton's method to round-off. At a singular position it would leave a closed chain: then what
-  !> damped least squares found is kept if it is closed.
-  subroutine finish(plan, block, state, work, newton, err)
+  !> The change of the unknowns that a damped linear step asks for, in work%change. The errors stand
+  !> in work%right.
+  subroutine damped_change(plan, block, state, damping, damped, right, work)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(in) :: state
+    real(wp), intent(in) :: damping
+    type(least_squares_type), intent(inout) :: damped
+    real(wp), intent(out) :: right(:)
     type(block_work_type), intent(inout) :: work
-    type(newton_outcome_type), intent(out) :: newton
-    type(error_type), allocatable, intent(out) :: err
-    real(wp) :: before(size(block%unknowns)), lack
+    integer :: i, m
 
-    before = state%q(plan%steps(block%unknowns)%coordinate)
-    call close_block(plan, block, state, work, newton, err)
-    if (allocated(err)) return
-    if (newton%converged .and. newton%correction < 1.0e-2_wp) return
-    state%q(plan%steps(block%unknowns)%coordinate) = before
-    call measure(plan, block, state, work, lack, err)
-    newton%converged = lack <= 1.0e-12_wp
-  end subroutine finish
+    m = block%equations
+    call closure_jacobian(plan, block, state, work%column_of, damped%a(:m, :))
+    damped%a(m + 1:, :) = 0.0_wp
+    do i = 1, size(block%unknowns)
+      damped%a(m + i, i) = sqrt(damping)
+    end do
+    right(:m) = -work%right
+    right(m + 1:) = 0.0_wp
+    call damped%factorize()
+    call damped%solve(right, work%change)
+    ! no more than about a radian at once: beyond it the closures bend too much to follow
+    work%change = work%change/max(1.0_wp, maxval(abs(work%change)))
+  end subroutine damped_change
 
   !> Length of the block's errors at the coordinates in `state`; the errors stay in work%right.
   subroutine measure(plan, block, state, work, lack, err)

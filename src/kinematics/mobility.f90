@@ -1,95 +1,104 @@
-!> Which coordinates a block leaves free and which cannot be given: words for mobility errors.
-!> Uses kinds, text, lapack, plan, state, closure.
+!> The motions that the chains of a mechanism allow, and which coordinates can describe them. Uses
+!> kinds, lapack, least_squares, plan, state, closure, elsewhere.
 module mech9_mobility
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
   use mech9_lapack, only: dgesvd
+  use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_closure, only: closure_jacobian
+  use mech9_elsewhere, only: free_block
   implicit none
   private
-  public :: undetermined, overdetermined
+  public :: find_motions, choose_coordinates, shares_of, moves_least
 
-  !> Singular values and components below this count as zero.
-  real(wp), parameter :: tolerance = 1.0e-8_wp
+  !> Singular values below this fraction of the largest count as zero.
+  real(wp), parameter :: rank_tolerance = 1.0e-8_wp
+  !> Coordinates that take a smaller part than this in motions of length one do not move.
+  real(wp), parameter :: moves_least = 1.0e-8_wp
 
 contains
 
-  !> How many more coordinates must be independent, and which of the block's could be.
-  function undetermined(plan, block, state) result(text)
+  !> All rates that keep the chains closed at a closed position: an orthonormal basis, a column for
+  !> each freedom, rates in the units of the coordinates. The frames must be in place, and the paths
+  !> of the closures be those of whole loops.
+  subroutine find_motions(plan, state, motions)
     type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
     type(state_type), intent(in) :: state
-    character(len=:), allocatable :: text
-    integer :: steps(size(block%unknowns)), free, i
-    logical :: moves(size(block%unknowns))
+    real(wp), allocatable, intent(out) :: motions(:, :)    !< (M, mobility)
+    type(block_type) :: block
+    real(wp), allocatable :: a(:, :), vt(:, :), s(:), work(:)
+    real(wp) :: u(1, 1)
+    integer :: m, n, i, rank, info
 
-    steps = block%unknowns
-    call free_motions(plan, block, state, steps, free, moves)
-    text = to_text(free)//' more of the coordinates '// &
-           to_text(ascending(pack([(plan%steps(steps(i))%coordinate, i=1, size(steps))], moves)))// &
-           ' must be independent (cq)'
-  end function undetermined
+    block = free_block(plan, plan%n_coordinates, size(plan%closures))
+    m = max(block%equations, 1)
+    n = plan%n_coordinates
+    allocate (a(m, n), vt(n, n), s(min(m, n)), work(16*(m + n) + 64), source=0.0_wp)
+    if (block%equations > 0) call closure_jacobian(plan, block, state, [(i, i=1, n)], a)
+    call dgesvd('N', 'A', m, n, a, m, s, u, 1, vt, n, work, size(work), info)
+    rank = count(s > rank_tolerance*max(s(1), tiny(s)))
+    allocate (motions(n, n - rank))
+    ! columns belong to steps: bring them in the order of the coordinates
+    motions(plan%steps%coordinate, :) = transpose(vt(rank + 1:, :))
+  end subroutine find_motions
 
-  !> Which independent coordinates move against each other in a block.
-  function overdetermined(plan, block, state) result(text)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
-    character(len=:), allocatable :: text
-    integer, allocatable :: given(:)
-    integer :: c
+  !> As many coordinates as there are freedoms, whose rates determine all rates: the wanted ones as far
+  !> as they are independent of each other, then those that move most.
+  pure subroutine choose_coordinates(motions, wanted, chosen)
+    real(wp), intent(in) :: motions(:, :)
+    logical, intent(in) :: wanted(:)
+    logical, intent(out) :: chosen(:)
+    real(wp) :: rest(size(motions, 1), size(motions, 2)), e(size(motions, 2)), length, longest
+    integer :: k, best, stage
 
-    allocate (given(0))
-    do c = block%first_closure, block%last_closure
-      associate (steps => plan%closures(c)%path%steps)
-        given = [given, pack(plan%steps(steps)%coordinate, .not. plan%steps(steps)%dependent)]
-      end associate
+    rest = motions
+    chosen = .false.
+    do stage = 1, 2
+      do while (count(chosen) < size(motions, 2))
+        best = 0
+        longest = moves_least
+        do k = 1, size(wanted)
+          if (chosen(k) .or. (stage == 1 .and. .not. wanted(k))) cycle
+          length = norm2(rest(k, :))
+          if (length > longest) then
+            best = k
+            longest = length
+          end if
+        end do
+        if (best == 0) exit
+        chosen(best) = .true.
+        e = rest(best, :)/longest
+        do k = 1, size(wanted)
+          rest(k, :) = rest(k, :) - dot_product(rest(k, :), e)*e
+        end do
+      end do
     end do
-    if (size(given) > 0) then
-      text = 'take one of '//to_text(ascending(given))//' off the independent coordinates (cq)'
-    else
-      text = 'its links are already held by other chains; take a coordinate off the independent ones (cq)'
-    end if
-  end function overdetermined
+  end subroutine choose_coordinates
 
-  !> Number of independent motions of a block that keep its chains closed, over the given steps, and
-  !> which of the steps take part in one.
-  subroutine free_motions(plan, block, state, steps, free, moves)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
-    integer, intent(in) :: steps(:)
-    integer, intent(out) :: free
-    logical, intent(out) :: moves(:)
-    real(wp) :: a(max(block%equations, 1), size(steps)), s(size(steps) + block%equations)
-    real(wp) :: vt(size(steps), size(steps)), u(1, 1)
-    real(wp) :: work(8*(size(steps) + block%equations) + 64)
-    integer :: column_of(block%last_step - block%first_step + 1), i, n, rank, info
+  !> The rate of each coordinate per unit rate of each of some coordinates that determine all:
+  !> (M, mobility), the columns in ascending order of these.
+  subroutine shares_of(motions, chosen, shares)
+    real(wp), intent(in) :: motions(:, :)
+    logical, intent(in) :: chosen(:)
+    real(wp), allocatable, intent(out) :: shares(:, :)
+    type(least_squares_type) :: equations
+    real(wp) :: right(size(motions, 2))
+    integer :: i, k, f
 
-    n = size(steps)
-    column_of = 0
-    do i = 1, n
-      column_of(steps(i) - block%first_step + 1) = i
+    f = size(motions, 2)
+    allocate (shares(size(motions, 1), f))
+    call equations%create(f, f)
+    i = 0
+    do k = 1, size(chosen)
+      if (.not. chosen(k)) cycle
+      i = i + 1
+      equations%a(:, i) = motions(k, :)
     end do
-    a = 0.0_wp
-    if (block%equations > 0) call closure_jacobian(plan, block, state, column_of, a)
-    s = 0.0_wp
-    call dgesvd('N', 'A', size(a, 1), n, a, size(a, 1), s, u, 1, vt, n, work, size(work), info)
-    rank = count(s(:min(n, size(a, 1))) > tolerance*max(s(1), tiny(s)))
-    free = n - rank
-    do i = 1, n
-      moves(i) = norm2(vt(rank + 1:n, i)) > tolerance
+    call equations%factorize()
+    do k = 1, size(motions, 1)
+      right = motions(k, :)
+      call equations%solve(right, shares(k, :))
     end do
-  end subroutine free_motions
-
-  !> The numbers in ascending order, each once.
-  pure function ascending(numbers) result(sorted)
-    integer, intent(in) :: numbers(:)
-    integer, allocatable :: sorted(:)
-    integer :: i
-
-    sorted = pack([(i, i=1, maxval([0, numbers]))], [(any(numbers == i), i=1, maxval([0, numbers]))])
-  end function ascending
+  end subroutine shares_of
 end module mech9_mobility

@@ -20,6 +20,7 @@ module mech9_plan
     integer :: parent = 0
     integer :: coordinate = 0
     integer :: link = 0             !< the link whose frame (or second frame) is reached
+    integer :: chain = 0            !< number of its chain among all chains of the structural vectors
     logical :: reversed = .false.   !< run through against the pair's own direction
     logical :: is_screw = .true.    !< fixed axis; otherwise plan%pairs(coordinate) is asked
     logical :: dependent = .true.
@@ -39,20 +40,24 @@ module mech9_plan
   type :: closure_type
     integer :: chain = 0              !< number of the closed chain, as in nrw
     integer :: closing = 0            !< the frame made by the chain's last step
-    integer :: target = 0             !< first frame of the link it closes on
+    integer :: target = 0             !< the other frame of that link
     type(pose_type) :: in_target      !< where the closing frame must be, in the target frame
     integer :: base = 0               !< frame in which the loop starts: nearest common to both ends
-    integer :: rank = 6               !< dimension of the space of motions of the loop
+    integer :: rank = 6               !< dimension of the space of motions of the loop: its equations
+    !> How many of the equations are independent while the loop moves: fewer where it is overconstrained.
+    integer :: offers = 6
     !> Rows that pick the independent equations out of a screw (w, v/length) at the base frame's origin,
     !> in its axes: orthonormal, constant. Only the first `rank` count.
     real(wp) :: rows(6, 6) = 0.0_wp
     type(path_type) :: path
   end type closure_type
 
-  !> Chains that are solved together (or an open chain: no closures).
+  !> Chains that are solved together (or pieces of open chains: no closures). A step belongs to the
+  !> block that determines its coordinate, an independent one to the first block that needs it.
   type :: block_type
     integer :: first_step = 0, last_step = 0
     integer :: first_closure = 1, last_closure = 0
+    integer, allocatable :: chains(:)          !< numbers of its closed chains, as in nrw
     integer :: equations = 0                   !< rows: sum of the closures' ranks
     integer, allocatable :: unknowns(:)        !< steps of its dependent coordinates
   end type block_type

@@ -1,38 +1,35 @@
 !> Making the plan: frames, spaces of motion, blocks, and the assembled start. Uses the kinematics
 !> floor below it and the model.
 !>
-!> Chains are taken in the order of the structural vectors. A chain whose dependent coordinates are
-!> all determined by its own closure is a block; one that leaves some free is joined with the next
-!> chains until the block is square. Whether coordinates are determined is judged by the rank of the
-!> Jacobian at a closed position: at the start, and where that is singular, also away from it.
+!> Structure and ranks of the loops propose the blocks. Whether a block determines its coordinates is
+!> then judged by the rank of its Jacobian at a closed position: at the start, and where that is
+!> singular, also away from it. A block that does not is joined with the next ones until it does.
 module mech9_planning
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_structure, exit_assembly
+  use mech9_error, only: error_type, raise, exit_structure
   use mech9_text, only: to_text
-  use mech9_structural_vectors, only: chain_type, chains_of
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, new_state
   use mech9_frames, only: lay_out_frames
   use mech9_loop_space, only: find_loop_spaces
+  use mech9_loop_rank, only: find_offers
+  use mech9_blocks, only: make_blocks, count_block
   use mech9_random, only: random_type
-  use mech9_composition, only: place_frames
   use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
   use mech9_assembly, only: assemble_block, assembly_outcome_type
-  use mech9_mobility, only: undetermined, overdetermined
+  use mech9_branches, only: close_from_random_starts
+  use mech9_elsewhere, only: elsewhere_type, go_elsewhere
+  use mech9_release, only: carry_inputs
+  use mech9_diagnosis, only: judge_choice, refuse_open, refuse_undetermined
   implicit none
   private
   public :: make_plan, chain_names
 
   !> Pivots below this fraction of the largest count as zero when ranks are found.
   real(wp), parameter :: rank_tolerance = 1.0e-9_wp
-
-  !> A position away from the start, made when the rank at the start is in doubt.
-  type :: elsewhere_type
-    type(state_type) :: state
-    logical :: exists = .false.
-    logical :: closed = .false.
-  end type elsewhere_type
+  !> Rates that the chains cannot follow, against rates of one, where the inputs contradict each other.
+  real(wp), parameter :: contradiction = 1.0e-7_wp
 
 contains
 
@@ -45,160 +42,158 @@ contains
     type(plan_type), intent(out) :: plan
     type(state_type), intent(out) :: state  !< assembled
     type(error_type), allocatable, intent(out) :: err
-    type(chain_type), allocatable :: chains(:)
-    type(block_type), allocatable :: blocks(:)
     type(elsewhere_type) :: elsewhere
-    type(block_type) :: block
-    integer :: i, n_blocks, step, closure
-    logical :: complete
 
     call lay_out_frames(mechanism, plan)
     state = new_state(plan)
     state%q = start
     call find_loop_spaces(plan, start, err)
     if (allocated(err)) return
-    chains = chains_of(mechanism%vectors)
-    allocate (blocks(size(chains)))
-    n_blocks = 0
-    step = 0
-    closure = 0
-    complete = .true.
-    do i = 1, size(chains)
-      if (complete) block = block_type(first_step=step + 1, first_closure=closure + 1)
-      step = step + chains(i)%last - chains(i)%first + 1
-      if (chains(i)%closed) closure = closure + 1
-      block%last_step = step
-      block%last_closure = closure
-      call count_block(plan, block)
-      call try_block(plan, blocks(:n_blocks), block, state, elsewhere, complete, err)
-      if (allocated(err)) return
-      if (complete) then
-        n_blocks = n_blocks + 1
-        blocks(n_blocks) = block
-      end if
-    end do
-    plan%blocks = blocks(:n_blocks)
-    if (.not. complete) call refuse_free(plan, block, state, err)
+    call find_offers(plan, start)
+    call propose_blocks(plan, state, err)
+    if (allocated(err)) return
+    call settle_blocks(plan, state, elsewhere, err)
     if (allocated(err)) return
     call check_inputs(plan, state, elsewhere, err)
     if (allocated(err)) return
     call trim_paths(plan)
   end subroutine make_plan
 
-  !> Unknowns and equations of a block from its ranges.
-  pure subroutine count_block(plan, block)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(inout) :: block
-    integer :: s
+  !> Blocks by structure and ranks of the loops. An error says that they cannot determine all
+  !> coordinates.
+  subroutine propose_blocks(plan, state, err)
+    type(plan_type), intent(inout) :: plan
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    integer, allocatable :: undetermined(:)
+    logical :: closed
 
-    block%unknowns = pack([(s, s=block%first_step, block%last_step)], &
-                          plan%steps(block%first_step:block%last_step)%dependent)
-    block%equations = sum(plan%closures(block%first_closure:block%last_closure)%rank)
-  end subroutine count_block
+    call make_blocks(plan, undetermined)
+    if (size(undetermined) == 0) return
+    ! ranks found with a loop alone do not bind it in company: the dimensions of its motions do
+    plan%closures%offers = plan%closures%rank
+    call make_blocks(plan, undetermined)
+    if (size(undetermined) == 0) return
+    call judge_choice(plan, state, closed, err)
+    if (.not. allocated(err)) call refuse_undetermined(undetermined, err)
+  end subroutine propose_blocks
 
-  !> Assemble a block and say whether its dependent coordinates are all determined.
-  subroutine try_block(plan, before, block, state, elsewhere, complete, err)
+  !> Assemble the proposed blocks one after the other and join those that prove too small.
+  subroutine settle_blocks(plan, state, elsewhere, err)
+    type(plan_type), intent(inout) :: plan
+    type(state_type), intent(inout) :: state
+    type(elsewhere_type), intent(inout) :: elsewhere
+    type(error_type), allocatable, intent(out) :: err
+    type(block_type), allocatable :: blocks(:)
+    type(state_type) :: trial
+    integer :: b, n
+    logical :: complete, closed
+
+    allocate (blocks(size(plan%blocks)))
+    n = 0
+    complete = .true.
+    do b = 1, size(plan%blocks)
+      if (complete) then
+        n = n + 1
+        blocks(n) = plan%blocks(b)
+      else
+        blocks(n)%last_step = plan%blocks(b)%last_step
+        blocks(n)%last_closure = plan%blocks(b)%last_closure
+        call count_block(plan, blocks(n))
+      end if
+      call settle_block(plan, blocks(:n), state, elsewhere, complete, err)
+      if (allocated(err)) return
+    end do
+    plan%blocks = blocks(:n)
+    if (complete) return
+    trial = state
+    call judge_choice(plan, trial, closed, err)
+    if (.not. allocated(err)) call raise(err, exit_structure, chain_names(blocks(n))// &
+      ' cannot determine all dependent coordinates from the independent ones near the start: it is singular there')
+  end subroutine settle_blocks
+
+  !> Assemble the last block, the others being closed, and say whether its coordinates are all determined.
+  subroutine settle_block(plan, blocks, state, elsewhere, complete, err)
     type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: before(:)     !< the blocks already found
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: blocks(:)
     type(state_type), intent(inout) :: state
     type(elsewhere_type), intent(inout) :: elsewhere
     logical, intent(out) :: complete
     type(error_type), allocatable, intent(out) :: err
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
+    logical :: closed
 
     complete = .false.
-    if (size(block%unknowns) > block%equations) return
-    work = new_block_work(block)
-    call assemble_block(plan, block, state, work, .true., outcome, err)
-    if (allocated(err)) return
-    if (.not. outcome%closed) then
-      call refuse_open(plan, block, state, outcome, err)
-      return
-    end if
-    call factorize_block(plan, block, state, work)
-    complete = work%equations%rank(rank_tolerance) == size(block%unknowns)
-    if (complete) then
-      if (elsewhere%exists .and. elsewhere%closed) call extend(plan, block, state, elsewhere, err)
-      return
-    end if
-    ! a singular start, or a rank that is small everywhere?
-    call go_elsewhere(plan, before, state, elsewhere, err)
-    if (allocated(err) .or. .not. elsewhere%closed) return
-    call extend(plan, block, state, elsewhere, err)
-    if (allocated(err) .or. .not. elsewhere%closed) return
-    call factorize_block(plan, block, elsewhere%state, work)
-    complete = work%equations%rank(rank_tolerance) == size(block%unknowns)
-  end subroutine try_block
-
-  !> Make the position elsewhere: independent coordinates changed at random, all blocks so far closed.
-  subroutine go_elsewhere(plan, before, state, elsewhere, err)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: before(:)
-    type(state_type), intent(in) :: state
-    type(elsewhere_type), intent(inout) :: elsewhere
-    type(error_type), allocatable, intent(out) :: err
-    type(random_type) :: random
-    real(wp) :: amount
-    integer :: trial, i, k
-
-    if (elsewhere%exists) return
-    elsewhere%exists = .true.
-    amount = 0.3_wp
-    do trial = 1, 6
-      elsewhere%state = state
-      elsewhere%closed = .true.
-      do i = 1, size(plan%independent)
-        k = plan%independent(i)
-        elsewhere%state%q(k) = state%q(k) + amount*plan%unit_of(k)*random%symmetric()
-      end do
-      do i = 1, size(before)
-        call extend(plan, before(i), state, elsewhere, err)
+    associate (block => blocks(size(blocks)))
+      work = new_block_work(block)
+      call assemble_block(plan, block, state, work, .true., outcome, err)
+      if (allocated(err)) return
+      if (.not. outcome%closed) then
+        call assemble_otherwise(plan, blocks, outcome, state, err)
         if (allocated(err)) return
-        if (.not. elsewhere%closed) exit
-      end do
-      if (elsewhere%closed) return
-      amount = -0.5_wp*amount
-    end do
-  end subroutine go_elsewhere
+        elsewhere%exists = .false.
+      end if
+      call factorize_block(plan, block, state, work)
+      complete = work%equations%rank(rank_tolerance) == size(block%unknowns)
+      if (complete .and. .not. elsewhere%exists) return
+      ! a singular start, or a rank that is small everywhere?
+      call go_elsewhere(plan, blocks, state, elsewhere, closed)
+      if (complete .or. .not. closed) return
+      call factorize_block(plan, block, elsewhere%state, work)
+      complete = work%equations%rank(rank_tolerance) == size(block%unknowns)
+    end associate
+  end subroutine settle_block
 
-  !> Close one more block elsewhere, from its coordinates at the start, somewhat changed: away from
-  !> a singular start either way will do.
-  subroutine extend(plan, block, state, elsewhere, err)
+  !> The last block does not close on the blocks before it as they are: try other assemblies of these,
+  !> then the way through a position in which the independent coordinates give way. An error tells why
+  !> neither helps.
+  subroutine assemble_otherwise(plan, blocks, outcome, state, err)
     type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
-    type(elsewhere_type), intent(inout) :: elsewhere
+    type(block_type), intent(in) :: blocks(:)
+    type(assembly_outcome_type), intent(in) :: outcome   !< how it failed
+    type(state_type), intent(inout) :: state
     type(error_type), allocatable, intent(out) :: err
-    type(block_work_type) :: work
-    type(assembly_outcome_type) :: outcome
-    type(random_type) :: random
-    integer :: i, k
+    type(state_type) :: trial
+    logical :: closed
 
-    work = new_block_work(block)
-    do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
-      elsewhere%state%q(k) = state%q(k) + 0.2_wp*plan%unit_of(k)*random%symmetric()
-    end do
-    call assemble_block(plan, block, elsewhere%state, work, .false., outcome, err)
-    elsewhere%closed = outcome%closed
-  end subroutine extend
+    if (size(blocks) > 1) then
+      call close_from_random_starts(plan, blocks, state, closed)
+      if (closed) return
+    end if
+    trial = state
+    call judge_choice(plan, trial, closed, err)
+    if (allocated(err)) return
+    if (closed) then
+      call carry_inputs(plan, state%q, trial, closed)
+      if (closed) then
+        state = trial
+        return
+      end if
+    end if
+    call refuse_open(plan, outcome, err)
+  end subroutine assemble_otherwise
 
-  !> The independent coordinates must be free to move at any rates.
+  !> The independent coordinates must be free to move at any rates, and by more than nothing.
   subroutine check_inputs(plan, state, elsewhere, err)
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
-    type(elsewhere_type), intent(in) :: elsewhere
+    type(elsewhere_type), intent(inout) :: elsewhere
     type(error_type), allocatable, intent(out) :: err
     type(state_type) :: trial
     type(block_work_type) :: work
     type(random_type) :: random
     real(wp) :: remainder
     integer :: b, i
+    logical :: closed, free
 
+    free = .true.
+    closed = elsewhere%exists
+    ! more equations than unknowns: they must agree not only at the start
+    if (closed .or. any(plan%blocks%equations > unknowns_of(plan%blocks))) &
+      call go_elsewhere(plan, plan%blocks, state, elsewhere, closed)
     trial = state
-    if (elsewhere%exists .and. elsewhere%closed) trial = elsewhere%state
+    if (closed) trial = elsewhere%state
     do i = 1, size(plan%independent)
       trial%dq(plan%independent(i)) = plan%unit_of(plan%independent(i))*random%symmetric()
     end do
@@ -206,71 +201,33 @@ contains
       work = new_block_work(plan%blocks(b))
       if (plan%blocks(b)%equations > 0) call factorize_block(plan, plan%blocks(b), trial, work)
       call solve_rates(plan, plan%blocks(b), trial, work, remainder)
-      if (remainder > 1.0e-7_wp) then
-        call raise(err, exit_structure, 'the independent coordinates cannot all move freely: '// &
-                   chain_names(plan%blocks(b))//' would not stay closed; '// &
-                   overdetermined(plan, plan%blocks(b), trial))
-        return
-      end if
+      free = remainder <= contradiction
+      if (.not. free) exit
     end do
+    if (free) return
+    trial = state
+    call judge_choice(plan, trial, closed, err)
+    if (.not. allocated(err)) call raise(err, exit_structure, 'the independent coordinates cannot all move freely: '// &
+      chain_names(plan%blocks(b))//' would not stay closed')
   end subroutine check_inputs
 
-  !> Coordinates that nothing determines.
-  subroutine refuse_free(plan, block, state, err)
-    type(plan_type), intent(in) :: plan
+  pure elemental integer function unknowns_of(block)
     type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
-    type(error_type), allocatable, intent(out) :: err
-    character(len=:), allocatable :: text
 
-    call place_frames(plan, block%first_step, block%last_step, state, err)
-    if (allocated(err)) return
-    if (block%equations == 0) then
-      text = 'nothing determines the coordinates of an open chain'
-    else
-      text = chain_names(block)//' cannot determine all '//to_text(size(block%unknowns))// &
-             ' dependent coordinates from the independent ones'
-    end if
-    call raise(err, exit_structure, text//'; '//undetermined(plan, block, state))
-  end subroutine refuse_free
+    unknowns_of = size(block%unknowns)
+  end function unknowns_of
 
-  !> Chains that do not close.
-  subroutine refuse_open(plan, block, state, outcome, err)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
-    type(assembly_outcome_type), intent(in) :: outcome
-    type(error_type), allocatable, intent(out) :: err
-    character(len=:), allocatable :: text
-
-    associate (closure => plan%closures(outcome%worst_closure))
-      text = 'the mechanism cannot be assembled: closed chain '//to_text(closure%chain)// &
-             ' (it closes on link '//to_text(plan%steps(closure%closing)%link)//' through coordinate '// &
-             to_text(plan%steps(closure%closing)%coordinate)//') stays open by '//to_text(outcome%gap, 3)// &
-             ' m at best; '
-      if (outcome%gap < 1.0e-5_wp*plan%length) then
-        text = text//'so small a gap comes from directions or points given with too few digits, '// &
-               'for a chain that moves only when its geometry is exact'
-      else if (size(block%unknowns) == 0) then
-        text = text//'it has no dependent coordinate to close it'
-      else
-        text = text//'check its dimensions and the independent coordinates, or give better guesses with &initial'
-      end if
-    end associate
-    call raise(err, exit_assembly, text)
-  end subroutine refuse_open
-
-  !> "closed chain 2" or "closed chains 1 to 3".
+  !> "closed chain 2" or "closed chains 1, 3 together".
   pure function chain_names(block) result(names)
     type(block_type), intent(in) :: block
     character(len=:), allocatable :: names
 
-    if (block%last_closure < block%first_closure) then
+    if (size(block%chains) == 0) then
       names = 'an open chain'
-    else if (block%last_closure == block%first_closure) then
-      names = 'closed chain '//to_text(block%first_closure)
+    else if (size(block%chains) == 1) then
+      names = 'closed chain '//to_text(block%chains)
     else
-      names = 'closed chains '//to_text(block%first_closure)//' to '//to_text(block%last_closure)//' together'
+      names = 'closed chains '//to_text(block%chains)//' together'
     end if
   end function chain_names
 

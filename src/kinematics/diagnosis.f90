@@ -1,0 +1,207 @@
+!> Why a choice of independent coordinates cannot serve, and which choices would: words for errors.
+!> Uses kinds, error, text, random, plan, state, assembly, release, mobility.
+module mech9_diagnosis
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_structure, exit_assembly
+  use mech9_text, only: to_text
+  use mech9_random, only: random_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_assembly, only: assembly_outcome_type
+  use mech9_release, only: close_free, most_free_coordinates
+  use mech9_mobility, only: find_motions, choose_coordinates, shares_of, moves_least
+  implicit none
+  private
+  public :: judge_choice, refuse_open, refuse_undetermined, some_of
+
+  !> Numbers that a list in a message shows at most.
+  integer, parameter :: longest_list = 24
+
+contains
+
+  !> Judge the independent coordinates at closed positions in which all coordinates may give way. `err`
+  !> tells what is wrong with them (exit_structure), or that the chains close nowhere (exit_assembly);
+  !> not allocated: they can serve, or the mechanism is too large to be judged in one piece. `state` is
+  !> then a closed position near the coordinates it came with, if `closed`.
+  subroutine judge_choice(plan, state, closed, err)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(inout) :: state
+    logical, intent(out) :: closed
+    type(error_type), allocatable, intent(out) :: err
+    real(wp), parameter :: amounts(6) = [0.0_wp, 0.3_wp, 0.1_wp, 0.03_wp, 0.3_wp, 0.1_wp]
+    type(assembly_outcome_type) :: outcome
+    type(state_type) :: trial
+    type(random_type) :: random
+    real(wp), allocatable :: motions(:, :), best(:, :)
+    logical :: wanted(plan%n_coordinates), chosen(plan%n_coordinates)
+    integer :: i, k
+
+    closed = .false.
+    if (plan%n_coordinates > most_free_coordinates) return
+    wanted = .false.
+    wanted(plan%independent) = .true.
+    call close_free(plan, state, .true., outcome, err)
+    if (allocated(err)) return
+    if (.not. outcome%closed) then
+      call refuse_open(plan, outcome, err)
+      return
+    end if
+    closed = .true.
+    do i = 1, size(amounts)
+      trial = state
+      do k = 1, plan%n_coordinates
+        if (plan%steps(plan%step_of(k))%is_screw) &
+          trial%q(k) = state%q(k) + amounts(i)*plan%unit_of(k)*random%symmetric()
+      end do
+      call close_free(plan, trial, .false., outcome, err)
+      if (allocated(err)) cycle
+      if (.not. outcome%closed) cycle
+      call find_motions(plan, trial, motions)
+      call choose_coordinates(motions, wanted, chosen)
+      if (all(chosen .eqv. wanted)) return
+      ! where branches of different mobility meet, a general position of the least mobile one
+      if (.not. allocated(best)) best = motions
+      if (size(motions, 2) < size(best, 2)) best = motions
+    end do
+    call raise(err, exit_structure, words_on_choice(plan, best, wanted))
+  end subroutine judge_choice
+
+  !> What is wrong with a choice of independent coordinates, and what would serve.
+  function words_on_choice(plan, motions, wanted) result(text)
+    type(plan_type), intent(in) :: plan
+    real(wp), intent(in) :: motions(:, :)
+    logical, intent(in) :: wanted(:)
+    character(len=:), allocatable :: text
+    logical :: chosen(size(wanted)), others(size(wanted))
+    real(wp), allocatable :: shares(:, :)
+    integer :: f, i, k, m
+
+    m = size(wanted)
+    f = size(motions, 2)
+    text = 'the mobility is '//to_text(f)//' ('//to_text(m)//' coordinates, rank '//to_text(m - f)//'), and '// &
+           words_on_count(count(wanted))
+    if (f == 0) then
+      text = text//'; the mechanism cannot move, no coordinate can be independent'
+      return
+    end if
+    call choose_coordinates(motions, wanted, chosen)
+    call shares_of(motions, chosen, shares)
+    text = text//needed_words(shares, wanted, chosen)//surplus_words(shares, wanted, chosen)// &
+           '; cq = '//some_of(numbers_of(chosen))//' would serve'
+    i = 0
+    do k = 1, m
+      if (.not. chosen(k)) cycle
+      i = i + 1
+      others = abs(shares(:, i)) > moves_least .and. .not. chosen
+      if (i <= longest_list .and. any(others)) &
+        text = text//'; instead of '//to_text(k)//' also '//some_of(numbers_of(others))
+    end do
+    others = [(norm2(motions(k, :)) <= moves_least, k=1, m)]
+    if (any(others)) text = text//'; never: '//some_of(numbers_of(others))//', which cannot move'
+  end function words_on_choice
+
+  pure function words_on_count(n) result(text)
+    integer, intent(in) :: n
+    character(len=:), allocatable :: text
+
+    text = to_text(n)//' coordinates are independent'
+    if (n == 1) text = '1 coordinate is independent'
+  end function words_on_count
+
+  !> "; 1 more of the coordinates 2, 3 must be independent (cq)", or nothing.
+  pure function needed_words(shares, wanted, chosen) result(text)
+    real(wp), intent(in) :: shares(:, :)
+    logical, intent(in) :: wanted(:), chosen(:)
+    character(len=:), allocatable :: text
+    logical :: could(size(wanted))
+    integer :: i, k
+
+    text = ''
+    if (all(wanted .or. .not. chosen)) return
+    could = .false.
+    i = 0
+    do k = 1, size(wanted)
+      if (.not. chosen(k)) cycle
+      i = i + 1
+      if (.not. wanted(k)) could = could .or. (abs(shares(:, i)) > moves_least .and. .not. wanted)
+    end do
+    text = '; '//to_text(count(chosen .and. .not. wanted))//' more of the coordinates '// &
+           some_of(numbers_of(could))//' must be independent (cq)'
+  end function needed_words
+
+  !> "; take 1 of the coordinates 1, 2 off the independent ones (cq)", or nothing.
+  pure function surplus_words(shares, wanted, chosen) result(text)
+    real(wp), intent(in) :: shares(:, :)
+    logical, intent(in) :: wanted(:), chosen(:)
+    character(len=:), allocatable :: text
+    logical :: could(size(wanted))
+    integer :: i, k, j
+
+    text = ''
+    if (all(chosen .or. .not. wanted)) return
+    could = wanted .and. .not. chosen
+    do j = 1, size(wanted)
+      if (chosen(j) .or. .not. wanted(j)) cycle
+      i = 0
+      do k = 1, size(wanted)
+        if (.not. chosen(k)) cycle
+        i = i + 1
+        if (wanted(k) .and. abs(shares(j, i)) > moves_least) could(k) = .true.
+      end do
+    end do
+    text = '; take '//to_text(count(wanted .and. .not. chosen))//' of the coordinates '// &
+           some_of(numbers_of(could))//' off the independent ones (cq)'
+  end function surplus_words
+
+  !> Coordinates that no chain determines, of a mechanism too large to be judged in one piece.
+  subroutine refuse_undetermined(undetermined, err)
+    integer, intent(in) :: undetermined(:)
+    type(error_type), allocatable, intent(out) :: err
+
+    call raise(err, exit_structure, 'the independent coordinates cannot determine the others: '// &
+               to_text(size(undetermined))//' more must be independent (cq); '//some_of(undetermined)// &
+               ' would serve')
+  end subroutine refuse_undetermined
+
+  !> Chains that do not close.
+  subroutine refuse_open(plan, outcome, err)
+    type(plan_type), intent(in) :: plan
+    type(assembly_outcome_type), intent(in) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: text
+
+    associate (closure => plan%closures(outcome%worst_closure))
+      text = 'the mechanism cannot be assembled: closed chain '//to_text(closure%chain)// &
+             ' (it closes on link '//to_text(plan%steps(closure%closing)%link)//' through coordinate '// &
+             to_text(plan%steps(closure%closing)%coordinate)//') stays open by '//to_text(outcome%gap, 3)// &
+             ' m at best; '
+    end associate
+    if (outcome%gap < 1.0e-5_wp*plan%length) then
+      text = text//'so small a gap comes from directions or points given with too few digits, '// &
+             'for a chain that moves only when its geometry is exact'
+    else
+      text = text//'check its dimensions and the independent coordinates, or give better guesses with &initial'
+    end if
+    call raise(err, exit_assembly, text)
+  end subroutine refuse_open
+
+  pure function numbers_of(mask) result(numbers)
+    logical, intent(in) :: mask(:)
+    integer, allocatable :: numbers(:)
+    integer :: i
+
+    numbers = pack([(i, i=1, size(mask))], mask)
+  end function numbers_of
+
+  !> "1, 2, 5"; of a long list only the beginning.
+  pure function some_of(numbers) result(text)
+    integer, intent(in) :: numbers(:)
+    character(len=:), allocatable :: text
+
+    if (size(numbers) <= longest_list) then
+      text = to_text(numbers)
+    else
+      text = to_text(numbers(:longest_list))//' and '//to_text(size(numbers) - longest_list)//' more'
+    end if
+  end function some_of
+end module mech9_diagnosis
