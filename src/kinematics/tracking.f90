@@ -16,7 +16,7 @@ module mech9_tracking
   use mech9_passage, only: passage_type, build_passage, position_within
   implicit none
   private
-  public :: tracker_type, start_tracking, advance, set_inputs, largest_closure
+  public :: tracker_type, start_tracking, advance, set_inputs, largest_closure, words_of_block
 
   !> Blocks whose least against largest pivot is below this start at a singular position.
   real(wp), parameter :: singular = 1.0e-9_wp
@@ -54,7 +54,7 @@ contains
       associate (block => plan%blocks(b), work => tracker%work(b))
         call factorize_trial(plan, block, tracker%state, work, tracker%watches(b))
         if (work%equations%conditioning() < singular) then
-          call raise(err, exit_singular, 'the mechanism starts in a singular position of '//words_of(plan, block)// &
+          call raise(err, exit_singular, 'the mechanism starts in a singular position of '//words_of_block(plan, block)// &
                      ': rates are not determined there; start a little beside it')
           return
         end if
@@ -219,7 +219,7 @@ contains
       where = where//'q'//to_text(k)//' = '// &
               to_text(q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular), 13)
     end do
-    text = words_of(plan, plan%blocks(tracker%ahead%block))
+    text = words_of_block(plan, plan%blocks(tracker%ahead%block))
     if (tracker%ahead%kind == dead_point) then
       text = text//' reaches a dead point at '//where//' and cannot follow farther'
     else
@@ -229,13 +229,15 @@ contains
   end subroutine refuse
 
   !> "closed chain 2 (coordinates 4, 6, 7)".
-  pure function words_of(plan, block) result(words)
+  pure function words_of_block(plan, block) result(words)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     character(len=:), allocatable :: words
-    integer :: i
+    logical :: mine(plan%n_coordinates)
+    integer :: k
 
-    words = chain_names(block)//' (coordinates '// &
-            to_text([(plan%steps(block%unknowns(i))%coordinate, i=1, size(block%unknowns))])//')'
-  end function words_of
+    mine = .false.
+    mine(plan%steps(block%unknowns)%coordinate) = .true.
+    words = chain_names(block)//' (coordinates '//to_text(pack([(k, k=1, plan%n_coordinates)], mine))//')'
+  end function words_of_block
 end module mech9_tracking

@@ -15,6 +15,7 @@ module mech9_command_line
     logical :: check = .false.
     logical :: structure = .false.
     logical :: plan = .false.
+    logical :: range = .false.
     logical :: no_write = .false.
     logical :: quiet = .false.
     logical :: verbose = .false.
@@ -182,6 +183,8 @@ contains
       options%structure = .true.
     case ('plan')
       options%plan = .true.
+    case ('range')
+      options%range = .true.
     case ('no-write')
       options%no_write = .true.
     case ('quiet')

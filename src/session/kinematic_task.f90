@@ -1,6 +1,6 @@
-!> What mech9k does with a mechanism. Uses task, recording, kinematic_run, kinematic_report.
+!> What mech9k does with a mechanism. Uses task, range_text, recording, kinematic_run, kinematic_report.
 module mech9_kinematic_task
-  use, intrinsic :: iso_fortran_env, only: error_unit
+  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -8,6 +8,7 @@ module mech9_kinematic_task
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_task, only: task_type, table_path_of, print_check, announce
+  use mech9_range_text, only: print_ranges
   use mech9_recording, only: recording_outcome_type, record
   use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
   use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report
@@ -50,6 +51,10 @@ contains
     end if
     if (options%check .or. options%plan) then
       call print_check(options, mechanism, plan, start)
+      return
+    end if
+    if (options%range) then
+      call print_ranges(output_unit, mechanism, plan, start)
       return
     end if
     table_path = table_path_of(options, mechanism)

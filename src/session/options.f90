@@ -27,6 +27,8 @@ module mech9_options
                 'print the structural vectors nrg, nws, rdw, nrw'), &
     option_type('plan', no_argument, '', .false., both, &
                 'print what will be computed, in which order, and what is skipped'), &
+    option_type('range', no_argument, '', .false., 'mech9k', &
+                'print how far each independent coordinate can go from the start'), &
     option_type('table', needed_argument, 'PATH', .false., both, &
                 'write the table of results there; - is standard output'), &
     option_type('no-write', no_argument, '', .false., both, &

@@ -1,0 +1,165 @@
+!> Ranges of independent coordinates against closed forms: dead points on both sides, full turns, none.
+program test_range
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_range, only: range_type, find_range, ends_at_limit, ends_never, ends_round
+  use mech9_sample_mechanisms, only: four_bar, new_mechanism, add_revolute, add_prismatic, frame
+  use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit, random_crank, slider_crank
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  !> The limits are found to the square of the last distance from them; a thousand times better than promised.
+  real(wp), parameter :: tolerance = 1.0e-12_wp
+  integer :: i, branch
+
+  do i = 1, 20
+    do branch = -1, 1, 2
+      call both_sides(branch, 10.0_wp**(-0.3_wp*i))
+      call folded(branch)
+      call full_turn(branch)
+      call slider_as_input(branch)
+    end do
+  end do
+  call two_turns()
+  call open_chain()
+  call test%finish()
+
+contains
+
+  subroutine range_of(mechanism, coordinate, range)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: coordinate
+    type(range_type), intent(out) :: range
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(error_type), allocatable :: err
+
+    call make_plan(mechanism, mechanism%initial_position, plan, start, err)
+    call test%no_error(err, 'plan and assembly')
+    if (allocated(err)) call test%finish()
+    call find_range(mechanism, plan, start, coordinate, range)
+  end subroutine range_of
+
+  subroutine check_limits(range, lower, upper, name)
+    type(range_type), intent(in) :: range
+    real(wp), intent(in) :: lower, upper
+    character(len=*), intent(in) :: name
+
+    call test%is_true(range%lower%kind == ends_at_limit .and. range%upper%kind == ends_at_limit, name//': two limits')
+    call test%near(range%lower%value, lower, tolerance, name//': the lower one')
+    call test%near(range%upper%value, upper, tolerance, name//': the upper one')
+    call test%is_true(range%lower%block == 1 .and. range%upper%block == 1, name//': its only chain limits it')
+  end subroutine check_limits
+
+  !> A crank between two positions in which coupler and rocker are stretched out: it swings through zero.
+  !> The smaller `lack`, the nearer it passes to another dead point at zero, or at half a turn to none.
+  subroutine both_sides(branch, lack)
+    integer, intent(in) :: branch
+    real(wp), intent(in) :: lack
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    type(range_type) :: range
+    real(wp) :: limit
+
+    bar = four_bar_type(ground=0.0_wp, crank=0.7_wp, coupler=0.8_wp, rocker=0.75_wp)
+    bar%ground = bar%coupler + bar%rocker - bar%crank + lack
+    limit = four_bar_limit(bar, stretched=.true.)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.3_wp*limit, branch), mechanism)
+    call range_of(mechanism, 1, range)
+    call check_limits(range, -limit, limit, 'a crank that swings')
+  end subroutine both_sides
+
+  !> A crank between the positions in which coupler and rocker are folded and stretched out.
+  subroutine folded(branch)
+    integer, intent(in) :: branch
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    type(range_type) :: range
+    real(wp) :: from, to
+
+    bar = four_bar_type(ground=1.0_wp, crank=0.7_wp + 0.1_wp*random%symmetric(), coupler=1.0_wp, &
+                        rocker=0.4_wp + 0.1_wp*random%symmetric())
+    if (bar%ground + bar%crank < bar%coupler + bar%rocker) return
+    from = four_bar_limit(bar, stretched=.false.)
+    to = four_bar_limit(bar, stretched=.true.)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, &
+                  four_bar_guess(bar, 0.5_wp*(from + to), branch), mechanism)
+    call range_of(mechanism, 1, range)
+    call check_limits(range, from, to, 'a crank between folded and stretched')
+  end subroutine folded
+
+  subroutine full_turn(branch)
+    integer, intent(in) :: branch
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    type(range_type) :: range
+
+    bar = random_crank(random, 0.1_wp*abs(random%symmetric()))
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.4_wp, branch), mechanism)
+    call range_of(mechanism, 1, range)
+    call test%is_true(range%upper%kind == ends_round .and. range%lower%kind == ends_round, 'a crank that turns')
+    call test%is_true(range%upper%turns == 1, 'and is round after one turn')
+  end subroutine full_turn
+
+  !> A slider-crank driven at its slider: between crank and coupler stretched out and folded.
+  subroutine slider_as_input(branch)
+    integer, intent(in) :: branch
+    type(mechanism_type) :: mechanism
+    type(range_type) :: range
+    real(wp) :: crank, coupler, offset, lower, upper
+
+    crank = 0.5_wp + 0.1_wp*random%symmetric()
+    coupler = 1.5_wp + 0.1_wp*random%symmetric()
+    offset = 0.2_wp*random%symmetric()
+    call slider_crank(crank, coupler, offset, 1.0_wp*branch, 1, mechanism)
+    call drive_at_slider(mechanism)
+    lower = sqrt((coupler - crank)**2 - offset**2)
+    upper = sqrt((coupler + crank)**2 - offset**2)
+    call range_of(mechanism, 4, range)
+    call check_limits(range, lower, upper, 'a slider')
+  end subroutine slider_as_input
+
+  !> The same mechanism with coordinate 4 independent.
+  subroutine drive_at_slider(mechanism)
+    type(mechanism_type), intent(inout) :: mechanism
+    type(mechanism_type) :: other
+    integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
+
+    call new_mechanism(4, links, [4], other)
+    mechanism%structure = other%structure
+    mechanism%vectors = other%vectors
+  end subroutine drive_at_slider
+
+  !> A kite is its own mirror image after one turn of the crank: it is round after two.
+  subroutine two_turns()
+    type(mechanism_type) :: mechanism
+    type(range_type) :: range
+
+    call four_bar(0.7_wp, 0.7_wp, 1.0_wp, 1.0_wp, &
+                  four_bar_guess(four_bar_type(0.7_wp, 0.7_wp, 1.0_wp, 1.0_wp), 0.8_wp, 1), mechanism)
+    call range_of(mechanism, 1, range)
+    call test%is_true(range%upper%kind == ends_round .and. range%upper%turns == 2, 'a kite comes round after two turns')
+  end subroutine two_turns
+
+  !> An arm and a slide: one turns round, the other has no end.
+  subroutine open_chain()
+    type(mechanism_type) :: mechanism
+    type(range_type) :: range
+    real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], x(3) = [1.0_wp, 0.0_wp, 0.0_wp]
+
+    call new_mechanism(3, reshape([1, 2, 2, 3], [2, 2]), [1, 2], mechanism)
+    call add_revolute(mechanism, 1, 1, 2, frame(0.0_wp*z, z), frame(0.0_wp*z, z))
+    call add_prismatic(mechanism, 2, 2, 3, frame(x, x), frame(0.0_wp*x, x))
+    call range_of(mechanism, 1, range)
+    call test%is_true(range%upper%kind == ends_round, 'an arm turns round')
+    call range_of(mechanism, 2, range)
+    call test%is_true(range%upper%kind == ends_never .and. range%lower%kind == ends_never, 'a slide has no end')
+    call test%is_true(range%upper%value > 10.0_wp .and. range%lower%value < -10.0_wp, 'as far as was looked')
+  end subroutine open_chain
+end program test_range
