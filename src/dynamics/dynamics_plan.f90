@@ -209,11 +209,12 @@ contains
     c = buffer(:n)
   end function united
 
-  !> Frames on which a mass, a load or a closure of a later block depends.
+  !> Frames on which a mass, a load or a closed chain of a later block depends. Inside its own block a closed
+  !> chain needs no more than the first pass that finds its dependent rates.
   subroutine find_carriers(plan, dynamics)
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(inout) :: dynamics
-    integer :: i, s, c
+    integer :: b, i, s, c
 
     allocate (dynamics%carries(0:plan%n_coordinates), source=.false.)
     do i = 1, size(dynamics%bodies)
@@ -222,12 +223,17 @@ contains
     do i = 1, plan%n_links
       if (dynamics%load_links(i)) dynamics%carries(plan%frame_of(i)) = .true.
     end do
-    do c = 1, size(plan%closures)
-      dynamics%carries(plan%closures(c)%target) = .true.
-      dynamics%carries(plan%steps(plan%closures(c)%path%steps)%parent) = .true.
-    end do
-    do s = plan%n_coordinates, 1, -1
-      if (dynamics%carries(s)) dynamics%carries(plan%steps(s)%parent) = .true.
+    do b = size(plan%blocks), 1, -1
+      associate (block => plan%blocks(b))
+        do s = block%last_step, block%first_step, -1
+          if (dynamics%carries(s)) dynamics%carries(plan%steps(s)%parent) = .true.
+          if (size(block%unknowns) > 0 .and. plan%steps(s)%parent < block%first_step) &
+            dynamics%carries(plan%steps(s)%parent) = .true.
+        end do
+        do c = block%first_closure, block%last_closure
+          if (plan%closures(c)%target < block%first_step) dynamics%carries(plan%closures(c)%target) = .true.
+        end do
+      end associate
     end do
   end subroutine find_carriers
 end module mech9_dynamics_plan

@@ -227,11 +227,29 @@ contains
     other%iterations = self%system%iterations
     deallocate (self%system)
     allocate (self%system, source=other)
-    self%events = [self%events, event_type(self%t, plan%independent)]
+    call add_event(self%events, self%t, plan%independent)
     self%look_below = min(doubtful, self%system%conditioning()/worth_it)
     changed = .true.
     call self%start_integrator(err)
   end subroutine change_coordinates
+
+  !> One more event. By hand: an array constructor of them would leak (gfortran 12).
+  pure subroutine add_event(events, t, independent)
+    type(event_type), allocatable, intent(inout) :: events(:)
+    real(wp), intent(in) :: t
+    integer, intent(in) :: independent(:)
+    type(event_type), allocatable :: grown(:)
+    integer :: i
+
+    allocate (grown(size(events) + 1))
+    do i = 1, size(events)
+      grown(i)%t = events(i)%t
+      call move_alloc(events(i)%independent, grown(i)%independent)
+    end do
+    grown(size(grown))%t = t
+    grown(size(grown))%independent = independent
+    call move_alloc(grown, events)
+  end subroutine add_event
 
   !> Give back what the integrator and the system hold.
   subroutine close_run(self)
