@@ -1,0 +1,124 @@
+!> The smallest blocks of known mechanisms, and what any plan must hold. All of them are assembled where
+!> every coordinate is zero, and have general dimensions: pivots and axes at random places.
+program test_blocks
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_sample_mechanisms, only: fig1
+  use mech9_mechanism_families, only: axis_type, planar_axes, home_mechanism, class_three, class_four, &
+    double_butterfly, ten_links, crank_row, lazy_tongs, stewart_platform
+  use mech9_home_motions, only: loop_equations, rates_from
+  use mech9_plan_checks, only: check_order, check_closed, check_smallest, block_sizes, rates_of
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(mechanism_type) :: mechanism
+  type(plan_type) :: plan
+  type(state_type) :: state
+  type(error_type), allocatable :: err
+  type(random_type) :: random
+  real(wp), allocatable :: assembled(:)
+  integer :: k
+
+  ! pairs 4 to 7 are the first closed chain, a four-bar: driven in it, it goes first
+  call fig1(5, mechanism)
+  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  assembled = state%q
+  do k = 1, 7
+    call fig1(k, mechanism)
+    mechanism%initial_position = assembled
+    if (k < 4) call check('Fig. 1 driven in its second chain', [6])
+    if (k >= 4) call check('Fig. 1 driven in its first chain', [3, 3])
+  end do
+  ! the four-bar of pairs 4 to 7 is one only if it is driven itself
+  call all_drives('a group of the third class', class_three(), 3, [6, 6, 6, 0, 0, 0, 0])
+  call all_drives('a group of the fourth class', class_four(), 0, [6, 6, 6, 6, 6, 6, 6])
+  call all_drives('double butterfly', double_butterfly(), 0, [(9, k=1, 10)])
+  call all_drives('ten links', ten_links(), 0, [(12, k=1, 13)])
+  ! cranks of four-bars in a row: from wherever it is driven, one four-bar after the other
+  call all_drives('four-bars in a row', crank_row(4), 3, [(0, k=1, 13)])
+  ! tongs driven in their first crossing; driven elsewhere, what lies below can only be closed together,
+  ! because frames stand on frames
+  call home_mechanism(42, lazy_tongs(20), planar_axes(61, 0, random), [1], mechanism)
+  call check('lazy tongs', [(3, k=1, 20)])
+  call stewart_platform(mechanism)
+  call check('Stewart platform', [30])
+  call test%finish()
+
+contains
+
+  !> A planar mechanism driven at each of its coordinates. Unknowns of its only block; 0: blocks of three.
+  subroutine all_drives(name, links, three, unknowns)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: links(:, :), three, unknowns(:)
+    type(axis_type) :: axes(size(links, 2))
+    integer :: k, i
+
+    do k = 1, size(links, 2)
+      axes = planar_axes(size(links, 2), 0, random)
+      call home_mechanism(maxval(links), links, axes, [k], mechanism)
+      if (unknowns(k) > 0) then
+        call check(name, [unknowns(k)])
+      else
+        call check(name, [(three, i=1, (size(links, 2) - 1)/3)])
+      end if
+      call check_rates(name, links, axes, k)
+    end do
+  end subroutine all_drives
+
+  !> Assembled, in the blocks expected, from the guess and from another one.
+  subroutine check(name, sizes)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: sizes(:)
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    real(wp) :: start(size(mechanism%pairs))
+    integer :: k
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, name)
+    if (allocated(err)) return
+    if (size(block_sizes(plan)) == size(sizes)) then
+      call test%is_true(all(block_sizes(plan) == sizes), name//': unknowns of its blocks')
+    else
+      call test%is_true(.false., name//': number of its blocks')
+    end if
+    call check_order(test, plan, name)
+    call check_closed(test, plan, state, name)
+    call check_smallest(test, plan, name)
+    start = state%q
+    do k = 1, size(start)
+      if (.not. mechanism%structure%independent(k)) start(k) = start(k) + 0.1_wp*random%symmetric()
+    end do
+    call make_plan(mechanism, start, plan, state, err)
+    call test%no_error(err, name//' from another guess')
+    call check_closed(test, plan, state, name//' from another guess')
+  end subroutine check
+
+  !> Rates at home against those that the axes alone give.
+  subroutine check_rates(name, links, axes, driven)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: links(:, :), driven
+    type(axis_type), intent(in) :: axes(:)
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: equations(:, :)
+    real(wp) :: rates(size(axes)), expected(size(axes)), lack
+    integer :: k
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    if (allocated(err)) return
+    call loop_equations(maxval(links), links, axes, equations)
+    expected = 0.0_wp
+    expected(driven) = 1.0_wp
+    rates = expected
+    call rates_from(equations, [(k /= driven, k=1, size(axes))], expected, lack)
+    call rates_of(plan, state, rates)
+    ! both solve some ten equations; random dimensions make them worse by some thousands at most
+    call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-11_wp, name//': rates')
+  end subroutine check_rates
+end program test_blocks

@@ -1,0 +1,99 @@
+!> Mechanisms at random: planar, spherical and spatial, with several loops, up to some hundred
+!> coordinates, with as many independent coordinates as the axes allow. Each is assembled at home and
+!> away from it, and its rates are those that its axes give.
+program test_random_mechanisms
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_mechanism_families, only: axis_type, planar_axes, spatial_axes, spherical_axes, home_mechanism, random_links
+  use mech9_home_motions, only: loop_equations, choose_dependent, rates_from
+  use mech9_plan_checks, only: check_order, check_closed, check_smallest, rates_of
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  integer :: i, n, largest
+
+  largest = 0
+  do i = 1, 60
+    n = 4 + modulo(7*i, 25)
+    call try('planar, revolutes', n, 1 + n/6, 1, 0)
+    call try('planar, some slide', n, 1 + n/6, 1, 4)
+    call try('spherical', n, 1 + n/6, 2, 0)
+    call try('spatial, revolutes', n + 8, 1 + n/12, 3, 0)
+    call try('spatial, some slide', n + 8, 1 + n/12, 3, 3)
+  end do
+  call try('large planar', 250, 60, 1, 5)
+  call try('large spatial', 300, 25, 3, 4)
+  print '(a,i0)', 'largest number of coordinates: ', largest
+  call test%finish()
+
+contains
+
+  subroutine try(name, n_links, loops, family, slide_each)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n_links, loops
+    integer, intent(in) :: family              !< 1 planar, 2 spherical, 3 spatial
+    integer, intent(in) :: slide_each
+    integer, allocatable :: links(:, :)
+    type(axis_type), allocatable :: axes(:)
+    real(wp), allocatable :: equations(:, :)
+    logical, allocatable :: dependent(:)
+    type(mechanism_type) :: mechanism
+    integer :: k
+
+    links = random_links(n_links, loops, random)
+    if (family == 1) axes = planar_axes(size(links, 2), slide_each, random)
+    if (family == 2) axes = spherical_axes(size(links, 2), random)
+    if (family == 3) axes = spatial_axes(size(links, 2), slide_each, random)
+    call loop_equations(n_links, links, axes, equations)
+    allocate (dependent(size(axes)))
+    call choose_dependent(equations, random, dependent)
+    largest = max(largest, size(axes))
+    call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), mechanism)
+    call check(name, mechanism, equations, dependent)
+  end subroutine try
+
+  subroutine check(name, mechanism, equations, dependent)
+    character(len=*), intent(in) :: name
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), intent(in) :: equations(:, :)
+    logical, intent(in) :: dependent(:)
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    real(wp) :: rates(size(dependent)), expected(size(dependent)), start(size(dependent)), lack
+    integer :: k
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, name)
+    if (allocated(err)) return
+    call check_order(test, plan, name)
+    call check_closed(test, plan, state, name)
+    call check_smallest(test, plan, name)
+    call test%near(maxval(abs(state%q)), 0.0_wp, 1.0e-12_wp, name//': closed at home already')
+    do k = 1, size(rates)
+      expected(k) = random%symmetric()
+    end do
+    where (dependent) expected = 0.0_wp
+    rates = expected
+    call rates_from(equations, dependent, expected, lack)
+    call test%near(lack/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, name//': the oracle contradicts itself')
+    call rates_of(plan, state, rates)
+    ! the choice of coordinates is good, but some hundred at random have a condition of some thousands
+    call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, name//': rates')
+    start = 1.0e-3_wp/maxval(abs(expected))*expected
+    where (dependent) start = 0.0_wp
+    call make_plan(mechanism, start, plan, state, err)
+    call test%no_error(err, name//' beside home')
+    if (allocated(err)) return
+    call check_closed(test, plan, state, name//' beside home')
+    ! the motion goes on with these rates but for what is of second order in 1e-3
+    start = 1.0e-3_wp/maxval(abs(expected))*expected
+    call test%near(maxval(abs(state%q - start)), 0.0_wp, 5.0e-4_wp, name//': the way there')
+  end subroutine check
+end program test_random_mechanisms
