@@ -1,0 +1,60 @@
+"""All methods of integration on one closed-chain mechanism: as the tolerance is tightened from 1e-4 to 1e-12 they
+come to one motion, those of one step at their theoretical order.
+
+usage: dynamics_methods.py MECH9D
+
+The order is that of the error against the number of steps, from the tolerance 1e-7 on: with the few dozen steps
+of coarser ones the error is not yet a power of the step. Steps are chosen by tolerance, not halved, so that the error
+lies above or below its trend as steps happen to end: three quarters of the order must be reached, and a steeper fall
+is no fault. (test_integrator holds the methods to their orders with equal steps.)
+"""
+import math
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import REFERENCE, Checks, table_and_report
+
+ORDERS = {'merson': 4, 'dormand-prince': 5, 'verner': 6, 'fehlberg': 8, 'prince-dormand': 8}
+TOLERANCES = [10.0 ** -k for k in range(4, 13)]
+DATA = os.path.join(REFERENCE, 'dynamics_fig1.nml')
+
+
+def end_of(mech9d, method, tolerance):
+    """All coordinates and rates after one second, and the steps it took."""
+    table, report = table_and_report(
+        mech9d, DATA, '--set', f'solver.method={method}', '--set', f'solver.relative_tolerance={tolerance:g}',
+        '--set', f'solver.absolute_tolerance={tolerance:g}', '--set', 'time.intervals=1')
+    names = [name for name in table if name.lstrip('d')[0] == 'q' and not name.startswith('ddq')]
+    return np.array([table[name][-1] for name in names]), report['steps']
+
+
+def main():
+    mech9d = sys.argv[1]
+    checks = Checks()
+    ends = {method: [end_of(mech9d, method, tolerance) for tolerance in TOLERANCES]
+            for method in [*ORDERS, 'adams', 'bdf']}
+    # where two methods of different kind agree best is the motion itself
+    truth = ends['prince-dormand'][-1][0]
+    checks.true(np.max(np.abs(truth - ends['dormand-prince'][-1][0])) < 1e-9, 'two methods end at one motion',
+                np.abs(truth - ends['dormand-prince'][-1][0]))
+    for method, runs in ends.items():
+        errors = [float(np.max(np.abs(end - truth) / np.maximum(1, np.abs(truth)))) for end, _ in runs]
+        steps = [count for _, count in runs]
+        print(method, ' '.join(f'{error:.1e}/{count}' for error, count in zip(errors, steps)))
+        # an error in a step is about the tolerance; over the hundreds of steps of this motion they add up
+        checks.true(all(error <= 2e3 * tolerance for error, tolerance in zip(errors, TOLERANCES)),
+                    f'{method}: errors are of the size of the tolerance', errors)
+        checks.true(errors[-1] <= 1e-9, f'{method} comes to the same motion', errors)
+        if method in ORDERS:
+            first = TOLERANCES.index(1e-7)
+            # to the last error that stands out of round-off, 1e-13 of angles of some radians
+            last = max(i for i, error in enumerate(errors) if error > 1e-12)
+            slope = math.log(errors[first] / errors[last]) / math.log(steps[last] / steps[first])
+            checks.true(slope >= 0.75 * ORDERS[method], f'{method} is of order {ORDERS[method]}', slope)
+    checks.finish()
+
+
+main()
