@@ -1,10 +1,11 @@
 !> Explicit Runge-Kutta methods by SUNDIALS' ERKStep.
-!> Uses kinds, integration_methods, butcher_tables, stepper, sundials, sundials_system.
+!> Uses kinds, integration_methods, butcher_tables, step_choice, stepper, sundials, sundials_system.
 module mech9_sundials_runge_kutta
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_associated, c_int, c_long, c_double, c_loc, c_funloc
   use mech9_kinds, only: wp, long
   use mech9_integration_methods, only: integration_method_type, integration_methods
   use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand
+  use mech9_step_choice, only: next_step_length, safety
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     too_accurate, out_of_memory, refused
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, index_kind, last_stage_mistaken, &
@@ -17,6 +18,7 @@ module mech9_sundials_runge_kutta
   use farkode_erkstep_mod, only: FERKStepCreate, FERKStepFree, FERKStepReset, FERKStepEvolve, FERKStepSVtolerances, &
     FERKStepSetUserData, FERKStepSetTableNum, FERKStepSetTable, FERKStepSetInterpolantDegree, &
     FERKStepSetMaxHnilWarns, FERKStepSetMaxErrTestFails, FERKStepSetPostprocessStepFn, FERKStepSetInitStep, &
+    FERKStepSetErrorBias, FERKStepSetSafetyFactor, FERKStepSetAdaptivityFn, &
     FERKStepSetMaxStep, FERKStepSetStopTime, FERKStepGetCurrentStep, FERKStepGetLastStep, FERKStepGetNumErrTestFails
   use fnvector_serial_mod, only: FN_VNew_Serial, FN_VEnableFusedOps_Serial
   implicit none
@@ -140,8 +142,13 @@ contains
     type(runge_kutta_type), intent(inout) :: self
     type(integration_method_type), intent(in) :: method
     integer(c_int), intent(out) :: flag
+    type(c_ptr) :: nothing
 
+    nothing = c_null_ptr
     flag = FERKStepSetUserData(self%memory, c_loc(self%box))
+    if (flag == 0) flag = FERKStepSetErrorBias(self%memory, 1.0_wp)
+    if (flag == 0) flag = FERKStepSetSafetyFactor(self%memory, safety)
+    if (flag == 0) flag = FERKStepSetAdaptivityFn(self%memory, c_funloc(choose_step), nothing)
     ! a step that reaches the stop is its own end: SUNDIALS' better interpolant would ask for more rates
     if (flag == 0) flag = FERKStepSetInterpolantDegree(self%memory, 1_c_int)
     if (flag == 0) flag = FERKStepSetMaxHnilWarns(self%memory, -1_c_int)
@@ -151,6 +158,18 @@ contains
     if (self%box%system%settles .or. (last_stage_mistaken .and. .not. method%reuses_last)) &
       flag = FERKStepSetPostprocessStepFn(self%memory, c_funloc(settle_step))
   end subroutine set_habits
+
+  !> Called by SUNDIALS for the length of the next step, or of a new trial. Answers 0.
+  integer(c_int) function choose_step(y, t, h1, h2, h3, e1, e2, e3, q, p, h_new, context) bind(c) result(answer)
+    type(N_Vector) :: y
+    real(c_double), value :: t, h1, h2, h3, e1, e2, e3   !< steps and errors, the last ones first
+    integer(c_int), value :: q, p                        !< orders of the method and of the embedded one
+    real(c_double), intent(out) :: h_new
+    type(c_ptr), value :: context
+
+    h_new = next_step_length(h1, h2, e1, e2, int(p) + 1)
+    answer = 0
+  end function choose_step
 
   subroutine advance(self, t_stop, t, y, outcome)
     class(runge_kutta_type), intent(inout) :: self
