@@ -197,6 +197,9 @@ module mech9_grammar
                   'file for the table of results', '''fig1.dat'''), &
     item_row_type('output', 'hdf5', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'HDF5 file for the results', '''fig1.h5'''), &
+    item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'mech9k: a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &
+                  '.true.'), &
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]
 

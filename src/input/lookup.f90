@@ -12,7 +12,7 @@ module mech9_lookup
   implicit none
   private
   public :: groups_named, has_group, has_unsound, has_name, find_item, span_of
-  public :: get_integer, get_integers, get_real, get_reals, get_text
+  public :: get_integer, get_integers, get_real, get_reals, get_logical, get_text
 
 contains
 
@@ -135,6 +135,20 @@ contains
 
     get_integer = nint(get_real(group, name))
   end function get_integer
+
+  !> Whether a switch is on.
+  pure logical function get_logical(group, name)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    i = find_item(group, name)
+    if (i > 0) then
+      get_logical = group%items(i)%values(1)%truth
+    else
+      get_logical = item_table(row_of(group, name))%default == '.true.'
+    end if
+  end function get_logical
 
   !> A text without blanks at its end; words of a list in lower case.
   pure function get_text(group, name) result(text)

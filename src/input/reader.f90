@@ -8,7 +8,8 @@ module mech9_reader
   use mech9_mechanism, only: mechanism_type
   use mech9_document, only: document_type, group_type
   use mech9_checker, only: check_document
-  use mech9_lookup, only: groups_named, has_group, has_name, get_integer, get_real, get_reals, get_text, span_of
+  use mech9_lookup, only: groups_named, has_group, has_name, get_integer, get_logical, get_real, get_reals, get_text, &
+                         span_of
   use mech9_structure_reader, only: read_structure
   use mech9_pair_reader, only: read_pairs
   use mech9_drive_reader, only: read_drives
@@ -117,6 +118,7 @@ contains
     group = group_or_empty(document, 'output')
     mechanism%output%table = get_text(group, 'table')
     mechanism%output%hdf5 = get_text(group, 'hdf5')
+    mechanism%output%conditioning = get_logical(group, 'conditioning')
     group = group_or_empty(document, 'solver')
     mechanism%solver%method = get_text(group, 'method')
     mechanism%solver%relative_tolerance = get_real(group, 'relative_tolerance')

@@ -8,7 +8,7 @@ module mech9_tracking
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, acceleration_known
-  use mech9_solver, only: solve_rates, solve_accelerations
+  use mech9_solver, only: least_pivot, solve_rates, solve_accelerations
   use mech9_closure, only: closing_error
   use mech9_planning, only: chain_names
   use mech9_following, only: follower_type, new_follower, settle, factorize_trial, step_towards, set_inputs, go_back
@@ -16,10 +16,12 @@ module mech9_tracking
   use mech9_passage, only: passage_type, build_passage, position_within
   implicit none
   private
-  public :: tracker_type, start_tracking, advance, set_inputs, largest_closure, words_of_block
+  public :: tracker_type, start_tracking, advance, set_inputs, largest_closure, words_of_block, find_conditioning
 
   !> Blocks whose least against largest pivot is below this start at a singular position.
   real(wp), parameter :: singular = 1.0e-9_wp
+  !> The least singular value is looked at when the least pivot has fallen to this part.
+  real(wp), parameter :: worth_a_look = 0.99_wp
   !> A motion that ends is followed up to this part of the way from where the end was seen.
   real(wp), parameter :: just_short = 1.0e-9_wp
 
@@ -29,7 +31,12 @@ module mech9_tracking
     type(passage_type) :: passage                 !< the way through it
     integer(long) :: positions = 0                !< that were asked for
     integer(long) :: passages = 0                 !< special positions that were passed
-    real(wp) :: least_conditioning = 1.0_wp       !< smallest pivot ratio of any block
+    !> Least singular value of any block's Jacobian at the positions asked for (rotations in rad, lengths in
+    !> the mechanism's; 1 where there is no closed chain), when it was met, and in which block.
+    real(wp) :: least_conditioning = 1.0_wp
+    real(wp) :: least_conditioning_time = 0.0_wp  !< [s]
+    integer :: least_conditioning_block = 0
+    real(wp) :: least_pivot = huge(1.0_wp)        !< when the least singular value was looked at last
     real(wp) :: worst_closure = 0.0_wp            !< largest closure error of any position asked for [m]
     real(wp), allocatable :: limit(:)             !< (M): independent coordinates where the motion ends
   end type tracker_type
@@ -177,14 +184,42 @@ contains
   subroutine record(plan, tracker)
     type(plan_type), intent(in) :: plan
     type(tracker_type), intent(inout) :: tracker
+    real(wp) :: least
     integer :: b
 
     tracker%positions = tracker%positions + 1
     tracker%worst_closure = max(tracker%worst_closure, largest_closure(plan, tracker%state))
+    least = huge(least)
     do b = 1, size(tracker%work)
-      tracker%least_conditioning = min(tracker%least_conditioning, tracker%work(b)%equations%conditioning())
+      if (tracker%work(b)%equations%n > 0) least = min(least, least_pivot(tracker%work(b)))
     end do
+    ! not at every position: pivots tell when it is worth while
+    if (least >= worth_a_look*tracker%least_pivot) return
+    tracker%least_pivot = least
+    call find_conditioning(tracker, least)
   end subroutine record
+
+  !> Least singular value of any block's Jacobian at the last position: how near the mechanism is to a
+  !> singular one. Rotations count in rad, lengths in the mechanism's; 1 where there is no closed chain.
+  subroutine find_conditioning(tracker, least)
+    type(tracker_type), intent(inout) :: tracker
+    real(wp), intent(out) :: least
+    real(wp) :: value
+    integer :: b
+
+    least = huge(least)
+    do b = 1, size(tracker%work)
+      if (tracker%work(b)%equations%n == 0) cycle
+      value = tracker%work(b)%equations%least_singular_value()
+      least = min(least, value)
+      if (value < tracker%least_conditioning .or. tracker%least_conditioning_block == 0) then
+        tracker%least_conditioning = value
+        tracker%least_conditioning_time = tracker%state%t
+        tracker%least_conditioning_block = b
+      end if
+    end do
+    if (.not. least < huge(least)) least = 1.0_wp
+  end subroutine find_conditioning
 
   !> Largest closure error of a state: a length [m], rotations times the mechanism's size.
   pure real(wp) function largest_closure(plan, state) result(largest)

@@ -26,6 +26,7 @@ module mech9_settings
   type :: output_settings_type
     character(len=:), allocatable :: table
     character(len=:), allocatable :: hdf5
+    logical :: conditioning = .false.         !< a column of the least singular value
   end type output_settings_type
 
 contains

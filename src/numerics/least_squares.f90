@@ -30,6 +30,7 @@ module mech9_least_squares
     procedure :: solve
     procedure :: rank
     procedure :: conditioning
+    procedure :: least_singular_value
     procedure :: determinant_sign
   end type least_squares_type
 
@@ -134,6 +135,69 @@ contains
     if (self%m < self%n) return
     if (abs(self%a(1, 1)) > 0.0_wp) conditioning = abs(self%a(self%n, self%n)/self%a(1, 1))
   end function conditioning
+
+  !> The least singular value, by inverse iteration with the factors; 0 where columns depend on each
+  !> other, huge where there are none.
+  function least_singular_value(self) result(least)
+    class(least_squares_type), intent(inout) :: self
+    real(wp) :: least
+    integer, parameter :: most_iterations = 200
+    real(wp) :: before, length
+    integer :: iteration, i, n
+
+    n = self%n
+    least = huge(least)
+    if (n == 0) return
+    least = 0.0_wp
+    if (self%rank() < n) return
+    ! pivoting leaves what is nearly lost to the last column; the rest is for the case that it does not
+    do i = 1, n
+      self%work(i) = 0.01_wp
+    end do
+    self%work(n) = 1.0_wp
+    do iteration = 1, most_iterations
+      before = least
+      call solve_upper(self%a, n, self%work)
+      length = norm2(self%work(:n))
+      self%work(:n) = self%work(:n)/length
+      call solve_upper_transposed(self%a, n, self%work)
+      ! |R^-T v| for a unit vector v that tends to the right singular vector is 1/least
+      length = norm2(self%work(:n))
+      self%work(:n) = self%work(:n)/length
+      least = 1.0_wp/length
+      if (abs(least - before) <= 1.0e-14_wp*least) return
+    end do
+  end function least_singular_value
+
+  !> x = R^-1 x with the upper triangle R of a.
+  pure subroutine solve_upper(a, n, x)
+    real(wp), intent(in) :: a(:, :)
+    integer, intent(in) :: n
+    real(wp), intent(inout) :: x(:)
+    integer :: i, j
+
+    do j = n, 1, -1
+      x(j) = x(j)/a(j, j)
+      do i = 1, j - 1
+        x(i) = x(i) - a(i, j)*x(j)
+      end do
+    end do
+  end subroutine solve_upper
+
+  !> x = R^-T x.
+  pure subroutine solve_upper_transposed(a, n, x)
+    real(wp), intent(in) :: a(:, :)
+    integer, intent(in) :: n
+    real(wp), intent(inout) :: x(:)
+    integer :: i, j
+
+    do j = 1, n
+      do i = 1, j - 1
+        x(j) = x(j) - a(i, j)*x(i)
+      end do
+      x(j) = x(j)/a(j, j)
+    end do
+  end subroutine solve_upper_transposed
 
   !> Sign of the determinant of a square matrix; 1 for others.
   integer function determinant_sign(self) result(sign)

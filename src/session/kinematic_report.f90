@@ -7,7 +7,7 @@ module mech9_kinematic_report
   use mech9_json, only: json_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_tracking, only: tracker_type
+  use mech9_tracking, only: tracker_type, words_of_block
   use mech9_recording, only: recording_outcome_type
   use mech9_run_words, only: duration, each, add_structure, add_provenance
   implicit none
@@ -17,9 +17,10 @@ module mech9_kinematic_report
 contains
 
   !> The short report of a run.
-  subroutine print_kinematic_report(unit, mechanism, table_path, outcome, tracker)
+  subroutine print_kinematic_report(unit, mechanism, plan, table_path, outcome, tracker)
     integer, intent(in) :: unit
     type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
     character(len=*), intent(in) :: table_path
     type(recording_outcome_type), intent(in) :: outcome
     type(tracker_type), intent(in) :: tracker
@@ -29,6 +30,11 @@ contains
       each(outcome%seconds_solving, outcome%rows)//', '//duration(outcome%seconds_writing)//' to write'
     write (unit, '(a)') to_text(iterations_each(outcome, tracker), 3)//' Newton iterations a position; largest closure '// &
       to_text(tracker%worst_closure, 3)//' m'
+    if (tracker%least_conditioning_block > 0) write (unit, '(a)') 'least conditioning '// &
+      to_text(tracker%least_conditioning, 3)//' at t = '//to_text(tracker%least_conditioning_time, 6)//' s: '// &
+      words_of_block(plan, plan%blocks(tracker%least_conditioning_block))
+    if (tracker%passages > 0) write (unit, '(a)') 'special positions passed: '//to_text(tracker%passages)// &
+      ', each on the branch with continuous velocities'
     if (tracker%halvings > 0) write (unit, '(a)') to_text(tracker%steps)//' steps, '// &
       to_text(tracker%halvings)//' of them shortened to keep to the branch'
     calls = 0
@@ -72,6 +78,9 @@ contains
     call json%add('largest_closure', tracker%worst_closure)
     call json%add('size', plan%length)
     call json%add('least_conditioning', tracker%least_conditioning)
+    call json%add('least_conditioning_time', tracker%least_conditioning_time)
+    call json%add('least_conditioning_block', tracker%least_conditioning_block)
+    call json%add('special_positions_passed', tracker%passages)
     call json%add('seconds_solving', outcome%seconds_solving)
     call json%add('seconds_writing', outcome%seconds_writing)
     call add_structure(json, mechanism, plan)

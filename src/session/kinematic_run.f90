@@ -7,7 +7,7 @@ module mech9_kinematic_run
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs, largest_closure
+  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs, largest_closure, find_conditioning
   use mech9_columns, only: kinematic_columns
   use mech9_recording, only: motion_source_type
   implicit none
@@ -54,6 +54,7 @@ contains
     run%start = start
     run%columns = kinematic_columns(mechanism)
     call run%columns%append('closure', 'm')
+    if (mechanism%output%conditioning) call run%columns%append('conditioning', '1')
   end subroutine new_kinematic_run
 
   !> Position, velocity and acceleration at time t.
@@ -73,5 +74,6 @@ contains
     if (allocated(err)) return
     call self%columns%fill(self%mechanism, self%plan, self%tracker%state, row, used)
     row(used + 1) = largest_closure(self%plan, self%tracker%state)
+    if (self%mechanism%output%conditioning) call find_conditioning(self%tracker, row(used + 2))
   end subroutine row_at
 end module mech9_kinematic_run

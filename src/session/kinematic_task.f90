@@ -61,7 +61,7 @@ contains
     call announce(options, mechanism, plan)
     call new_kinematic_run(mechanism, plan, start, run)
     call record(run, mechanism, table_path, options%quiet, outcome, err)
-    if (.not. options%quiet) call print_kinematic_report(error_unit, mechanism, table_path, outcome, run%tracker)
+    if (.not. options%quiet) call print_kinematic_report(error_unit, mechanism, plan, table_path, outcome, run%tracker)
     if (allocated(err)) call diagnostics%add_error(err)
     if (options%report == '') return
     call save_kinematic_report(options%report, mechanism, plan, table_path, diagnostics%code(), outcome, run%tracker, err)

@@ -94,6 +94,8 @@ contains
         taken = options%structure
       case ('plan')
         taken = options%plan
+      case ('range')
+        taken = options%range
       case ('no-write')
         taken = options%no_write
       case ('quiet')

@@ -1,0 +1,70 @@
+!> Bounds of the rates of drives: never below the fastest rate between two times, and not far above it
+!> over short ones.
+program test_drive_bounds
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_spline, only: build_spline
+  use mech9_drive, only: drive_type
+  use mech9_polynomial_drive, only: polynomial_drive_type
+  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_table_drive, only: table_drive_type
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  type(polynomial_drive_type) :: polynomial
+  type(harmonic_drive_type) :: harmonic
+  type(table_drive_type) :: table
+  type(error_type), allocatable :: err
+  real(wp) :: x(12), y(12)
+  integer :: i, j
+
+  do i = 1, 40
+    polynomial%coefficients = [(3.0_wp*random%symmetric(), j=0, mod(i, 8))]
+    call check(polynomial, 'a polynomial')
+    harmonic = harmonic_drive_type(amplitude=random%symmetric(), angular_frequency=20.0_wp*random%symmetric(), phase=1.0_wp)
+    call check(harmonic, 'a harmonic')
+    do j = 1, size(x)
+      x(j) = -3.0_wp + 0.5_wp*j + 0.2_wp*random%symmetric()
+      y(j) = random%symmetric()
+    end do
+    call build_spline(x, y, table%spline, err)
+    call test%no_error(err, 'a table')
+    call check(table, 'a table')
+  end do
+  ! at rest at both ends and in the middle, with a swing between: 16 x^2 (1-x)^2 (1-2x)^2
+  polynomial%coefficients = 16.0_wp*[0.0_wp, 0.0_wp, 1.0_wp, -6.0_wp, 13.0_wp, -12.0_wp, 4.0_wp]
+  call test%is_true(polynomial%greatest_rate(0.0_wp, 1.0_wp) > 1.0_wp, 'a swing between two rests is seen')
+  polynomial%coefficients = [1.0_wp, -2.5_wp]
+  call test%near(polynomial%greatest_rate(7.0_wp, -3.0_wp), 2.5_wp, 1.0e-15_wp, 'a constant rate is bounded by itself')
+  call test%finish()
+
+contains
+
+  !> Against the rates at many times between.
+  subroutine check(drive, name)
+    class(drive_type), intent(in) :: drive
+    character(len=*), intent(in) :: name
+    real(wp) :: t, h, q, dq, ddq, bound, fastest
+    type(error_type), allocatable :: err
+    integer :: i, j
+
+    do i = 0, 6
+      t = 0.3_wp*random%symmetric()
+      h = 2.0_wp*random%symmetric()*10.0_wp**(-i)
+      bound = drive%greatest_rate(t, h)
+      fastest = 0.0_wp
+      do j = 0, 200
+        call drive%evaluate(t + h*j/200.0_wp, q, dq, ddq, err)
+        call test%no_error(err, name//' has a value')
+        fastest = max(fastest, abs(dq))
+      end do
+      ! round-off of terms of some tens aside
+      call test%is_true(bound >= fastest*(1.0_wp - 1.0e-12_wp) - 1.0e-13_wp, name//': not below the fastest rate')
+      ! a harmonic is bounded by its whole swing, a table by its pieces, whatever the times
+      if (i == 6 .and. name == 'a polynomial') &
+        call test%near(bound, fastest, 1.0e-3_wp, name//': and close to it over a short time')
+    end do
+  end subroutine check
+end program test_drive_bounds

@@ -1,0 +1,50 @@
+!> Polynomials through values and two derivatives: they reproduce polynomials, and approach other functions.
+program test_hermite
+  use mech9_kinds, only: wp
+  use mech9_hermite, only: hermite_type, build_hermite
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(hermite_type) :: hermite
+  real(wp), parameter :: nodes(4) = [-1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp]
+  real(wp) :: y(2, 4), dy(2, 4), ddy(2, 4), v(2), dv(2), ddv(2), x
+  integer :: i, n
+
+  do n = 1, 4
+    ! x^(3n-1), the highest power that n points determine, and a sine
+    do i = 1, n
+      call power(nodes(i), 3*n - 1, y(1, i), dy(1, i), ddy(1, i))
+      y(2, i) = sin(nodes(i))
+      dy(2, i) = cos(nodes(i))
+      ddy(2, i) = -sin(nodes(i))
+    end do
+    call build_hermite(nodes(:n), y(:, :n), dy(:, :n), ddy(:, :n), hermite)
+    do i = -10, 10
+      x = 0.1_wp*i
+      call hermite%evaluate(x, v, dv, ddv)
+      call power(x, 3*n - 1, y(1, 4), dy(1, 4), ddy(1, 4))
+      ! round-off of a dozen differences over distances of one half or more
+      call test%near(v(1), y(1, 4), 1.0e-12_wp, 'a power')
+      call test%near(dv(1), dy(1, 4), 1.0e-11_wp, 'its derivative')
+      call test%near(ddv(1), ddy(1, 4), 1.0e-10_wp, 'its second derivative')
+      if (n < 4) cycle
+      ! |f^(12)|/12! times the product of the cubed distances: 2e-9/1e2; two more derivatives cost factors of ten
+      call test%near(v(2), sin(x), 1.0e-10_wp, 'a sine')
+      call test%near(dv(2), cos(x), 1.0e-9_wp, 'its cosine')
+      call test%near(ddv(2), -sin(x), 1.0e-8_wp, 'its second derivative')
+    end do
+  end do
+  call test%finish()
+
+contains
+
+  pure subroutine power(x, k, y, dy, ddy)
+    real(wp), intent(in) :: x
+    integer, intent(in) :: k
+    real(wp), intent(out) :: y, dy, ddy
+
+    y = x**k
+    dy = k*x**(k - 1)
+    ddy = k*(k - 1)*x**(k - 2)
+  end subroutine power
+end program test_hermite

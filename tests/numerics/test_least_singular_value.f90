@@ -1,0 +1,64 @@
+!> The least singular value by inverse iteration against LAPACK's, for all shapes and sizes of it.
+program test_least_singular_value
+  use mech9_kinds, only: wp
+  use mech9_random, only: random_type
+  use mech9_random_geometry, only: random_matrix
+  use mech9_least_squares, only: least_squares_type
+  use mech9_lapack, only: dgesvd
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  type(least_squares_type) :: equations
+  integer :: trial
+
+  do trial = 1, 30
+    call compare(3, 3, trial)
+    call compare(6, 3, trial)
+    call compare(12, 11, trial)
+    call compare(40, 36, trial)
+  end do
+  call equal_values()
+  call equations%create(4, 0)
+  call equations%factorize()
+  call test%is_true(equations%least_singular_value() > 1.0_wp, 'no columns: nothing is singular')
+  call equations%create(3, 2)
+  equations%a = reshape([1.0_wp, 2.0_wp, 3.0_wp, 2.0_wp, 4.0_wp, 6.0_wp], [3, 2])
+  call equations%factorize()
+  call test%near(equations%least_singular_value(), 0.0_wp, 1.0e-15_wp, 'two columns that are one')
+  call test%finish()
+
+contains
+
+  !> A random matrix whose last column is nearer and nearer to the sum of the others.
+  subroutine compare(m, n, trial)
+    integer, intent(in) :: m, n, trial
+    real(wp) :: a(m, n), s(n), u(m, m), vt(1, 1), work(20*(m + n)), small
+    type(least_squares_type) :: equations
+    integer :: info
+
+    a = random_matrix(random, m, n)
+    small = 10.0_wp**(-0.3_wp*trial)
+    a(:, n) = small*a(:, n) + (1.0_wp - small)*sum(a(:, :n - 1), dim=2)
+    call equations%create(m, n)
+    equations%a = a
+    call equations%factorize()
+    ! without vectors LAPACK takes another way, which divides by zero on purpose
+    call dgesvd('A', 'N', m, n, a, m, s, u, m, vt, 1, work, size(work), info)
+    call test%is_true(info == 0, 'LAPACK converges')
+    ! both are exact to round-off of the largest one; values close together slow the iteration down, which
+    ! then ends within 1e-10 of the least
+    call test%near(equations%least_singular_value()/s(n), 1.0_wp, 1.0e-10_wp + 1.0e-14_wp*s(1)/s(n), 'least singular value')
+  end subroutine compare
+
+  !> An orthogonal matrix: all of them are one.
+  subroutine equal_values()
+    type(least_squares_type) :: equations
+    real(wp), parameter :: c = 0.6_wp, s = 0.8_wp
+
+    call equations%create(3, 3)
+    equations%a = reshape([c, s, 0.0_wp, -s, c, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+    call equations%factorize()
+    call test%near(equations%least_singular_value(), 1.0_wp, 1.0e-14_wp, 'an orthogonal matrix')
+  end subroutine equal_values
+end program test_least_singular_value
