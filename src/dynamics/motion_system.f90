@@ -40,6 +40,8 @@ module mech9_motion_system
     type(lagrange_work_type) :: work
     type(state_type) :: state                        !< of the last evaluation, or as settled
     integer(long) :: iterations = 0                  !< of Newton's method, all blocks
+    !> Trials with a worse conditioned block are refused: a step must not cross a singular position unseen.
+    real(wp) :: refuse_below = 0.0_wp
     type(past_type), private :: past(2)              !< the last two settled states, the later one first
     logical, private :: just_settled = .false.
   contains
@@ -101,6 +103,10 @@ contains
     call expect(self)
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
+    if (self%conditioning() < self%refuse_below) then
+      call raise(err, exit_singular, 'the step comes too near to a singular position of its independent coordinates')
+      return
+    end if
     if (self%just_settled) call remember(self)
     m = self%plan%n_coordinates
     do i = 1, m

@@ -25,6 +25,8 @@ module mech9_dynamic_run
   !> ... and taken if they are so many times better conditioned; else the next look is at so many
   !> times worse conditioning.
   real(wp), parameter :: worth_it = 4.0_wp
+  !> A step from a well conditioned state is made again, shorter, where it meets worse than this.
+  real(wp), parameter :: refused = 0.02_wp
 
   !> A change of the independent coordinates.
   type :: event_type
@@ -139,22 +141,24 @@ contains
     class(dynamic_run_type), intent(inout) :: self
     real(wp), intent(in) :: t
     type(error_type), allocatable, intent(out) :: err
-    type(error_type), allocatable :: refused
+    type(error_type), allocatable :: failure
     logical :: changed
 
+    if (self%system%conditioning() > doubtful) self%look_below = doubtful
     if (self%system%conditioning() < self%look_below) then
       call self%change_coordinates(changed, err)
       if (allocated(err)) return
     end if
-    call self%integrator%step(t, self%t, self%y, refused)
+    self%system%refuse_below = merge(refused, 0.0_wp, self%system%conditioning() > doubtful)
+    call self%integrator%step(t, self%t, self%y, failure)
     self%least_conditioning = min(self%least_conditioning, self%system%conditioning())
-    if (.not. allocated(refused)) return
+    if (.not. allocated(failure)) return
     ! perhaps the integrator stopped at a singular position of these coordinates only
-    if (refused%code == exit_singular .or. refused%code == exit_integrator) then
+    if (failure%code == exit_singular .or. failure%code == exit_integrator) then
       call self%change_coordinates(changed, err)
       if (changed .or. allocated(err)) return
     end if
-    call move_alloc(refused, err)
+    call move_alloc(failure, err)
   end subroutine step
 
   subroutine start_integrator(self, err)
@@ -198,27 +202,28 @@ contains
     logical, intent(out) :: changed
     type(error_type), allocatable, intent(out) :: err
     type(motion_system_type), allocatable :: other
-    type(error_type), allocatable :: refused
+    type(error_type), allocatable :: failure
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(state_type) :: state
     logical :: independent(self%system%plan%n_coordinates)
 
     changed = .false.
+    self%system%refuse_below = 0.0_wp
     ! the state of the last accepted step, with the rates of all coordinates
-    call self%system%settle(self%t, self%y, refused)
-    if (.not. allocated(refused)) call self%system%present(refused)
-    if (allocated(refused)) return
+    call self%system%settle(self%t, self%y, failure)
+    if (.not. allocated(failure)) call self%system%present(failure)
+    if (allocated(failure)) return
     call best_independent(self%system%plan, self%system%state, independent)
     if (all(independent .eqv. self%system%mechanism%structure%independent)) then
       self%look_below = self%system%conditioning()/worth_it
       return
     end if
-    call with_independent(self%system%mechanism, self%system%state, independent, mechanism, plan, state, refused)
-    if (allocated(refused)) return
+    call with_independent(self%system%mechanism, self%system%state, independent, mechanism, plan, state, failure)
+    if (allocated(failure)) return
     allocate (other)
-    call set_motion_system(mechanism, plan, state, other, refused)
-    if (allocated(refused)) return
+    call set_motion_system(mechanism, plan, state, other, failure)
+    if (allocated(failure)) return
     if (other%conditioning() < worth_it*self%system%conditioning()) then
       self%look_below = self%system%conditioning()/worth_it
       return
