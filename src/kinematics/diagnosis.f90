@@ -16,6 +16,11 @@ module mech9_diagnosis
 
   !> Numbers that a list in a message shows at most.
   integer, parameter :: longest_list = 24
+  !> Coordinates that are this near the start again, in their units, after a change of all of them have
+  !> come back. Round-off of a closure moves coordinates of a singular position by its root.
+  real(wp), parameter :: comes_back = 1.0e-4_wp
+  !> Part in the motions of length one from which a coordinate would not come back by chance.
+  real(wp), parameter :: seems_to_move = 1.0e-2_wp
 
 contains
 
@@ -28,12 +33,10 @@ contains
     type(state_type), intent(inout) :: state
     logical, intent(out) :: closed
     type(error_type), allocatable, intent(out) :: err
-    real(wp), parameter :: amounts(6) = [0.0_wp, 0.3_wp, 0.1_wp, 0.03_wp, 0.3_wp, 0.1_wp]
     type(assembly_outcome_type) :: outcome
     type(state_type) :: trial
-    type(random_type) :: random
-    real(wp), allocatable :: motions(:, :), best(:, :)
-    logical :: wanted(plan%n_coordinates), chosen(plan%n_coordinates)
+    real(wp), allocatable :: motions(:, :), best(:, :), positions(:, :)
+    logical, dimension(plan%n_coordinates) :: wanted, chosen, back, held
     integer :: i, k
 
     closed = .false.
@@ -47,16 +50,17 @@ contains
       return
     end if
     closed = .true.
-    do i = 1, size(amounts)
-      trial = state
-      do k = 1, plan%n_coordinates
-        if (plan%steps(plan%step_of(k))%is_screw) &
-          trial%q(k) = state%q(k) + amounts(i)*plan%unit_of(k)*random%symmetric()
-      end do
+    call find_positions(plan, state, positions, back)
+    trial = state
+    do i = 1, size(positions, 2)
+      trial%q = positions(:, i)
+      ! closed already: this puts the frames in place
       call close_free(plan, trial, .false., outcome, err)
-      if (allocated(err)) cycle
-      if (.not. outcome%closed) cycle
-      call find_motions(plan, trial, motions)
+      if (allocated(err)) return
+      held = .false.
+      call find_motions(plan, trial, held, motions)
+      held = back .and. [(norm2(motions(k, :)) > seems_to_move, k=1, size(held))]
+      if (any(held)) call find_motions(plan, trial, held, motions)
       call choose_coordinates(motions, wanted, chosen)
       if (all(chosen .eqv. wanted)) return
       ! where branches of different mobility meet, a general position of the least mobile one
@@ -65,6 +69,46 @@ contains
     end do
     call raise(err, exit_structure, words_on_choice(plan, best, wanted))
   end subroutine judge_choice
+
+  !> General closed positions near one that may be special, and the coordinates that come back to it
+  !> each time. Where the rates say that such a one moves, they are wrong: it is locked, and the position
+  !> singular.
+  subroutine find_positions(plan, state, positions, back)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    real(wp), allocatable, intent(out) :: positions(:, :)   !< (M,n): the given one where no other closes
+    logical, intent(out) :: back(:)
+    real(wp), parameter :: amounts(6) = [0.3_wp, 0.1_wp, 0.03_wp, 0.3_wp, 0.1_wp, 0.03_wp]
+    type(assembly_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    type(state_type) :: trial
+    type(random_type) :: random
+    real(wp) :: found(plan%n_coordinates, size(amounts))
+    integer :: i, k, n
+
+    n = 0
+    back = plan%steps(plan%step_of)%is_screw
+    trial = state
+    do i = 1, size(amounts)
+      trial%q = state%q
+      do k = 1, plan%n_coordinates
+        if (plan%steps(plan%step_of(k))%is_screw) &
+          trial%q(k) = state%q(k) + amounts(i)*plan%unit_of(k)*random%symmetric()
+      end do
+      call close_free(plan, trial, .false., outcome, err)
+      if (allocated(err)) cycle
+      if (.not. outcome%closed) cycle
+      n = n + 1
+      found(:, n) = trial%q
+      back = back .and. abs(trial%q - state%q) < comes_back*plan%unit_of
+    end do
+    if (n < 2) back = .false.
+    if (n == 0) then
+      n = 1
+      found(:, 1) = state%q
+    end if
+    positions = found(:, :n)
+  end subroutine find_positions
 
   !> What is wrong with a choice of independent coordinates, and what would serve.
   function words_on_choice(plan, motions, wanted) result(text)
@@ -105,6 +149,7 @@ contains
     character(len=:), allocatable :: text
 
     text = to_text(n)//' coordinates are independent'
+    if (n == 0) text = 'no coordinate is independent'
     if (n == 1) text = '1 coordinate is independent'
   end function words_on_count
 

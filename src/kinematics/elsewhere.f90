@@ -27,6 +27,9 @@ module mech9_elsewhere
   integer, parameter :: most_trials_each = 12
   !> Blocks up to this size are also closed with their independent coordinates free.
   integer, parameter :: largest_free_block = 200
+  !> Less than this, in its units, is no motion of a coordinate. Round-off of a closure moves coordinates of
+  !> a singular position by its root.
+  real(wp), parameter :: moved = 1.0e-4_wp
 
 contains
 
@@ -75,6 +78,7 @@ contains
     real(wp), intent(in) :: amount
     type(elsewhere_type), intent(inout) :: elsewhere
     logical, intent(out) :: closed
+    real(wp) :: change
     integer :: i, k
 
     elsewhere%trials = elsewhere%trials + 1
@@ -84,7 +88,9 @@ contains
     closed = .true.
     do i = 1, size(plan%independent)
       k = plan%independent(i)
-      elsewhere%state%q(k) = start%q(k) + amount*plan%unit_of(k)*elsewhere%random%symmetric()
+      change = elsewhere%random%symmetric()
+      ! never by so little that contradicting chains seem to stay closed
+      elsewhere%state%q(k) = start%q(k) + amount*plan%unit_of(k)*(change + sign(0.5_wp, change))
     end do
     do i = 1, size(blocks)
       call extend(plan, blocks(i), start, amount, elsewhere, closed)
@@ -131,9 +137,28 @@ contains
       elsewhere%exists = .true.
       elsewhere%closed_to = 0
       call extend(plan, block, start, amount_of(trial), elsewhere, closed)
+      ! a chain that cannot move comes back to where it was, and shows nothing new
+      closed = closed .and. has_moved(plan, last, start, elsewhere%state)
       if (closed) return
+      elsewhere%closed_to = 0
     end do
   end subroutine try_all_free
+
+  !> Does some coordinate on the loops of a block differ between two positions?
+  pure logical function has_moved(plan, block, start, state)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: start, state
+    integer :: c, i, k
+
+    has_moved = block%last_closure < block%first_closure
+    do c = block%first_closure, block%last_closure
+      do i = 1, size(plan%closures(c)%path%steps)
+        k = plan%steps(plan%closures(c)%path%steps(i))%coordinate
+        has_moved = has_moved .or. abs(state%q(k) - start%q(k)) > moved*plan%unit_of(k)
+      end do
+    end do
+  end function has_moved
 
   !> All steps and closures up to some as one block with every coordinate unknown. Its equations are right
   !> only while the paths of the closures are those of whole loops.

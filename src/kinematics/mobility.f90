@@ -22,53 +22,60 @@ contains
   !> All rates that keep the chains closed at a closed position: an orthonormal basis, a column for
   !> each freedom, rates in the units of the coordinates. The frames must be in place, and the paths
   !> of the closures be those of whole loops.
-  subroutine find_motions(plan, state, motions)
+  subroutine find_motions(plan, state, held, motions)
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
+    logical, intent(in) :: held(:)                         !< coordinates that are known not to move
     real(wp), allocatable, intent(out) :: motions(:, :)    !< (M, mobility)
     type(block_type) :: block
     real(wp), allocatable :: a(:, :), vt(:, :), s(:), work(:)
+    integer :: column_of(plan%n_coordinates), i, k, m, n, rank, info
     real(wp) :: u(1, 1)
-    integer :: m, n, i, rank, info
 
     block = free_block(plan, plan%n_coordinates, size(plan%closures))
+    column_of = 0
+    n = 0
+    do i = 1, plan%n_coordinates
+      if (held(plan%steps(i)%coordinate)) cycle
+      n = n + 1
+      column_of(i) = n
+    end do
     m = max(block%equations, 1)
-    n = plan%n_coordinates
     allocate (a(m, n), vt(n, n), s(min(m, n)), work(16*(m + n) + 64), source=0.0_wp)
-    if (block%equations > 0) call closure_jacobian(plan, block, state, [(i, i=1, n)], a)
-    call dgesvd('N', 'A', m, n, a, m, s, u, 1, vt, n, work, size(work), info)
-    rank = count(s > rank_tolerance*max(s(1), tiny(s)))
-    allocate (motions(n, n - rank))
-    ! columns belong to steps: bring them in the order of the coordinates
-    motions(plan%steps%coordinate, :) = transpose(vt(rank + 1:, :))
+    rank = 0
+    if (n > 0) then
+      if (block%equations > 0) call closure_jacobian(plan, block, state, column_of, a)
+      call dgesvd('N', 'A', m, n, a, m, s, u, 1, vt, n, work, size(work), info)
+      rank = count(s > rank_tolerance*max(s(1), tiny(s)))
+    end if
+    allocate (motions(plan%n_coordinates, n - rank), source=0.0_wp)
+    do i = 1, plan%n_coordinates
+      k = plan%steps(i)%coordinate
+      if (column_of(i) > 0) motions(k, :) = vt(rank + 1:, column_of(i))
+    end do
   end subroutine find_motions
 
   !> As many coordinates as there are freedoms, whose rates determine all rates: the wanted ones as far
-  !> as they are independent of each other, then those that move most.
+  !> as they are independent of each other, then others that move well.
   pure subroutine choose_coordinates(motions, wanted, chosen)
     real(wp), intent(in) :: motions(:, :)
     logical, intent(in) :: wanted(:)
     logical, intent(out) :: chosen(:)
-    real(wp) :: rest(size(motions, 1), size(motions, 2)), e(size(motions, 2)), length, longest
+    real(wp) :: rest(size(motions, 1), size(motions, 2)), e(size(motions, 2)), lengths(size(wanted))
+    logical :: may(size(wanted))
     integer :: k, best, stage
 
     rest = motions
     chosen = .false.
     do stage = 1, 2
       do while (count(chosen) < size(motions, 2))
-        best = 0
-        longest = moves_least
-        do k = 1, size(wanted)
-          if (chosen(k) .or. (stage == 1 .and. .not. wanted(k))) cycle
-          length = norm2(rest(k, :))
-          if (length > longest) then
-            best = k
-            longest = length
-          end if
-        end do
-        if (best == 0) exit
+        may = .not. chosen .and. (wanted .or. stage == 2)
+        lengths = [(norm2(rest(k, :)), k=1, size(wanted))]
+        if (maxval(lengths, may) <= moves_least) exit
+        ! the first of those that move nearly as much as any
+        best = findloc(may .and. lengths >= 0.3_wp*maxval(lengths, may), .true., dim=1)
         chosen(best) = .true.
-        e = rest(best, :)/longest
+        e = rest(best, :)/lengths(best)
         do k = 1, size(wanted)
           rest(k, :) = rest(k, :) - dot_product(rest(k, :), e)*e
         end do

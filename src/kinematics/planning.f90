@@ -188,12 +188,18 @@ contains
     logical :: closed, free
 
     free = .true.
-    closed = elsewhere%exists
-    ! more equations than unknowns: they must agree not only at the start
-    if (closed .or. any(plan%blocks%equations > unknowns_of(plan%blocks))) &
-      call go_elsewhere(plan, plan%blocks, state, elsewhere, closed)
     trial = state
-    if (closed) trial = elsewhere%state
+    ! more equations than unknowns: they must agree not only at the start
+    if (elsewhere%exists .or. any(plan%blocks%equations > unknowns_of(plan%blocks))) then
+      call go_elsewhere(plan, plan%blocks, state, elsewhere, closed)
+      if (closed) then
+        trial = elsewhere%state
+      else
+        call judge_choice(plan, trial, closed, err)
+        if (allocated(err)) return
+        trial = state
+      end if
+    end if
     do i = 1, size(plan%independent)
       trial%dq(plan%independent(i)) = plan%unit_of(plan%independent(i))*random%symmetric()
     end do

@@ -1,0 +1,134 @@
+!> Wrong choices of independent coordinates: too many, too few, or such that depend on each other. They
+!> must be refused, the right ones not, and the set that the message says would serve must serve.
+program test_choice_of_inputs
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_structure
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_mechanism_families, only: axis_type, planar_axes, spatial_axes, home_mechanism, random_links
+  use mech9_home_motions, only: loop_equations, choose_dependent
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  type(mechanism_type) :: mechanism
+  integer :: i, n, refused, accepted
+
+  refused = 0
+  accepted = 0
+  do i = 1, 40
+    n = 4 + modulo(7*i, 17)
+    call try('planar', n, 1 + n/5, .true.)
+    call try('spatial', n + 6, 1 + n/10, .false.)
+  end do
+  print '(2(i0,a))', refused, ' choices refused, ', accepted, ' accepted'
+  call test%is_true(refused > 200 .and. accepted > 20, 'both happened often')
+  call test%finish()
+
+contains
+
+  subroutine try(name, n_links, loops, planar)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n_links, loops
+    logical, intent(in) :: planar
+    integer, allocatable :: links(:, :)
+    type(axis_type), allocatable :: axes(:)
+    real(wp), allocatable :: equations(:, :)
+    logical, allocatable :: dependent(:), changed(:)
+    integer :: k, kind
+
+    links = random_links(n_links, loops, random)
+    if (planar) axes = planar_axes(size(links, 2), 0, random)
+    if (.not. planar) axes = spatial_axes(size(links, 2), 4, random)
+    call loop_equations(n_links, links, axes, equations)
+    allocate (dependent(size(axes)))
+    call choose_dependent(equations, random, dependent)
+    do kind = 1, 6
+      changed = dependent
+      ! 1, 2: one too few; 3, 4: one too many; 5, 6: as many as before, but others
+      if (any(kind == [1, 2, 5, 6])) call change_one(changed, .true.)
+      if (any(kind == [3, 4, 5, 6])) call change_one(changed, .false.)
+      call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. changed), mechanism)
+      call check(name, mechanism, equations, count(dependent), changed)
+    end do
+  end subroutine try
+
+  !> Make any one of the coordinates dependent that are not, or the other way round.
+  subroutine change_one(dependent, to)
+    logical, intent(inout) :: dependent(:)
+    logical, intent(in) :: to
+    integer :: k, trial
+
+    do trial = 1, 1000
+      k = 1 + int(0.4999_wp*(1.0_wp + random%symmetric())*size(dependent))
+      if (dependent(k) .eqv. to) cycle
+      dependent(k) = to
+      return
+    end do
+  end subroutine change_one
+
+  !> Do these dependent coordinates follow from the others? By the rank of their columns.
+  logical function serves(equations, rank, dependent)
+    real(wp), intent(in) :: equations(:, :)
+    integer, intent(in) :: rank
+    logical, intent(in) :: dependent(:)
+    real(wp) :: columns(size(equations, 1), size(equations, 2))
+    logical :: chosen(size(dependent))
+    integer :: k
+
+    columns = equations
+    do k = 1, size(dependent)
+      if (.not. dependent(k)) columns(:, k) = 0.0_wp
+    end do
+    call choose_dependent(columns, random, chosen)
+    serves = count(dependent) == rank .and. count(chosen) == rank
+  end function serves
+
+  subroutine check(name, mechanism, equations, rank, dependent)
+    character(len=*), intent(in) :: name
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), intent(in) :: equations(:, :)
+    integer, intent(in) :: rank
+    logical, intent(in) :: dependent(:)
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    integer, allocatable :: proposed(:)
+    integer :: k
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    if (serves(equations, rank, dependent)) then
+      accepted = accepted + 1
+      call test%no_error(err, name//': coordinates that can serve')
+      return
+    end if
+    refused = refused + 1
+    call test%has_error(err, exit_structure, name//': coordinates that cannot serve')
+    if (.not. allocated(err)) return
+    if (rank == size(dependent)) then
+      call test%is_true(index(err%message, 'cannot move') > 0, name//': no motion at all')
+      return
+    end if
+    proposed = numbers_after(err%message, 'cq = ')
+    call test%is_true(size(proposed) == size(dependent) - rank, name//': as many proposed as the mobility')
+    call test%is_true(serves(equations, rank, [(all(proposed /= k), k=1, size(dependent))]), &
+                      name//': what is proposed serves ('//err%message//')')
+  end subroutine check
+
+  !> The numbers separated by commas that follow a mark.
+  function numbers_after(text, mark) result(numbers)
+    character(len=*), intent(in) :: text, mark
+    integer, allocatable :: numbers(:)
+    character(len=:), allocatable :: list
+    integer :: i, status
+
+    list = text(index(text, mark) + len(mark):)
+    list = list(:verify(list//'x', '0123456789, ') - 1)
+    allocate (numbers(1 + count([(list(i:i) == ',', i=1, len(list))])))
+    read (list, *, iostat=status) numbers
+    if (status /= 0) numbers = 0
+  end function numbers_after
+end program test_choice_of_inputs
