@@ -25,7 +25,7 @@ module mech9_integration_methods
     integration_method_type('dormand-prince', runge_kutta, 5, 7, .true., 'Dormand-Prince 5(4), Runge-Kutta'), &
     integration_method_type('verner', runge_kutta, 6, 8, .false., 'Verner 6(5), Runge-Kutta'), &
     integration_method_type('fehlberg', runge_kutta, 8, 13, .false., &
-                            'Fehlberg 8(7), Runge-Kutta; blind to forces of time alone'), &
+                            'Fehlberg 8(7); its error estimate misses forces of time alone'), &
     integration_method_type('merson', runge_kutta, 4, 5, .false., 'Kutta-Merson 4(3), the MERSOL of 1995'), &
     integration_method_type('adams', multistep, 12, 0, .false., 'Adams-Moulton, orders 1 to 12'), &
     integration_method_type('bdf', multistep, 5, 0, .false., 'backward differences, orders 1 to 5; for stiff motions')]

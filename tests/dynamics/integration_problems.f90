@@ -8,7 +8,7 @@ module mech9_integration_problems
   use mech9_integrator, only: integrator_type, integration_statistics_type
   implicit none
   private
-  public :: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, swing_type
+  public :: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, swing_type, push_type
   public :: stiff_type, explosion_type, obstacle_type, rotation_type, integrate
 
   !> Kepler's orbit, of semi-major axis and gravitational parameter one: (x, y, x', y').
@@ -28,6 +28,12 @@ module mech9_integration_problems
   contains
     procedure :: rate => swing_rate
   end type swing_type
+
+  !> A mass pushed by cos(20 t): (place, rate), from rest (1 - cos(20 t))/400 and sin(20 t)/20.
+  type, extends(ode_system_type) :: push_type
+  contains
+    procedure :: rate => push_rate
+  end type push_type
 
   !> y' = -stiffness (y - cos t) - sin t in both parts; y = cos t where it starts there.
   type, extends(ode_system_type) :: stiff_type
@@ -133,6 +139,16 @@ contains
     ydot(1) = y(2)
     ydot(2) = -sin(y(1)) - 0.2_wp*y(2) + 0.5_wp*cos(0.7_wp*t)
   end subroutine swing_rate
+
+  subroutine push_rate(self, t, y, ydot, err)
+    class(push_type), intent(inout) :: self
+    real(wp), intent(in) :: t, y(:)
+    real(wp), intent(out) :: ydot(:)
+    type(error_type), allocatable, intent(out) :: err
+
+    ydot(1) = y(2)
+    ydot(2) = cos(20.0_wp*t)
+  end subroutine push_rate
 
   subroutine stiff_rate(self, t, y, ydot, err)
     class(stiff_type), intent(inout) :: self

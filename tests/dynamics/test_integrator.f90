@@ -6,7 +6,7 @@ program test_integrator
   use mech9_integration_methods, only: integration_methods, runge_kutta
   use mech9_integrator, only: integration_statistics_type
   use mech9_integration_problems, only: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, &
-    swing_type, stiff_type, integrate
+    swing_type, push_type, stiff_type, integrate
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -16,6 +16,7 @@ program test_integrator
     if (integration_methods(i)%family == runge_kutta) call check_order(test, i)
     call check_tolerances(test, i)
     call check_pendulum(test, i)
+    call check_push(test, i)
   end do
   call check_agreement(test)
   call check_stiff(test)
@@ -97,6 +98,22 @@ contains
     ! some ten to some hundred steps, each with an error of the tolerance, which grow little on the way
     call test%is_true(error < 100.0e-10_wp, integration_methods(method)%name//': a pendulum''s quarter period')
   end subroutine check_pendulum
+
+  !> Where time alone acts, the error estimates of some methods see less than elsewhere; Fehlberg's sees
+  !> nothing at all, as its coefficients tell, and is told not to be used.
+  subroutine check_push(test, method)
+    type(tester_type), intent(inout) :: test
+    integer, intent(in) :: method
+    type(push_type), target :: push
+    type(integration_statistics_type) :: statistics
+    real(wp) :: error
+
+    if (integration_methods(method)%name == 'fehlberg') return
+    call run(test, push, [0.0_wp, 0.0_wp], 3.0_wp, method, 1.0e-8_wp, &
+             [(1.0_wp - cos(60.0_wp))/400.0_wp, sin(60.0_wp)/20.0_wp], error, statistics)
+    ! some hundred steps, each with an error of the tolerance
+    call test%is_true(error < 1.0e-6_wp, integration_methods(method)%name//': a force of time alone')
+  end subroutine check_push
 
   !> Without a closed form: all methods come closer to each other as the tolerance falls.
   subroutine check_agreement(test)
