@@ -21,7 +21,7 @@ module mech9_passage
   use mech9_following, only: follower_type, watch_type, settle, factorize_trial, step_towards, set_inputs
   implicit none
   private
-  public :: passage_type, build_passage, position_within
+  public :: passage_type, build_passage, position_within, land_near, walk
 
   !> The way through, from one regular position to another.
   type :: passage_type
@@ -91,7 +91,7 @@ contains
     passage%to = times(4)
     passage%ends = .false.
     call build_hermite(times(:2), q(:, :2), dq(:, :2), ddq(:, :2), passage%way)
-    call land(mechanism, plan, passage%way, times(3), scout, ok, err, no_drive)
+    call land(mechanism, plan, passage%way, times(3), 1.0_wp, scout, ok, err, no_drive)
     passage%exists = ok
     if (allocated(no_drive)) then
       call end_there()
@@ -100,7 +100,7 @@ contains
     if (allocated(err) .or. .not. ok) return
     call take(3)
     call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), passage%way)
-    call land(mechanism, plan, passage%way, times(4), scout, ok, err, no_drive)
+    call land(mechanism, plan, passage%way, times(4), 1.0_wp, scout, ok, err, no_drive)
     passage%exists = ok
     if (allocated(err) .or. .not. ok) return
     call take(4)
@@ -147,12 +147,33 @@ contains
     arrived = .not. (stuck .or. allocated(err))
   end subroutine walk
 
+  !> Land at time t straight on from a start where nothing but positions and rates is known.
+  subroutine land_near(mechanism, plan, t, scout, ok, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    real(wp), intent(in) :: t
+    type(follower_type), intent(inout) :: scout
+    logical, intent(out) :: ok
+    type(error_type), allocatable, intent(out) :: err        !< a pair has no pose, or a drive no value
+    type(error_type), allocatable :: no_drive
+    type(hermite_type) :: way
+    real(wp), dimension(plan%n_coordinates, 1) :: q, dq, ddq
+
+    q(:, 1) = scout%state%q
+    dq(:, 1) = scout%state%dq
+    ddq = 0.0_wp
+    call build_hermite([scout%state%t], q, dq, ddq, way)
+    call land(mechanism, plan, way, t, 10.0_wp, scout, ok, err, no_drive)
+    if (allocated(no_drive)) call move_alloc(no_drive, err)
+  end subroutine land_near
+
   !> Close all blocks at time t from their prediction; `ok` if each is as good as met, and so are the rates.
-  subroutine land(mechanism, plan, way, t, scout, ok, err, no_drive)
+  subroutine land(mechanism, plan, way, t, slack, scout, ok, err, no_drive)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(hermite_type), intent(in) :: way
     real(wp), intent(in) :: t
+    real(wp), intent(in) :: slack                            !< how many times as far off it may be
     type(follower_type), intent(inout) :: scout
     logical, intent(out) :: ok
     type(error_type), allocatable, intent(out) :: err        !< a pair has no pose
@@ -176,12 +197,12 @@ contains
         scout%iterations = scout%iterations + newton%iterations
         if (allocated(err) .or. .not. newton%converged) return
         call factorize_trial(plan, block, scout%state, work, watch)
-        if (size(block%unknowns) > 0 .and. newton%correction > trusted_correction*watch%trial_pivot) return
+        if (size(block%unknowns) > 0 .and. newton%correction > slack*trusted_correction*watch%trial_pivot) return
         call solve_rates(plan, block, scout%state, work)
         call solve_accelerations(plan, block, scout%state, work)
       end associate
     end do
-    ok = maxval(abs(scout%state%dq - dq)/plan%unit_of) <= trusted_rates*maxval(abs(dq)/plan%unit_of)
+    ok = maxval(abs(scout%state%dq - dq)/plan%unit_of) <= slack*trusted_rates*maxval(abs(dq)/plan%unit_of)
     if (.not. ok) return
     scout%steps = scout%steps + 1
     call settle(scout)

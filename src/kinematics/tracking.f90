@@ -1,6 +1,6 @@
 !> Following a driven motion from output to output, through special positions or up to where it ends.
-!> Uses kinds, error, text, mechanism, plan, state, solver, closure, following, special_position, passage,
-!> planning.
+!> Uses kinds, error, text, mechanism, plan, state, solver, closure, following, special_position,
+!> passage, special_start, motion, planning.
 module mech9_tracking
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_singular
@@ -13,13 +13,16 @@ module mech9_tracking
   use mech9_planning, only: chain_names
   use mech9_following, only: follower_type, new_follower, settle, factorize_trial, step_towards, set_inputs, go_back
   use mech9_special_position, only: finding_type, look_ahead, is_near, nothing_special, dead_point, crossing, lost
+  use mech9_motion, only: spread_velocities
+  use mech9_special_start, only: ways_type, find_ways, start_passage
   use mech9_passage, only: passage_type, build_passage, position_within
   implicit none
   private
   public :: tracker_type, start_tracking, advance, set_inputs, largest_closure, words_of_block, find_conditioning
 
-  !> Blocks whose least against largest pivot is below this start at a singular position.
-  real(wp), parameter :: singular = 1.0e-9_wp
+  !> Blocks whose least against largest pivot is below this start at a singular position: at a dead point
+  !> round-off of the position leaves its square root, some 1e-8.
+  real(wp), parameter :: singular = 1.0e-7_wp
   !> The least singular value is looked at when the least pivot has fallen to this part.
   real(wp), parameter :: worth_a_look = 0.99_wp
   !> A motion that ends is followed up to this part of the way from where the end was seen.
@@ -52,7 +55,9 @@ contains
     type(tracker_type), intent(out) :: tracker
     type(error_type), allocatable, intent(out) :: err
     integer :: b
+    logical :: special
 
+    special = .false.
     tracker%follower_type = new_follower(mechanism, plan, assembled)
     tracker%state%t = t
     call set_inputs(mechanism, t, tracker%state%q, tracker%state%dq, tracker%state%ddq, err)
@@ -61,18 +66,98 @@ contains
       associate (block => plan%blocks(b), work => tracker%work(b))
         call factorize_trial(plan, block, tracker%state, work, tracker%watches(b))
         if (work%equations%conditioning() < singular) then
-          call raise(err, exit_singular, 'the mechanism starts in a singular position of '//words_of_block(plan, block)// &
-                     ': rates are not determined there; start a little beside it')
-          return
+          call leave_special(plan, block, special, tracker, err)
+          if (allocated(err)) return
+          special = .true.
+        else
+          call solve_rates(plan, block, tracker%state, work)
+          call solve_accelerations(plan, block, tracker%state, work)
         end if
-        call solve_rates(plan, block, tracker%state, work)
-        call solve_accelerations(plan, block, tracker%state, work)
       end associate
     end do
-    call settle(tracker%follower_type)
+    if (special) then
+      call begin_passage(mechanism, plan, tracker, err)
+      if (allocated(err)) return
+    else
+      call settle(tracker%follower_type)
+    end if
     tracker%ahead%t = t
     call record(plan, tracker)
   end subroutine start_tracking
+
+  !> Rates of a block that starts in a singular position, if it can leave it in one way only.
+  subroutine leave_special(plan, block, already, tracker, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    logical, intent(in) :: already                 !< a block before it does so too
+    type(tracker_type), intent(inout) :: tracker
+    type(error_type), allocatable, intent(out) :: err
+    type(ways_type) :: ways
+    character(len=:), allocatable :: text
+    integer :: b
+
+    do b = 1, size(plan%blocks)
+      if (plan%blocks(b)%first_step == block%first_step) exit
+    end do
+    call find_ways(plan, block, tracker%state, tracker%work(b), ways)
+    text = 'the mechanism starts in a singular position of '//words_of_block(plan, block)
+    if (ways%dead) then
+      text = text//', a dead point, where rates are not finite; start a little beside it'
+    else if (ways%count == 2) then
+      text = text//', where two branches meet: '//rates_in_words(plan, block, ways)// &
+             '; start a little beside it, on the one that is meant'
+    else if (ways%unclear .or. already) then
+      text = text//', where it is not certain how it goes on; start a little beside it'
+    else if (ways%count == 0) then
+      text = text//', which it cannot leave'
+    else
+      tracker%state%dq(plan%steps(block%unknowns)%coordinate) = ways%rates(:, 1)
+      call spread_velocities(plan, block%first_step, block%last_step, tracker%state)
+      return
+    end if
+    call raise(err, exit_singular, text)
+  end subroutine leave_special
+
+  !> "dq2 : dq3 : dq4 = 1 : 0.5 : 2 or 1 : -0.5 : 3" with the rates themselves.
+  pure function rates_in_words(plan, block, ways) result(text)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(ways_type), intent(in) :: ways
+    character(len=:), allocatable :: text
+    integer :: way, i
+
+    text = ''
+    do way = 1, ways%count
+      if (way > 1) text = text//' or '
+      do i = 1, size(block%unknowns)
+        if (i > 1) text = text//', '
+        text = text//'dq'//to_text(plan%steps(block%unknowns(i))%coordinate)//' = '//to_text(ways%rates(i, way), 5)
+      end do
+    end do
+    text = text//' (rad/s, m/s)'
+  end function rates_in_words
+
+  !> The way on from a special start.
+  subroutine begin_passage(mechanism, plan, tracker, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(tracker_type), intent(inout) :: tracker
+    type(error_type), allocatable, intent(out) :: err
+
+    tracker%departure%t = tracker%state%t
+    tracker%departure%q = tracker%state%q
+    tracker%departure%dq = tracker%state%dq
+    call start_passage(mechanism, plan, tracker%follower_type, tracker%passage, err)
+    if (allocated(err)) return
+    if (.not. tracker%passage%exists) then
+      call raise(err, exit_singular, 'the mechanism starts in a singular position and cannot be followed off it '// &
+                 'with certainty; start a little beside it')
+      return
+    end if
+    tracker%watches = tracker%passage%beyond%watches
+    call position_within(mechanism, plan, tracker%passage, tracker%departure%t, tracker%state, tracker%work, &
+                         tracker%watches, err)
+  end subroutine begin_passage
 
   !> Go on to a time: position, velocity and acceleration there, on the same branch. Fails with
   !> exit_singular where the motion cannot go on; the state is then the last one reached.

@@ -35,8 +35,8 @@ contains
       words_of_block(plan, plan%blocks(tracker%least_conditioning_block))
     if (tracker%passages > 0) write (unit, '(a)') 'special positions passed: '//to_text(tracker%passages)// &
       ', each on the branch with continuous velocities'
-    if (tracker%halvings > 0) write (unit, '(a)') to_text(tracker%steps)//' steps, '// &
-      to_text(tracker%halvings)//' of them shortened to keep to the branch'
+    if (tracker%steps >= outcome%rows) write (unit, '(a)') to_text(tracker%steps)//' steps to keep to the branch, and '// &
+      to_text(tracker%halvings)//' that were too long'
     calls = 0
     do k = 1, size(mechanism%pairs)
       if (mechanism%pairs(k)%pair%user_calls() > 1) calls = calls + mechanism%pairs(k)%pair%user_calls()

@@ -1,0 +1,127 @@
+!> Starts in positions where branches cross: where only one way leads on it is taken, with rates and
+!> accelerations by their limits; where two do they are named; at a dead point there is none.
+program test_special_start
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type, exit_singular
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_sample_mechanisms, only: drive, four_bar
+  use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit, slider_crank
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  integer :: n
+
+  do n = 1, 4
+    call kite(10**(n - 1), 1.0_wp)
+    call kite(10**(n - 1), -30.0_wp)
+  end do
+  call two_ways()
+  call dead_start()
+  call test%finish()
+
+contains
+
+  subroutine begin(mechanism, plan, tracker, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(out) :: plan
+    type(tracker_type), intent(out) :: tracker
+    type(error_type), allocatable, intent(out) :: err
+    type(state_type) :: state
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, 'plan and assembly')
+    if (allocated(err)) call test%finish()
+    call start_tracking(mechanism, plan, state, 0.0_wp, tracker, err)
+  end subroutine begin
+
+  !> A kite whose crank lies on the ground: coupler and rocker could turn together, but only one motion takes
+  !> the crank along. q4 = q1/2 + 90 degrees - acos(short sin(q1/2)/long).
+  subroutine kite(n, speed)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: speed
+    real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: half, root, position, rate, acceleration
+    integer :: j
+
+    call four_bar(short, short, long, long, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], mechanism)
+    call drive(mechanism, 1, [0.0_wp, speed])
+    call begin(mechanism, plan, tracker, err)
+    call test%no_error(err, 'a kite starts')
+    do j = 0, n
+      if (allocated(err)) exit
+      half = 0.5_wp*tracker%state%q(1)
+      root = sqrt(long**2 - (short*sin(half))**2)
+      position = half + 0.5_wp*pi - acos(short*sin(half)/long)
+      rate = (0.5_wp + 0.5_wp*short*cos(half)/root)*speed
+      acceleration = 0.25_wp*short*sin(half)*(short**2*cos(half)**2/root**3 - 1.0_wp/root)*speed**2
+      ! as between all special positions: polynomials of high degree
+      call test%near(tracker%state%q(4), position, 1.0e-11_wp, 'a kite: position')
+      call test%near(tracker%state%dq(4), rate, 1.0e-9_wp*max(1.0_wp, abs(speed)), 'a kite: rate')
+      call test%near(tracker%state%ddq(4), acceleration, 1.0e-6_wp*max(1.0_wp, speed**2), 'a kite: acceleration')
+      if (j < n) call advance(mechanism, plan, tracker, (j + 1)*1.5_wp/(abs(speed)*n), err)
+    end do
+    call test%no_error(err, 'a kite goes on')
+  end subroutine kite
+
+  !> A flat parallelogram: as parallelogram dq4 = dq1, crossed dq4 = -dq1 (ground + crank)/(ground - crank).
+  !> Equal arms at a right angle: the slider moves by -2 r dq1, or not at all.
+  subroutine two_ways()
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+
+    call four_bar(1.0_wp, 0.6_wp, 1.0_wp, 0.6_wp, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], mechanism)
+    call drive(mechanism, 1, [0.0_wp, 1.0_wp])
+    call begin(mechanism, plan, tracker, err)
+    call refused(err, 'dq4 = 1 ', 'dq4 = -4 ')
+    call slider_crank(0.3_wp, 0.3_wp, 0.0_wp, 0.5_wp*pi, 1, mechanism)
+    mechanism%initial_position(4) = 0.0_wp
+    call drive(mechanism, 1, [0.5_wp*pi, 2.0_wp])
+    call begin(mechanism, plan, tracker, err)
+    call refused(err, 'dq4 = -1.2 ', 'dq4 = 0 ')
+  end subroutine two_ways
+
+  !> The message tells of both rates.
+  subroutine refused(err, first, second)
+    type(error_type), allocatable, intent(in) :: err
+    character(len=*), intent(in) :: first, second
+    character(len=:), allocatable :: text
+    integer :: i
+
+    call test%has_error(err, exit_singular, 'two ways lead on: exit code 6')
+    if (.not. allocated(err)) return
+    text = err%message
+    do i = 1, len(text)
+      if (text(i:i) == ',' .or. text(i:i) == ';') text(i:i) = ' '
+    end do
+    call test%is_true(index(text, first) > 0, 'one way: '//first)
+    call test%is_true(index(text, second) > 0, 'the other way: '//second)
+    if (index(text, first) == 0 .or. index(text, second) == 0) print '(a)', text
+  end subroutine refused
+
+  subroutine dead_start()
+    type(four_bar_type) :: bar
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: limit
+
+    bar = four_bar_type(ground=1.2_wp, crank=0.7_wp, coupler=0.9_wp, rocker=0.4_wp)
+    limit = four_bar_limit(bar, stretched=.true.)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit, 1), mechanism)
+    call drive(mechanism, 1, [limit, -1.0_wp])
+    call begin(mechanism, plan, tracker, err)
+    call test%has_error(err, exit_singular, 'a start at a dead point: exit code 6')
+    if (allocated(err)) call test%is_true(index(err%message, 'dead point') > 0, 'the message says so')
+  end subroutine dead_start
+end program test_special_start
