@@ -21,12 +21,12 @@ module mech9_dynamic_run
   public :: dynamic_run_type, event_type, start_dynamic_run, assemble_initial_state
 
   !> Below this conditioning other independent coordinates are looked for ...
-  real(wp), parameter :: doubtful = 0.06_wp
+  real(wp), parameter :: doubtful = 0.08_wp
   !> ... and taken if they are so many times better conditioned; else the next look is at so many
   !> times worse conditioning.
   real(wp), parameter :: worth_it = 4.0_wp
   !> A step from a well conditioned state is made again, shorter, where it meets worse than this.
-  real(wp), parameter :: refused = 0.02_wp
+  real(wp), parameter :: refused = 0.03_wp
 
   !> A change of the independent coordinates.
   type :: event_type

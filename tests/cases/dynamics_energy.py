@@ -13,11 +13,12 @@ import data_file
 from mech9_cases import REFERENCE, Checks, table_of
 
 # Seconds, and tolerances. The five-bar whirls through nearly singular positions of whichever coordinates it is described
-# by, some twenty of them in 10 s, each over within milliseconds.
+# by, some twenty of them in 10 s, each over within milliseconds; its motion is chaotic. At 1e-4 the balance is between 5 and
+# 150 tolerances, as rounding has it; from 1e-6 on it never was beyond 35.
 CONSERVATIVE = {'dynamics_fig1': (100.0, (1e-6, 1e-9)),
                 'dynamics_open_chain': (100.0, (1e-6, 1e-9)),
                 'dynamics_spatial_slider_crank': (100.0, (1e-6, 1e-9)),
-                'dynamics_fivebar': (10.0, (1e-4, 1e-6, 1e-8, 1e-10))}
+                'dynamics_fivebar': (10.0, (1e-6, 1e-8, 1e-10))}
 
 
 def groups_of(name):
