@@ -42,6 +42,9 @@ module mech9_special_position
   !> Steps of a scout: the movement of a driven or dependent coordinate [rad, lengths of the mechanism].
   real(wp), parameter :: scout_move = 0.1_wp
   integer, parameter :: most_steps = 2000
+  !> A step of a scout against the one before it, and how often it is shortened for drives that end.
+  real(wp), parameter :: longer = 4.0_wp
+  integer, parameter :: most_trials = 20
 
 contains
 
@@ -63,8 +66,8 @@ contains
     type(finding_type), intent(out) :: finding
     type(follower_type) :: scout
     type(error_type), allocatable :: err
-    real(wp) :: usual, speed, growth, part, pivot_before, t_before, t
-    integer :: i, refused_by
+    real(wp) :: usual, speed, growth, part, pivot_before, t_before, t, step
+    integer :: i, trial, refused_by
     logical :: stuck
 
     finding%block = b
@@ -78,8 +81,13 @@ contains
       if (.not. speed > 0.0_wp) return
       pivot_before = scout%watches(b)%pivot
       t_before = scout%departure%t
-      t = t_before + direction*min(scout%reach, scout_move/speed)
-      call step_towards(mechanism, plan, scout, t, stuck, refused_by, err)
+      step = min(scout%reach, scout_move/speed, longer*scout%departure%before)
+      do trial = 1, most_trials
+        t = t_before + direction*step
+        call step_towards(mechanism, plan, scout, t, stuck, refused_by, err)
+        if (.not. allocated(err)) exit
+        step = step/longer                      ! a drive may end before a special position, or just at it
+      end do
       if (allocated(err)) return
       if (stuck .and. refused_by /= b) return   ! another block has its own turn
       finding%t = scout%departure%t

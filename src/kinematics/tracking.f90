@@ -32,6 +32,7 @@ module mech9_tracking
   type, extends(follower_type) :: tracker_type
     type(finding_type) :: ahead                   !< the special position that was seen
     type(passage_type) :: passage                 !< the way through it
+    real(wp), allocatable :: clear_until(:)       !< for each block: until when nothing special was seen [s]
     integer(long) :: positions = 0                !< that were asked for
     integer(long) :: passages = 0                 !< special positions that were passed
     !> Least singular value of any block's Jacobian at the positions asked for (rotations in rad, lengths in
@@ -81,7 +82,7 @@ contains
     else
       call settle(tracker%follower_type)
     end if
-    tracker%ahead%t = t
+    allocate (tracker%clear_until(size(plan%blocks)), source=t)
     call record(plan, tracker)
   end subroutine start_tracking
 
@@ -181,7 +182,8 @@ contains
         call leave_passage(tracker)
         cycle
       end if
-      if (tracker%ahead%kind == dead_point .and. .not. (tracker%ahead%t - t)*direction > 0.0_wp) then
+      if (tracker%ahead%kind == dead_point .and. .not. (tracker%ahead%t - t)*direction > 0.0_wp .and. &
+          (tracker%ahead%t - tracker%departure%t)*direction > 0.0_wp) then
         call end_motion(mechanism, plan, tracker, err)
         exit
       end if
@@ -215,9 +217,10 @@ contains
     do b = 1, size(plan%blocks)
       if (.not. is_near(tracker%follower_type, b)) cycle
       ! already seen, or seen to be nothing
-      if (tracker%ahead%kind /= nothing_special) cycle
-      if (tracker%ahead%block == b .and. (tracker%ahead%t - tracker%departure%t)*direction > 0.0_wp) cycle
+      if (tracker%ahead%kind /= nothing_special) exit
+      if ((tracker%clear_until(b) - tracker%departure%t)*direction > 0.0_wp) cycle
       call look_ahead(mechanism, plan, tracker%follower_type, b, direction, ahead)
+      tracker%clear_until(b) = ahead%t
       tracker%ahead = ahead
       if (ahead%kind == crossing) then
         call build_passage(mechanism, plan, tracker%follower_type, ahead%t, tracker%passage, err)
@@ -244,7 +247,7 @@ contains
     tracker%passages = tracker%passages + 1
     ! still near: but that is behind
     tracker%ahead%kind = nothing_special
-    tracker%ahead%t = tracker%passage%to + (tracker%passage%to - tracker%passage%from)
+    tracker%clear_until = tracker%passage%to + (tracker%passage%to - tracker%passage%from)
   end subroutine leave_passage
 
   !> The motion ends before the next output: go as near as it can be regular, and say why.

@@ -126,6 +126,23 @@ def passed(s):
     s.checks.equal(values['special_positions_passed'], 3, 'and so does its JSON')
 
 
+def end_of_table(s):
+    """A drive by a table that ends just in the flat position of a parallelogram: rates there by their limit."""
+    with open(os.path.join(s.folder, 'drive.txt'), 'w', encoding='utf-8') as file:
+        file.writelines(f'{i / 10!r} {60.0 + 12.0 * i!r}\n' for i in range(11))
+    text = four_bar((1.0, 0.4, 1.0, 0.4), (60.0, 0.0), 1.0, 30).replace("kind='polynomial', coefficients=60.0, 0.0",
+                                                                         "kind='table', file='drive.txt'")
+    done = s.run(text, '--table', '-')
+    s.checks.equal(done.returncode, 0, 'a table that ends in a special position')
+    if done.returncode == 0:
+        table = read_table(done.stdout)
+        s.checks.near(table['q1'][-1], 180.0, 1e-14, 'the last result lies there')
+        s.checks.near(np.cos(np.radians(table['q4'] - table['q1'])), 1.0, 1e-13, 'the rocker turned with the crank')
+        s.checks.near(table['dq4'], 120.0, 1e-8, 'at the same rate')
+    else:
+        s.checks.true(False, 'it ends well', done.stderr)
+
+
 def conditioning(s):
     """The column is the least singular value of the loop's matrix; the report has its least value and when."""
     lengths = ground, crank, coupler, rocker = (0.4, 0.15, 0.35, 0.3)
@@ -156,7 +173,7 @@ def conditioning(s):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Cases(os.path.abspath(sys.argv[1]), folder)
-        for case in (dead_point, ranges, passed, conditioning):
+        for case in (dead_point, ranges, passed, end_of_table, conditioning):
             case(s)
         s.checks.finish()
 
