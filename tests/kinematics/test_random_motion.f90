@@ -1,0 +1,114 @@
+!> Mechanisms at random, planar, spherical and spatial, some with redundant equations, driven far: few outputs
+!> and many give the same motion, and the same end where there is one.
+program test_random_motion
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_singular
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_mechanism_families, only: axis_type, planar_axes, spatial_axes, spherical_axes, home_mechanism, random_links
+  use mech9_home_motions, only: loop_equations, choose_dependent
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  integer :: i, ends, goes_on
+
+  ends = 0
+  goes_on = 0
+  do i = 1, 100
+    call try('planar', 4 + modulo(3*i, 9), 1 + modulo(i, 3), 1)
+    call try('spherical', 4 + modulo(3*i, 5), 1 + modulo(i, 2), 2)
+    call try('spatial', 7 + modulo(3*i, 9), 1 + modulo(i, 2), 3)
+  end do
+  print '(i0,a,i0,a)', goes_on, ' motions to their end, ', ends, ' up to a singular position'
+  call test%is_true(ends > 10 .and. goes_on > 10, 'both kinds are among them')
+  call test%finish()
+
+contains
+
+  subroutine try(name, n_links, loops, family)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n_links, loops, family
+    integer, allocatable :: links(:, :)
+    type(axis_type), allocatable :: axes(:)
+    real(wp), allocatable :: equations(:, :)
+    logical, allocatable :: dependent(:)
+    type(mechanism_type) :: mechanism
+    integer :: k
+
+    links = random_links(n_links, loops, random)
+    if (family == 1) axes = planar_axes(size(links, 2), 5, random)
+    if (family == 2) axes = spherical_axes(size(links, 2), random)
+    if (family == 3) axes = spatial_axes(size(links, 2), 5, random)
+    call loop_equations(n_links, links, axes, equations)
+    allocate (dependent(size(axes)))
+    call choose_dependent(equations, random, dependent)
+    if (all(dependent)) return
+    call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), mechanism)
+    call compare(name, mechanism)
+  end subroutine try
+
+  !> Swing all independent coordinates.
+  subroutine compare(name, mechanism)
+    character(len=*), intent(in) :: name
+    type(mechanism_type), intent(inout) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(tracker_type) :: few, many
+    type(error_type), allocatable :: err, few_err, many_err
+    type(harmonic_drive_type) :: swing
+    integer :: i
+
+    call make_plan(mechanism, mechanism%initial_position, plan, start, err)
+    call test%no_error(err, name//': plan')
+    if (allocated(err)) return
+    deallocate (mechanism%drives)
+    allocate (mechanism%drives(size(plan%independent)))
+    do i = 1, size(plan%independent)
+      swing%coordinate = plan%independent(i)
+      swing%amplitude = 3.0_wp*plan%unit_of(swing%coordinate)*random%symmetric()
+      swing%angular_frequency = 2.0_wp + random%symmetric()
+      swing%mean = start%q(swing%coordinate)
+      allocate (mechanism%drives(i)%drive, source=swing)
+    end do
+    call follow(mechanism, plan, start, 2, few, few_err)
+    call follow(mechanism, plan, start, 1500, many, many_err)
+    call test%is_true(allocated(few_err) .eqv. allocated(many_err), name//': both end, or none')
+    if (allocated(few_err) .neqv. allocated(many_err)) then
+      if (allocated(few_err)) print '(2a)', '  few: ', few_err%message
+      if (allocated(many_err)) print '(2a)', '  many: ', many_err%message
+      return
+    end if
+    if (allocated(few_err)) then
+      ends = ends + 1
+      call test%has_error(few_err, exit_singular, name//': a singular position')
+      call test%near(few%ahead%t, many%ahead%t, 1.0e-9_wp, name//': at the same time')
+    else
+      goes_on = goes_on + 1
+      ! round-off of positions over the least singular value
+      call test%near(maxval(abs(few%state%q - many%state%q)/plan%unit_of), 0.0_wp, &
+                     1.0e-13_wp/min(few%least_conditioning, many%least_conditioning), name//': to the same position')
+    end if
+  end subroutine compare
+
+  subroutine follow(mechanism, plan, start, outputs, tracker, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    integer, intent(in) :: outputs
+    type(tracker_type), intent(out) :: tracker
+    type(error_type), allocatable, intent(out) :: err
+    integer :: j
+
+    call start_tracking(mechanism, plan, start, 0.0_wp, tracker, err)
+    do j = 1, outputs
+      if (allocated(err)) return
+      call advance(mechanism, plan, tracker, 5.0_wp*j/outputs, err)
+    end do
+  end subroutine follow
+end program test_random_motion
