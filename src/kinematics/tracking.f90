@@ -342,11 +342,13 @@ contains
       where = where//'q'//to_text(k)//' = '// &
               to_text(q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular), 13)
     end do
-    text = words_of_block(plan, plan%blocks(tracker%ahead%block))
+    associate (block => plan%blocks(tracker%ahead%block))
+      text = words_of_block(plan, block)//trim(merge(' reach  ', ' reaches', block%last_closure > block%first_closure))
+    end associate
     if (tracker%ahead%kind == dead_point) then
-      text = text//' reaches a dead point at '//where//' and cannot follow farther'
+      text = text//' a dead point at '//where//' and cannot follow farther'
     else
-      text = text//' reaches a singular position at '//where//', where it is not certain how it goes on'
+      text = text//' a singular position at '//where//', where it is not certain how the motion goes on'
     end if
     call raise(err, exit_singular, 'the motion cannot go on beyond t = '//to_text(tracker%ahead%t, 13)//' s: '//text)
   end subroutine refuse
