@@ -15,7 +15,7 @@ module mech9_frames
   use mech9_plan_size, only: find_size, find_units
   implicit none
   private
-  public :: lay_out_frames
+  public :: lay_out_frames, find_loop
 
   !> As many further frames of a link are remembered: the latest.
   integer, parameter :: most_remembered = 3
@@ -244,20 +244,30 @@ contains
     type(layout_type), intent(in) :: layout
     integer, intent(in) :: closing, target
     type(closure_type), intent(out) :: closure
-    integer :: n
 
     closure%chain = layout%closures
     closure%closing = closing
     closure%target = target
     closure%in_target = compose(layout%link_in(target), inverse(layout%link_in(closing)))
+    call find_loop(plan, closure)
+  end subroutine make_closure
+
+  !> The whole loop of a closure as its path, and the base of the loop.
+  pure subroutine find_loop(plan, closure)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(inout) :: closure    !< its frames `closing` and `target` are set
+    integer :: n
+
+    n = 0
     call walk_loop(plan, closure, n)
+    if (allocated(closure%path%steps)) deallocate (closure%path%steps, closure%path%signs)
     allocate (closure%path%steps(n), closure%path%signs(n))
     call walk_loop(plan, closure, n, closure%path)
-  end subroutine make_closure
+  end subroutine find_loop
 
   !> Walk both ends of a loop back until they meet in its base, counting the steps, and on a second
   !> walk writing them down from the base outwards.
-  subroutine walk_loop(plan, closure, n, path)
+  pure subroutine walk_loop(plan, closure, n, path)
     type(plan_type), intent(in) :: plan
     type(closure_type), intent(inout) :: closure
     integer, intent(inout) :: n                     !< steps of the loop

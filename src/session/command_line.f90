@@ -16,6 +16,8 @@ module mech9_command_line
     logical :: structure = .false.
     logical :: plan = .false.
     logical :: range = .false.
+    logical :: branches = .false.
+    integer :: starts = 100                           !< guesses of --branches
     logical :: no_write = .false.
     logical :: quiet = .false.
     logical :: verbose = .false.
@@ -183,6 +185,10 @@ contains
       options%structure = .true.
     case ('plan')
       options%plan = .true.
+    case ('branches')
+      options%branches = .true.
+    case ('starts')
+      call take_starts(argument, options, err)
     case ('range')
       options%range = .true.
     case ('no-write')
@@ -206,6 +212,19 @@ contains
       call take_setting(argument, options, err)
     end select
   end subroutine take_option
+
+  !> A number of guesses.
+  pure subroutine take_starts(argument, options, err)
+    character(len=*), intent(in) :: argument
+    type(command_line_type), intent(inout) :: options
+    type(error_type), allocatable, intent(out) :: err
+    integer :: status
+
+    status = verify(trim(argument), '0123456789')
+    if (status == 0) read (argument, *, iostat=status) options%starts
+    if (status /= 0 .or. options%starts < 1) &
+      call raise(err, exit_usage, "--starts needs a whole number from 1 on, not '"//trim(argument)//"'")
+  end subroutine take_starts
 
   !> Keep a setting. Here only its form is judged; the grammar of the data file knows the names.
   pure subroutine take_setting(setting, options, err)

@@ -7,7 +7,7 @@ module mech9_dynamic_task
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_task, only: task_type, table_path_of, print_check, announce
+  use mech9_task, only: task_type, table_path_of, answers_only, print_check, announce
   use mech9_recording, only: recording_outcome_type, record
   use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
   use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients
@@ -45,9 +45,9 @@ contains
     if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
-    else if (options%check .or. options%plan) then
+    else if (answers_only(options)) then
       call print_check(options, mechanism, plan, start)
-      call print_coefficients(output_unit, plan, run%coefficients)
+      if (options%check .or. options%plan) call print_coefficients(output_unit, plan, run%coefficients)
     else
       call carry_out(options, mechanism, plan, run, diagnostics)
     end if

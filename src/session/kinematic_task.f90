@@ -7,7 +7,7 @@ module mech9_kinematic_task
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_task, only: task_type, table_path_of, print_check, announce
+  use mech9_task, only: task_type, table_path_of, answers_only, print_check, announce
   use mech9_range_text, only: print_ranges
   use mech9_recording, only: recording_outcome_type, record
   use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
@@ -49,7 +49,7 @@ contains
       call diagnostics%add_error(err)
       return
     end if
-    if (options%check .or. options%plan) then
+    if (answers_only(options)) then
       call print_check(options, mechanism, plan, start)
       return
     end if

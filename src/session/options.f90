@@ -27,6 +27,10 @@ module mech9_options
                 'print the structural vectors nrg, nws, rdw, nrw'), &
     option_type('plan', no_argument, '', .false., both, &
                 'print what will be computed, in which order, and what is skipped'), &
+    option_type('branches', no_argument, '', .false., both, &
+                'list the assemblies found for the start from many random guesses'), &
+    option_type('starts', needed_argument, 'N', .false., both, &
+                'how many guesses --branches tries; 100 unless given'), &
     option_type('range', no_argument, '', .false., 'mech9k', &
                 'print how far each independent coordinate can go from the start'), &
     option_type('table', needed_argument, 'PATH', .false., both, &

@@ -1,5 +1,6 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
-!> Uses command_line, mechanism, plan, state, plan_text, diagnostics.
+!> Uses command_line, mechanism, plan, state, mobility_report,
+!> assemblies_text, plan_text, diagnostics.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
@@ -8,10 +9,12 @@ module mech9_task
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_plan_text, only: print_structure, print_mobility, print_plan
+  use mech9_mobility_report, only: mobility_report_type, report_mobility
+  use mech9_assemblies_text, only: print_assemblies
+  use mech9_plan_text, only: print_structure, print_mobility, print_mobility_report, print_plan
   implicit none
   private
-  public :: task_type, table_path_of, print_check, announce
+  public :: task_type, table_path_of, answers_only, print_check, announce
 
   type, abstract :: task_type
     character(len=6) :: program_name = ''
@@ -45,17 +48,31 @@ contains
     if (options%no_write) path = ''
   end function table_path_of
 
-  !> Answer --check and --plan.
+  !> Is an answer asked for, and no run?
+  pure logical function answers_only(options)
+    type(command_line_type), intent(in) :: options
+
+    answers_only = options%check .or. options%plan .or. options%branches
+  end function answers_only
+
+  !> Answer --check, --plan and --branches.
   subroutine print_check(options, mechanism, plan, start)
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start      !< assembled
+    type(mobility_report_type) :: report
     character(len=16) :: name
     integer :: k
 
-    call print_mobility(output_unit, plan)
+    if (options%check) then
+      call report_mobility(mechanism, plan, start, report)
+      call print_mobility_report(output_unit, plan, report)
+    else if (options%plan) then
+      call print_mobility(output_unit, plan)
+    end if
     if (options%plan) call print_plan(output_unit, mechanism, plan)
+    if (options%branches) call print_assemblies(output_unit, mechanism, plan, start, options%starts)
     if (.not. options%check) return
     write (output_unit, '(a)') 'assembled at the start:'
     do k = 1, size(mechanism%pairs)

@@ -40,7 +40,7 @@ contains
     logical, allocatable :: dependent(:), changed(:)
     integer :: k, kind
 
-    links = random_links(n_links, loops, random)
+    allocate (links, source=random_links(n_links, loops, random))
     if (planar) axes = planar_axes(size(links, 2), 0, random)
     if (.not. planar) axes = spatial_axes(size(links, 2), 4, random)
     call loop_equations(n_links, links, axes, equations)

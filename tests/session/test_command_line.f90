@@ -84,7 +84,11 @@ contains
     do i = 1, size(options_table)
       name = options_table(i)%name
       word = '--'//name
-      if (options_table(i)%takes == needed_argument) word = trim(word)//'='//argument
+      if (name == 'starts') then   ! a number
+        word = trim(word)//'=7'
+      else if (options_table(i)%takes == needed_argument) then
+        word = trim(word)//'='//argument
+      end if
       call parse('a.nml|'//word, options, err)
       call tester%no_error(err, trim(word))
       select case (name)
@@ -94,6 +98,10 @@ contains
         taken = options%structure
       case ('plan')
         taken = options%plan
+      case ('branches')
+        taken = options%branches
+      case ('starts')
+        taken = options%starts == 7
       case ('range')
         taken = options%range
       case ('no-write')
