@@ -17,9 +17,9 @@ module mech9_assembly
   private
   public :: assemble_block, assembly_outcome_type
 
-  integer, parameter :: most_restarts = 24
+  integer, parameter :: most_restarts = 100
   !> Large blocks are restarted less often: unknowns times restarts stay below this.
-  integer, parameter :: most_restarted = 1500
+  integer, parameter :: most_restarted = 3000
   integer, parameter :: most_steps = 200
   !> Steps in which the errors must have become clearly smaller.
   integer, parameter :: patience = 25

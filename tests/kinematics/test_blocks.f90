@@ -47,12 +47,35 @@ program test_blocks
   call check('lazy tongs', [(3, k=1, 20)])
   call stewart_platform(mechanism)
   call check('Stewart platform', [30])
+  call long_rows()
   ! what a main program holds is never given back by itself, and a leak to the sanitizer
   deallocate (assembled)
   if (allocated(err)) deallocate (err)
   call test%finish()
 
 contains
+
+  !> Ten times as many four-bars take about ten times as long; quadratic work would take a hundred times.
+  subroutine long_rows()
+    integer, parameter :: cells(2) = [1000, 10000]
+    real(wp) :: before, after, seconds(2)
+    integer :: i, driven
+
+    do driven = 1, 3*cells(1) + 1, 3*cells(1)
+      do i = 1, 2
+        call home_mechanism(2*cells(i) + 2, crank_row(cells(i)), planar_axes(3*cells(i) + 1, 0, random), &
+                            [1 + (driven - 1)/cells(1)*cells(i)], mechanism)
+        call cpu_time(before)
+        call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+        call cpu_time(after)
+        call test%no_error(err, 'a long row')
+        seconds(i) = after - before
+        call test%is_true(size(plan%blocks) == cells(i) .and. all(plan%blocks%equations == 3), 'a long row in its four-bars')
+      end do
+      print '(2(a,f7.4),a)', 'plans of rows: ', seconds(1), ' s, ten times as long: ', seconds(2), ' s'
+      call test%is_true(seconds(2) < 40.0_wp*seconds(1) + 0.05_wp, 'plans of long rows take a time that grows linearly')
+    end do
+  end subroutine long_rows
 
   !> A planar mechanism driven at each of its coordinates. Unknowns of its only block; 0: blocks of three.
   subroutine all_drives(name, links, three, unknowns)

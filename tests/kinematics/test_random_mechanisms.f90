@@ -56,7 +56,49 @@ contains
     largest = max(largest, size(axes))
     call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), mechanism)
     call check(name, mechanism, equations, dependent)
+    if (size(axes) < 60) call check_units(name, n_links, links, axes, mechanism)
   end subroutine try
+
+  !> The same mechanism in other units of length, over seven orders of magnitude: the same blocks, and the
+  !> same position to the last digits from the same guess.
+  subroutine check_units(name, n_links, links, axes, mechanism)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n_links, links(:, :)
+    type(axis_type), intent(in) :: axes(:)
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), parameter :: units(2) = [1.0e-4_wp, 1.0e3_wp]
+    type(axis_type) :: scaled(size(axes))
+    type(mechanism_type) :: other
+    type(plan_type) :: plan, other_plan
+    type(state_type) :: state, other_state
+    type(error_type), allocatable :: err
+    real(wp) :: start(size(axes)), unit_of(size(axes))
+    integer :: i, k
+
+    do k = 1, size(axes)
+      start(k) = 0.05_wp*random%symmetric()
+    end do
+    where (.not. mechanism%structure%independent) start = 0.0_wp
+    start = 0.02_wp*start
+    call make_plan(mechanism, start, plan, state, err)
+    if (allocated(err)) return       ! out of reach: no position to compare
+    do i = 1, size(units)
+      scaled = axes
+      do k = 1, size(axes)
+        scaled(k)%point = units(i)*axes(k)%point
+      end do
+      unit_of = merge(units(i), 1.0_wp, axes%slides)
+      call home_mechanism(n_links, links, scaled, plan%independent, other)
+      call make_plan(other, start*unit_of, other_plan, other_state, err)
+      call test%no_error(err, name//' in other units')
+      if (allocated(err)) return
+      call test%is_true(size(plan%blocks) == size(other_plan%blocks), name//' in other units: as many blocks')
+      if (size(plan%blocks) == size(other_plan%blocks)) &
+        call test%is_true(all(plan%blocks%last_step == other_plan%blocks%last_step), name//' in other units: the same blocks')
+      ! round-off of the closures, times the condition of the equations
+      call test%near(maxval(abs(other_state%q/unit_of - state%q)), 0.0_wp, 1.0e-9_wp, name//' in other units: the same position')
+    end do
+  end subroutine check_units
 
   subroutine check(name, mechanism, equations, dependent)
     character(len=*), intent(in) :: name
