@@ -153,12 +153,14 @@ contains
     do j = 1, n
       call advance(mechanism, plan, tracker, real(j, wp)/n, err)
       if (allocated(err)) exit
-      ! between the positions beside a special one there is a polynomial of high degree: its second derivative
-      ! is exact to some 1e-9, the others better
+      ! between the positions beside a special one there is a polynomial of high degree through accelerations that
+      ! round-off over the square of their distance from it leaves uncertain by some 1e-8 of the squares of the
+      ! rates (1e-6 here; seen 1.2e-6 with another BLAS): they are the least exact, and are held to ten times that
       associate (state => tracker%state)
         call test%near(maxval(apart(state%q(2:), expected + factors*state%q(1))), 0.0_wp, 1.0e-11_wp, name//': positions')
         call test%near(maxval(abs(state%dq(2:) - factors*state%dq(1))), 0.0_wp, 1.0e-9_wp, name//': rates')
-        call test%near(maxval(abs(state%ddq(2:) - factors*state%ddq(1))), 0.0_wp, 1.0e-6_wp, name//': accelerations')
+        call test%near(maxval(abs(state%ddq(2:) - factors*state%ddq(1))), 0.0_wp, 1.0e-7_wp*state%dq(1)**2, &
+                       name//': accelerations')
       end associate
     end do
     call test%no_error(err, name//' goes on')
