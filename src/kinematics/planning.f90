@@ -28,6 +28,8 @@ module mech9_planning
 
   !> Pivots below this fraction of the largest count as zero when ranks are found.
   real(wp), parameter :: rank_tolerance = 1.0e-9_wp
+  !> Unknowns of one block for which there is memory and time: its equations are a full matrix.
+  integer, parameter :: most_unknowns = 3000
   !> Rates that the chains cannot follow, against rates of one, where the inputs contradict each other.
   real(wp), parameter :: contradiction = 1.0e-7_wp
 
@@ -69,13 +71,19 @@ contains
     logical :: closed
 
     call make_blocks(plan, undetermined)
-    if (size(undetermined) == 0) return
-    ! ranks found with a loop alone do not bind it in company: the dimensions of its motions do
-    plan%closures%offers = plan%closures%rank
-    call make_blocks(plan, undetermined)
-    if (size(undetermined) == 0) return
-    call judge_choice(plan, state, closed, err)
-    if (.not. allocated(err)) call refuse_undetermined(undetermined, err)
+    if (size(undetermined) > 0) then
+      ! ranks found with a loop alone do not bind it in company: the dimensions of its motions do
+      plan%closures%offers = plan%closures%rank
+      call make_blocks(plan, undetermined)
+    end if
+    if (size(undetermined) > 0) then
+      call judge_choice(plan, state, closed, err)
+      if (.not. allocated(err)) call refuse_undetermined(undetermined, err)
+    else if (maxval(unknowns_of(plan%blocks)) > most_unknowns) then
+      call raise(err, exit_structure, to_text(maxval(unknowns_of(plan%blocks)))//' coordinates could only be solved '// &
+                 'for together, and at most '//to_text(most_unknowns)//' can be; take independent coordinates (cq) '// &
+                 'nearer to link 1')
+    end if
   end subroutine propose_blocks
 
   !> Assemble the proposed blocks one after the other and join those that prove too small.

@@ -2,7 +2,7 @@
 !> every coordinate is zero, and have general dimensions: pivots and axes at random places.
 program test_blocks
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, exit_structure
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
@@ -45,6 +45,9 @@ program test_blocks
   ! because frames stand on frames
   call home_mechanism(42, lazy_tongs(20), planar_axes(61, 0, random), [1], mechanism)
   call check('lazy tongs', [(3, k=1, 20)])
+  call home_mechanism(2402, lazy_tongs(1200), planar_axes(3601, 0, random), [3601], mechanism)
+  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call test%has_error(err, exit_structure, 'too many coordinates that can only be solved for together')
   call stewart_platform(mechanism)
   call check('Stewart platform', [30])
   call long_rows()
