@@ -4,30 +4,26 @@ module mech9_command_line
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name, starts_with
   use mech9_options, only: option_type, options_table, option_names, find_option, &
-                           no_argument, optional_argument
+                           no_argument, optional_argument, whole_number, assignment
   implicit none
   private
   public :: command_line_type, get_command_words, parse_command_line, help_text
 
-  !> What a command line asks for. A text that was not given is empty.
+  !> An option as it was given.
+  type :: given_type
+    character(len=len(options_table%name)) :: name = ''
+    character(len=:), allocatable :: argument         !< empty where it has none
+  end type given_type
+
+  !> What a command line asks for: a data file, and options by the names of the table of options.
   type :: command_line_type
-    character(len=:), allocatable :: file             !< the data file
-    logical :: check = .false.
-    logical :: structure = .false.
-    logical :: plan = .false.
-    logical :: range = .false.
-    logical :: branches = .false.
-    integer :: starts = 100                           !< guesses of --branches
-    logical :: no_write = .false.
-    logical :: quiet = .false.
-    logical :: verbose = .false.
-    logical :: help = .false.
-    logical :: version = .false.
-    logical :: help_data = .false.
-    character(len=:), allocatable :: help_group       !< of --help-data; empty: all groups
-    character(len=:), allocatable :: table            !< path
-    character(len=:), allocatable :: report           !< path
-    type(string_type), allocatable :: settings(:)     !< each GROUP.NAME=VALUE, in their order
+    character(len=:), allocatable :: file             !< the data file; empty where none is given
+    type(given_type), allocatable, private :: given(:)
+  contains
+    procedure :: has
+    procedure :: argument
+    procedure :: arguments
+    procedure :: number
   end type command_line_type
 
 contains
@@ -51,15 +47,11 @@ contains
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d: whose options count
     type(command_line_type), intent(out) :: options
     type(error_type), allocatable, intent(out) :: err
-    integer :: times(size(options_table)), i
+    integer :: i
     logical :: only_files
 
     options%file = ''
-    options%help_group = ''
-    options%table = ''
-    options%report = ''
-    allocate (options%settings(0))
-    times = 0
+    allocate (options%given(0))
     only_files = .false.
     i = 1
     do while (i <= size(words))
@@ -67,7 +59,7 @@ contains
         only_files = .true.
         i = i + 1
       else if (is_option(words(i)%text) .and. .not. only_files) then
-        call read_option(words, i, program_name, options, times, err)
+        call read_option(words, i, program_name, options, err)
       else
         call take_file(words(i)%text, options, err)
         i = i + 1
@@ -100,12 +92,11 @@ contains
   end subroutine take_file
 
   !> Read the option that begins at words(i), and step over it.
-  pure subroutine read_option(words, i, program_name, options, times, err)
+  pure subroutine read_option(words, i, program_name, options, err)
     type(string_type), intent(in) :: words(:)
     integer, intent(inout) :: i
     character(len=*), intent(in) :: program_name
     type(command_line_type), intent(inout) :: options
-    integer, intent(inout) :: times(:)     !< how often each option was given
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: name, argument
     integer :: equals, place
@@ -133,9 +124,8 @@ contains
         i = i + 1
       end if
     end if
-    times(place) = times(place) + 1
-    call judge_argument(options_table(place), argument, has_argument, times(place), err)
-    if (.not. allocated(err)) call take_option(options_table(place)%name, argument, options, err)
+    call judge_argument(options_table(place), argument, has_argument, options, err)
+    if (.not. allocated(err)) call append(options%given, options_table(place)%name, argument)
   end subroutine read_option
 
   pure subroutine raise_unknown(name, program_name, err)
@@ -151,11 +141,11 @@ contains
   end subroutine raise_unknown
 
   !> Whether an option may be given so: its argument and how often.
-  pure subroutine judge_argument(option, argument, has_argument, times, err)
+  pure subroutine judge_argument(option, argument, has_argument, options, err)
     type(option_type), intent(in) :: option
     character(len=*), intent(in) :: argument
     logical, intent(in) :: has_argument
-    integer, intent(in) :: times
+    type(command_line_type), intent(in) :: options   !< what was given before
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: name
 
@@ -166,97 +156,111 @@ contains
       return
     else if (argument == '') then
       call raise(err, exit_usage, name//' needs an argument: '//name//' '//trim(option%argument))
-    else if (times > 1 .and. .not. option%repeats) then
+    else if (options%has(option%name) .and. .not. option%repeats) then
       call raise(err, exit_usage, name//' is given more than once')
+    else if (option%form == whole_number .and. .not. is_whole_number(argument)) then
+      call raise(err, exit_usage, name//" needs a whole number from 1 on, not '"//argument//"'")
+    else if (option%form == assignment .and. .not. is_assignment(argument)) then
+      call raise(err, exit_usage, name//' needs '//trim(option%argument)//', as in '//name &
+                 //" time.end=2; not '"//argument//"'")
     end if
   end subroutine judge_argument
 
-  !> Keep what an option says.
-  pure subroutine take_option(name, argument, options, err)
-    character(len=*), intent(in) :: name
-    character(len=*), intent(in) :: argument
-    type(command_line_type), intent(inout) :: options
-    type(error_type), allocatable, intent(out) :: err
+  !> Is it a whole number from 1 on that an integer can hold?
+  pure logical function is_whole_number(text)
+    character(len=*), intent(in) :: text
+    integer :: value, status
 
-    select case (name)
-    case ('check')
-      options%check = .true.
-    case ('structure')
-      options%structure = .true.
-    case ('plan')
-      options%plan = .true.
-    case ('branches')
-      options%branches = .true.
-    case ('starts')
-      call take_starts(argument, options, err)
-    case ('range')
-      options%range = .true.
-    case ('no-write')
-      options%no_write = .true.
-    case ('quiet')
-      options%quiet = .true.
-    case ('verbose')
-      options%verbose = .true.
-    case ('help')
-      options%help = .true.
-    case ('version')
-      options%version = .true.
-    case ('help-data')
-      options%help_data = .true.
-      options%help_group = argument
-    case ('table')
-      options%table = argument
-    case ('report')
-      options%report = argument
-    case ('set')
-      call take_setting(argument, options, err)
-    end select
-  end subroutine take_option
+    is_whole_number = .false.
+    if (verify(text, '0123456789') > 0) return
+    read (text, *, iostat=status) value
+    if (status == 0) is_whole_number = value > 0
+  end function is_whole_number
 
-  !> A number of guesses.
-  pure subroutine take_starts(argument, options, err)
-    character(len=*), intent(in) :: argument
-    type(command_line_type), intent(inout) :: options
-    type(error_type), allocatable, intent(out) :: err
-    integer :: status
-
-    status = verify(trim(argument), '0123456789')
-    if (status == 0) read (argument, *, iostat=status) options%starts
-    if (status /= 0 .or. options%starts < 1) &
-      call raise(err, exit_usage, "--starts needs a whole number from 1 on, not '"//trim(argument)//"'")
-  end subroutine take_starts
-
-  !> Keep a setting. Here only its form is judged; the grammar of the data file knows the names.
-  pure subroutine take_setting(setting, options, err)
-    character(len=*), intent(in) :: setting
-    type(command_line_type), intent(inout) :: options
-    type(error_type), allocatable, intent(out) :: err
+  !> Is it of the form GROUP.NAME=VALUE? The grammar of the data file knows the names.
+  pure logical function is_assignment(text)
+    character(len=*), intent(in) :: text
     integer :: equals, dot
 
-    equals = index(setting, '=')
-    dot = index(setting(:max(equals - 1, 0)), '.')
-    if (dot < 2 .or. dot >= equals - 1) then
-      call raise(err, exit_usage, "--set needs GROUP.NAME=VALUE, as in --set time.end=2; not '" &
-                 //setting//"'")
-      return
-    end if
-    call append(options%settings, setting)
-  end subroutine take_setting
+    equals = index(text, '=')
+    dot = index(text(:max(equals - 1, 0)), '.')
+    is_assignment = dot > 1 .and. dot < equals - 1
+  end function is_assignment
 
-  !> One text more. An array constructor would be shorter, but gfortran 12 leaks what is in it.
-  pure subroutine append(list, text)
-    type(string_type), allocatable, intent(inout) :: list(:)
-    character(len=*), intent(in) :: text
-    type(string_type), allocatable :: longer(:)
+  !> One option more. An array constructor would be shorter, but gfortran 12 leaks what is in it.
+  pure subroutine append(given, name, argument)
+    type(given_type), allocatable, intent(inout) :: given(:)
+    character(len=*), intent(in) :: name, argument
+    type(given_type), allocatable :: longer(:)
     integer :: i
 
-    allocate (longer(size(list) + 1))
-    do i = 1, size(list)
-      call move_alloc(list(i)%text, longer(i)%text)
+    allocate (longer(size(given) + 1))
+    do i = 1, size(given)
+      longer(i)%name = given(i)%name
+      call move_alloc(given(i)%argument, longer(i)%argument)
     end do
-    longer(size(longer))%text = text
-    call move_alloc(longer, list)
+    longer(size(longer))%name = name
+    longer(size(longer))%argument = argument
+    call move_alloc(longer, given)
   end subroutine append
+
+  !> Whether an option is given.
+  pure logical function has(self, name)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name    !< without the dashes
+
+    has = place_of(self, name) > 0
+  end function has
+
+  !> The argument of an option that is given at most once; empty where it, or the option, is not given.
+  pure function argument(self, name) result(text)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name    !< without the dashes
+    character(len=:), allocatable :: text
+    integer :: place
+
+    place = place_of(self, name)
+    text = ''
+    if (place > 0) text = self%given(place)%argument
+  end function argument
+
+  !> The arguments of an option that may be repeated, in their order.
+  pure subroutine arguments(self, name, texts)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name    !< without the dashes
+    type(string_type), allocatable, intent(out) :: texts(:)
+    integer :: i, n
+
+    allocate (texts(count(self%given%name == name)))
+    n = 0
+    do i = 1, size(self%given)
+      if (self%given(i)%name /= name) cycle
+      n = n + 1
+      texts(n)%text = self%given(i)%argument
+    end do
+  end subroutine arguments
+
+  !> The argument of an option that takes a whole number; `default` where it is not given.
+  pure integer function number(self, name, default)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name    !< without the dashes
+    integer, intent(in) :: default
+    integer :: place
+
+    number = default
+    place = place_of(self, name)
+    if (place > 0) read (self%given(place)%argument, *) number   ! judged when it was taken
+  end function number
+
+  !> Where an option stands among the given ones; 0 where it is not given.
+  pure integer function place_of(self, name)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    do place_of = size(self%given), 1, -1
+      if (self%given(place_of)%name == name) return
+    end do
+  end function place_of
 
   !> What the words mean together.
   pure subroutine judge(program_name, options, err)
@@ -264,10 +268,10 @@ contains
     type(command_line_type), intent(in) :: options
     type(error_type), allocatable, intent(out) :: err
 
-    if (options%help .or. options%version .or. options%help_data) return
-    if (options%quiet .and. options%verbose) then
+    if (options%has('help') .or. options%has('version') .or. options%has('help-data')) return
+    if (options%has('quiet') .and. options%has('verbose')) then
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
-    else if (options%no_write .and. options%table /= '') then
+    else if (options%has('no-write') .and. options%has('table')) then
       call raise(err, exit_usage, '--no-write and --table contradict each other')
     else if (options%file == '') then
       call raise(err, exit_usage, 'no data file is given; '//program_name//' FILE runs one, ' &

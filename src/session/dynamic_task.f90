@@ -47,7 +47,7 @@ contains
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
       call print_check(options, mechanism, plan, start)
-      if (options%check .or. options%plan) call print_coefficients(output_unit, plan, run%coefficients)
+      if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
     else
       call carry_out(options, mechanism, plan, run, diagnostics)
     end if
@@ -67,11 +67,12 @@ contains
 
     table_path = table_path_of(options, mechanism)
     call announce(options, mechanism, plan)
-    call record(run, mechanism, table_path, options%quiet, outcome, err)
-    if (.not. options%quiet) call print_dynamic_report(error_unit, table_path, outcome, run)
+    call record(run, mechanism, table_path, options%has('quiet'), outcome, err)
+    if (.not. options%has('quiet')) call print_dynamic_report(error_unit, table_path, outcome, run)
     if (allocated(err)) call diagnostics%add_error(err)
-    if (options%report == '') return
-    call save_dynamic_report(options%report, mechanism, plan, table_path, diagnostics%code(), outcome, run, err)
+    if (.not. options%has('report')) return
+    call save_dynamic_report(options%argument('report'), mechanism, plan, table_path, diagnostics%code(), &
+                             outcome, run, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out
 end module mech9_dynamic_task

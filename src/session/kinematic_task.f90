@@ -53,18 +53,20 @@ contains
       call print_check(options, mechanism, plan, start)
       return
     end if
-    if (options%range) then
+    if (options%has('range')) then
       call print_ranges(output_unit, mechanism, plan, start)
       return
     end if
     table_path = table_path_of(options, mechanism)
     call announce(options, mechanism, plan)
     call new_kinematic_run(mechanism, plan, start, run)
-    call record(run, mechanism, table_path, options%quiet, outcome, err)
-    if (.not. options%quiet) call print_kinematic_report(error_unit, mechanism, plan, table_path, outcome, run%tracker)
+    call record(run, mechanism, table_path, options%has('quiet'), outcome, err)
+    if (.not. options%has('quiet')) &
+      call print_kinematic_report(error_unit, mechanism, plan, table_path, outcome, run%tracker)
     if (allocated(err)) call diagnostics%add_error(err)
-    if (options%report == '') return
-    call save_kinematic_report(options%report, mechanism, plan, table_path, diagnostics%code(), outcome, run%tracker, err)
+    if (.not. options%has('report')) return
+    call save_kinematic_report(options%argument('report'), mechanism, plan, table_path, diagnostics%code(), &
+                               outcome, run%tracker, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine work
 end module mech9_kinematic_task

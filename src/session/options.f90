@@ -4,15 +4,18 @@ module mech9_options
   implicit none
   private
   public :: option_type, options_table, option_names, find_option
-  public :: no_argument, optional_argument, needed_argument
+  public :: no_argument, optional_argument, needed_argument, any_text, whole_number, assignment
 
   integer, parameter :: no_argument = 0, optional_argument = 1, needed_argument = 2
+  !> What an argument looks like: any text, a whole number from 1 on, GROUP.NAME=VALUE.
+  integer, parameter :: any_text = 0, whole_number = 1, assignment = 2
 
   !> One option.
   type :: option_type
     character(len=12) :: name             !< without the dashes
     integer :: takes = no_argument        !< whether it takes an argument
     character(len=18) :: argument = ''    !< the argument's name in the help
+    integer :: form = any_text            !< what the argument looks like
     logical :: repeats = .false.          !< whether it may be given more than once
     character(len=13) :: programs = ''    !< the programs that have it
     character(len=72) :: help = ''        !< one line
@@ -21,35 +24,35 @@ module mech9_options
   character(len=*), parameter :: both = 'mech9k mech9d'
 
   type(option_type), parameter :: options_table(*) = [ &
-    option_type('check', no_argument, '', .false., both, &
+    option_type('check', no_argument, '', any_text, .false., both, &
                 'read, judge and assemble the mechanism, do not run it'), &
-    option_type('structure', no_argument, '', .false., both, &
+    option_type('structure', no_argument, '', any_text, .false., both, &
                 'print the structural vectors nrg, nws, rdw, nrw'), &
-    option_type('plan', no_argument, '', .false., both, &
+    option_type('plan', no_argument, '', any_text, .false., both, &
                 'print what will be computed, in which order, and what is skipped'), &
-    option_type('branches', no_argument, '', .false., both, &
+    option_type('branches', no_argument, '', any_text, .false., both, &
                 'list the assemblies found for the start from many random guesses'), &
-    option_type('starts', needed_argument, 'N', .false., both, &
+    option_type('starts', needed_argument, 'N', whole_number, .false., both, &
                 'how many guesses --branches tries; 100 unless given'), &
-    option_type('range', no_argument, '', .false., 'mech9k', &
+    option_type('range', no_argument, '', any_text, .false., 'mech9k', &
                 'print how far each independent coordinate can go from the start'), &
-    option_type('table', needed_argument, 'PATH', .false., both, &
+    option_type('table', needed_argument, 'PATH', any_text, .false., both, &
                 'write the table of results there; - is standard output'), &
-    option_type('no-write', no_argument, '', .false., both, &
+    option_type('no-write', no_argument, '', any_text, .false., both, &
                 'compute all that is asked for, write no results'), &
-    option_type('report', needed_argument, 'FILE', .false., both, &
+    option_type('report', needed_argument, 'FILE', any_text, .false., both, &
                 'write the report of the run as JSON'), &
-    option_type('set', needed_argument, 'GROUP.NAME=VALUE', .true., both, &
+    option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
-    option_type('quiet', no_argument, '', .false., both, &
+    option_type('quiet', no_argument, '', any_text, .false., both, &
                 'say nothing but errors'), &
-    option_type('verbose', no_argument, '', .false., both, &
+    option_type('verbose', no_argument, '', any_text, .false., both, &
                 'say more'), &
-    option_type('help', no_argument, '', .false., both, &
+    option_type('help', no_argument, '', any_text, .false., both, &
                 'print this text'), &
-    option_type('help-data', optional_argument, 'GROUP', .false., both, &
+    option_type('help-data', optional_argument, 'GROUP', any_text, .false., both, &
                 'explain the data file, or one group of it'), &
-    option_type('version', no_argument, '', .false., both, &
+    option_type('version', no_argument, '', any_text, .false., both, &
                 'print the version')]
 
 contains

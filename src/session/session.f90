@@ -58,12 +58,12 @@ contains
       return
     end if
     code = exit_done
-    if (options%help) then
+    if (options%has('help')) then
       write (output_unit, '(a)') help_text(task%program_name)
-    else if (options%version) then
+    else if (options%has('version')) then
       write (output_unit, '(a)') version_text(task%program_name)
-    else if (options%help_data) then
-      call show_data_help(task, options%help_group, code)
+    else if (options%has('help-data')) then
+      call show_data_help(task, options%argument('help-data'), code)
     else
       call catch_interrupts()
       call work_on_file(task, options, code)
@@ -93,13 +93,15 @@ contains
     type(structure_type) :: structure
     type(structural_vectors_type) :: vectors
     type(mechanism_type) :: mechanism
+    type(string_type), allocatable :: settings(:)
     integer :: i
 
     call read_document(options%file, document, diagnostics)
-    do i = 1, size(options%settings)
-      call apply_setting(document, options%settings(i)%text, diagnostics)
+    call options%arguments('set', settings)
+    do i = 1, size(settings)
+      call apply_setting(document, settings(i)%text, diagnostics)
     end do
-    if (options%structure) then
+    if (options%has('structure')) then
       call read_structure_only(document, structure, vectors, diagnostics)
       if (.not. diagnostics%failed()) call print_structure(output_unit, vectors)
     else

@@ -44,15 +44,15 @@ contains
 
     path = '-'
     if (mechanism%output%table /= '') path = mechanism%output%table
-    if (options%table /= '') path = options%table
-    if (options%no_write) path = ''
+    if (options%has('table')) path = options%argument('table')
+    if (options%has('no-write')) path = ''
   end function table_path_of
 
   !> Is an answer asked for, and no run?
   pure logical function answers_only(options)
     type(command_line_type), intent(in) :: options
 
-    answers_only = options%check .or. options%plan .or. options%branches
+    answers_only = options%has('check') .or. options%has('plan') .or. options%has('branches')
   end function answers_only
 
   !> Answer --check, --plan and --branches.
@@ -65,15 +65,15 @@ contains
     character(len=16) :: name
     integer :: k
 
-    if (options%check) then
+    if (options%has('check')) then
       call report_mobility(mechanism, plan, start, report)
       call print_mobility_report(output_unit, plan, report)
-    else if (options%plan) then
+    else if (options%has('plan')) then
       call print_mobility(output_unit, plan)
     end if
-    if (options%plan) call print_plan(output_unit, mechanism, plan)
-    if (options%branches) call print_assemblies(output_unit, mechanism, plan, start, options%starts)
-    if (.not. options%check) return
+    if (options%has('plan')) call print_plan(output_unit, mechanism, plan)
+    if (options%has('branches')) call print_assemblies(output_unit, mechanism, plan, start, options%number('starts', 100))
+    if (.not. options%has('check')) return
     write (output_unit, '(a)') 'assembled at the start:'
     do k = 1, size(mechanism%pairs)
       write (name, '(a,i0)') 'q', k
@@ -88,8 +88,8 @@ contains
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
 
-    if (.not. options%quiet .and. mechanism%title /= '') write (error_unit, '(a)') mechanism%title
-    if (.not. options%verbose) return
+    if (.not. options%has('quiet') .and. mechanism%title /= '') write (error_unit, '(a)') mechanism%title
+    if (.not. options%has('verbose')) return
     call print_structure(error_unit, mechanism%vectors)
     call print_mobility(error_unit, plan)
     call print_plan(error_unit, mechanism, plan)

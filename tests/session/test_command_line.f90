@@ -2,7 +2,7 @@
 program test_command_line
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
-  use mech9_options, only: options_table, option_names, find_option, needed_argument
+  use mech9_options, only: options_table, option_names, find_option, needed_argument, whole_number
   use mech9_command_line, only: command_line_type, parse_command_line, help_text
   use mech9_testing, only: tester_type
   implicit none
@@ -40,34 +40,39 @@ contains
   subroutine test_good_lines(tester)
     type(tester_type), intent(inout) :: tester
     type(command_line_type) :: options
+    type(string_type), allocatable :: settings(:)
     type(error_type), allocatable :: err
 
     call parse('a.nml', options, err)
     call tester%no_error(err, 'a file alone')
-    call tester%is_true(options%file == 'a.nml' .and. .not. options%check .and. options%table == '' &
-                        .and. size(options%settings) == 0, 'nothing else is asked for')
+    call tester%is_true(options%file == 'a.nml' .and. .not. options%has('check') .and. options%argument('table') == '' &
+                        .and. .not. options%has('set'), 'nothing else is asked for')
     call parse('--table=x y.dat|--check|a b.nml|--report|r=1.json', options, err)
     call tester%no_error(err, 'options before and after the file, blanks in names')
-    call tester%is_true(options%table == 'x y.dat' .and. options%report == 'r=1.json' .and. options%check &
-                        .and. options%file == 'a b.nml', 'both forms of an argument')
+    call tester%is_true(options%argument('table') == 'x y.dat' .and. options%argument('report') == 'r=1.json' &
+                        .and. options%has('check') .and. options%file == 'a b.nml', 'both forms of an argument')
     call parse('a.nml|--table|-', options, err)
-    call tester%is_true(options%table == '-', 'a dash is standard output')
+    call tester%is_true(options%argument('table') == '-', 'a dash is standard output')
     call parse('--quiet|--|--check', options, err)
-    call tester%is_true(options%file == '--check' .and. options%quiet .and. .not. options%check, &
+    call tester%is_true(options%file == '--check' .and. options%has('quiet') .and. .not. options%has('check'), &
                         'after two dashes everything is a file')
     call parse('a.nml|--set|time.end=2|--set=drive.coefficients=1,2|--set|mechanism.title=a=b', options, err)
     call tester%no_error(err, 'settings')
-    call tester%is_true(size(options%settings) == 3, 'settings gather')
-    call tester%is_true(options%settings(1)%text == 'time.end=2' &
-                        .and. options%settings(2)%text == 'drive.coefficients=1,2' &
-                        .and. options%settings(3)%text == 'mechanism.title=a=b', 'settings, word by word')
+    call options%arguments('set', settings)
+    call tester%is_true(size(settings) == 3, 'settings gather')
+    call tester%is_true(settings(1)%text == 'time.end=2' .and. settings(2)%text == 'drive.coefficients=1,2' &
+                        .and. settings(3)%text == 'mechanism.title=a=b', 'settings, word by word')
+    call parse('a.nml|--starts|12', options, err)
+    call tester%is_true(options%number('starts', 5) == 12, 'a whole number')
+    call parse('a.nml', options, err)
+    call tester%is_true(options%number('starts', 5) == 5, 'a whole number that is not given')
     call parse('--help-data', options, err)
-    call tester%is_true(options%help_data .and. options%help_group == '' .and. .not. allocated(err), &
+    call tester%is_true(options%has('help-data') .and. options%argument('help-data') == '' .and. .not. allocated(err), &
                         'an optional argument left out, no file needed')
     call parse('--help-data|pair', options, err)
-    call tester%is_true(options%help_data .and. options%help_group == 'pair', 'an optional argument')
+    call tester%is_true(options%has('help-data') .and. options%argument('help-data') == 'pair', 'an optional argument')
     call parse('--help-data|--quiet', options, err)
-    call tester%is_true(options%help_group == '' .and. options%quiet, 'an option is no optional argument')
+    call tester%is_true(options%argument('help-data') == '' .and. options%has('quiet'), 'an option is no optional argument')
   end subroutine test_good_lines
 
   !> Each row of the table is understood and changes what is asked for.
@@ -78,54 +83,23 @@ contains
     character(len=*), parameter :: argument = 'time.end=3'
     character(len=12) :: name
     character(len=40) :: word
+    type(string_type), allocatable :: given(:)
     integer :: i
-    logical :: taken
 
     do i = 1, size(options_table)
       name = options_table(i)%name
       word = '--'//name
-      if (name == 'starts') then   ! a number
+      if (options_table(i)%form == whole_number) then
         word = trim(word)//'=7'
       else if (options_table(i)%takes == needed_argument) then
         word = trim(word)//'='//argument
       end if
-      call parse('a.nml|'//word, options, err)
+      call parse('a.nml|'//trim(word), options, err)
       call tester%no_error(err, trim(word))
-      select case (name)
-      case ('check')
-        taken = options%check
-      case ('structure')
-        taken = options%structure
-      case ('plan')
-        taken = options%plan
-      case ('branches')
-        taken = options%branches
-      case ('starts')
-        taken = options%starts == 7
-      case ('range')
-        taken = options%range
-      case ('no-write')
-        taken = options%no_write
-      case ('quiet')
-        taken = options%quiet
-      case ('verbose')
-        taken = options%verbose
-      case ('help')
-        taken = options%help
-      case ('help-data')
-        taken = options%help_data
-      case ('version')
-        taken = options%version
-      case ('table')
-        taken = options%table == argument
-      case ('report')
-        taken = options%report == argument
-      case ('set')
-        taken = size(options%settings) == 1
-      case default
-        taken = .false.
-      end select
-      call tester%is_true(taken, trim(word)//' is taken')
+      call options%arguments(name, given)
+      call tester%is_true(options%has(name) .and. size(given) == 1, trim(word)//' is taken')
+      if (options_table(i)%takes == needed_argument) &
+        call tester%is_true(options%argument(name) == word(index(word, '=') + 1:), trim(word)//' keeps its argument')
       call tester%is_true(index(help_text('mech9k'), '--'//trim(name)//' ') > 0, trim(word)//' is in the help')
     end do
     call tester%is_true(size(option_names('mech9k')) == size(options_table) &
@@ -158,6 +132,9 @@ contains
     call refuse(tester, 'a.nml|--set|time.=2', "not 'time.=2'")
     call refuse(tester, 'a.nml|--set|time.end', "not 'time.end'")
     call refuse(tester, 'a.nml|--set|x=1.5', "not 'x=1.5'")
+    call refuse(tester, 'a.nml|--starts|many', "--starts needs a whole number from 1 on, not 'many'")
+    call refuse(tester, 'a.nml|--starts|0', "not '0'")
+    call refuse(tester, 'a.nml|--starts|99999999999', "not '99999999999'")
     call refuse(tester, 'a.nml|--quiet|--verbose', 'contradict')
     call refuse(tester, 'a.nml|--no-write|--table=x', 'contradict')
   end subroutine test_bad_lines
