@@ -1,19 +1,19 @@
-!> A file or standard output that takes whole lines and reports every failure. Uses mech9_error, mech9_text.
+!> A file or standard output that takes whole lines and reports every failure.
+!> Uses mech9_error, mech9_system_error.
 !>
 !> It calls the system's own `creat`, `write` and `close`: gfortran's runtime library loses the failure of
 !> a write that it held back (up to 8 KiB on a full disk vanish with a status of zero), and ends
 !> lines on standard output by its own rules.
 module mech9_text_file
-  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t, c_char, c_ptr, c_null_char, &
-                                         c_f_pointer, c_associated
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t, c_char, c_null_char
   use mech9_error, only: error_type, raise, exit_file
+  use mech9_system_error, only: error_number, reason, interrupted_call
   implicit none
   private
   public :: text_file_type
 
   integer(c_int), parameter :: standard_output = 1
   integer(c_int), parameter :: permissions = int(o'666', c_int)   !< less what the user masks
-  integer(c_int), parameter :: interrupted_call = 4               !< EINTR, the same on all Unixes
 
   !> One file open for writing.
   type :: text_file_type
@@ -45,21 +45,6 @@ module mech9_text_file
       import :: c_int
       integer(c_int), value :: descriptor
     end function c_close
-
-    ! where the C library of Linux keeps errno for this thread
-    type(c_ptr) function c_errno_location() bind(c, name='__errno_location')
-      import :: c_ptr
-    end function c_errno_location
-
-    type(c_ptr) function c_strerror(number) bind(c, name='strerror')
-      import :: c_int, c_ptr
-      integer(c_int), value :: number
-    end function c_strerror
-
-    integer(c_size_t) function c_strlen(text) bind(c, name='strlen')
-      import :: c_size_t, c_ptr
-      type(c_ptr), value :: text
-    end function c_strlen
   end interface
 
 contains
@@ -82,7 +67,7 @@ contains
     end if
     self%descriptor = c_creat(path//c_null_char, permissions)
     if (self%descriptor < 0) then
-      call raise(err, exit_file, 'cannot open '//self%path//' for writing: '//reason(errno()))
+      call raise(err, exit_file, 'cannot open '//self%path//' for writing: '//reason(error_number()))
     end if
   end subroutine open_file
 
@@ -105,8 +90,8 @@ contains
       written = c_write(self%descriptor, text(done + 1:), int(len(text) - done, c_size_t))
       if (written >= 0) then
         done = done + int(written)
-      else if (errno() /= interrupted_call) then
-        call raise(err, exit_file, 'cannot write to '//self%path//': '//reason(errno()))
+      else if (error_number() /= interrupted_call) then
+        call raise(err, exit_file, 'cannot write to '//self%path//': '//reason(error_number()))
         return
       end if
     end do
@@ -122,33 +107,6 @@ contains
     self%descriptor = -1
     if (descriptor < 0 .or. descriptor == standard_output) return
     if (c_close(descriptor) /= 0) &
-      call raise(err, exit_file, 'cannot finish '//self%path//': '//reason(errno()))
+      call raise(err, exit_file, 'cannot finish '//self%path//': '//reason(error_number()))
   end subroutine close_file
-
-  integer(c_int) function errno()
-    integer(c_int), pointer :: number
-
-    call c_f_pointer(c_errno_location(), number)
-    errno = number
-  end function errno
-
-  !> The system's words for an error number.
-  function reason(number) result(text)
-    integer(c_int), intent(in) :: number
-    character(len=:), allocatable :: text
-    character(kind=c_char), pointer :: letters(:)
-    type(c_ptr) :: words
-    integer :: i
-
-    words = c_strerror(number)
-    if (.not. c_associated(words)) then
-      text = 'unknown reason'
-      return
-    end if
-    call c_f_pointer(words, letters, [c_strlen(words)])
-    allocate (character(len=size(letters)) :: text)
-    do i = 1, size(letters)
-      text(i:i) = letters(i)
-    end do
-  end function reason
 end module mech9_text_file

@@ -1,0 +1,57 @@
+!> What the C library says of a call that failed. Uses ISO C binding only.
+module mech9_system_error
+  use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_char, c_ptr, c_f_pointer, c_associated
+  implicit none
+  private
+  public :: error_number, reason, interrupted_call
+
+  !> The call was interrupted by a signal (EINTR, the same on all Unixes): to be made again.
+  integer(c_int), parameter :: interrupted_call = 4
+
+  interface
+    ! where the C library of Linux keeps errno for this thread
+    type(c_ptr) function c_errno_location() bind(c, name='__errno_location')
+      import :: c_ptr
+    end function c_errno_location
+
+    type(c_ptr) function c_strerror(number) bind(c, name='strerror')
+      import :: c_int, c_ptr
+      integer(c_int), value :: number
+    end function c_strerror
+
+    integer(c_size_t) function c_strlen(text) bind(c, name='strlen')
+      import :: c_size_t, c_ptr
+      type(c_ptr), value :: text
+    end function c_strlen
+  end interface
+
+contains
+
+  !> The number of the error, errno; of use right after the call that failed.
+  integer(c_int) function error_number()
+    integer(c_int), pointer :: number
+
+    call c_f_pointer(c_errno_location(), number)
+    error_number = number
+  end function error_number
+
+  !> The system's words for an error number.
+  function reason(number) result(text)
+    integer(c_int), intent(in) :: number
+    character(len=:), allocatable :: text
+    character(kind=c_char), pointer :: letters(:)
+    type(c_ptr) :: words
+    integer :: i
+
+    words = c_strerror(number)
+    if (.not. c_associated(words)) then
+      text = 'unknown reason'
+      return
+    end if
+    call c_f_pointer(words, letters, [c_strlen(words)])
+    allocate (character(len=size(letters)) :: text)
+    do i = 1, size(letters)
+      text(i:i) = letters(i)
+    end do
+  end function reason
+end module mech9_system_error

@@ -1,0 +1,193 @@
+!> Another program run to its end: gnuplot, dot. Uses error, text, system_error.
+!>
+!> It is started with a list of words, without a shell: no word means anything but itself. What it reads
+!> comes from memory, what it says on standard error goes there, so that neither can block the other.
+module mech9_child_process
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t, c_char, c_ptr, c_null_ptr, c_null_char, c_loc
+  use mech9_error, only: error_type, raise, exit_file
+  use mech9_text, only: string_type
+  use mech9_system_error, only: error_number, reason, interrupted_call
+  implicit none
+  private
+  public :: child_outcome_type, run_child
+
+  !> How a program ended.
+  type :: child_outcome_type
+    logical :: found = .false.              !< there is a program of that name
+    integer :: code = 0                     !< its exit code; 128 + the signal's number where one ended it
+    character(len=:), allocatable :: said   !< on standard error, the beginning of it
+  end type child_outcome_type
+
+  integer(c_int), parameter :: standard_input = 0, standard_error = 2
+  !> What the child answers where the program cannot be started, as shells do.
+  integer(c_int), parameter :: not_found = 127
+  !> Bytes of what it says that are kept.
+  integer, parameter :: most_said = 4096
+
+  interface
+    ! the process calls of POSIX: pid_t is a C int on Linux
+    integer(c_int) function c_fork() bind(c, name='fork')
+      import :: c_int
+    end function c_fork
+
+    integer(c_int) function c_execvp(file, words) bind(c, name='execvp')
+      import :: c_int, c_ptr
+      type(c_ptr), value :: file
+      type(c_ptr), intent(in) :: words(*)
+    end function c_execvp
+
+    subroutine c_exit_at_once(code) bind(c, name='_exit')
+      import :: c_int
+      integer(c_int), value :: code
+    end subroutine c_exit_at_once
+
+    integer(c_int) function c_waitpid(process, status, options) bind(c, name='waitpid')
+      import :: c_int
+      integer(c_int), value :: process, options
+      integer(c_int), intent(out) :: status
+    end function c_waitpid
+
+    integer(c_int) function c_chdir(path) bind(c, name='chdir')
+      import :: c_int, c_char
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_chdir
+
+    ! a file in memory only, gone with its last descriptor
+    integer(c_int) function c_memfd_create(name, flags) bind(c, name='memfd_create')
+      import :: c_int, c_char
+      character(kind=c_char), intent(in) :: name(*)
+      integer(c_int), value :: flags
+    end function c_memfd_create
+
+    integer(c_int) function c_dup2(descriptor, other) bind(c, name='dup2')
+      import :: c_int
+      integer(c_int), value :: descriptor, other
+    end function c_dup2
+
+    integer(c_int) function c_close(descriptor) bind(c, name='close')
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_close
+
+    integer(c_long) function c_pwrite(descriptor, bytes, count, place) bind(c, name='pwrite')
+      import :: c_int, c_long, c_size_t, c_char
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(in) :: bytes(*)
+      integer(c_size_t), value :: count
+      integer(c_long), value :: place
+    end function c_pwrite
+
+    integer(c_long) function c_pread(descriptor, bytes, count, place) bind(c, name='pread')
+      import :: c_int, c_long, c_size_t, c_char
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(out) :: bytes(*)
+      integer(c_size_t), value :: count
+      integer(c_long), value :: place
+    end function c_pread
+  end interface
+
+contains
+
+  !> Run a program and wait for its end. A program that is not there, or that fails, is no error: the outcome
+  !> says so. Its standard output is that of this program.
+  subroutine run_child(words, input, outcome, err, folder)
+    type(string_type), intent(in) :: words(:)       !< the program, looked for in PATH, and its arguments
+    character(len=*), intent(in) :: input           !< what it reads from standard input
+    type(child_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    character(len=*), intent(in), optional :: folder   !< where it works; here unless given
+    integer(c_int) :: from, to, process, status, ignored
+
+    outcome%said = ''
+    from = c_memfd_create('input'//c_null_char, 0_c_int)
+    to = c_memfd_create('said'//c_null_char, 0_c_int)
+    process = -1
+    if (from >= 0 .and. to >= 0) then
+      call fill(from, input, err)
+      if (.not. allocated(err)) call start(words, from, to, process, folder)
+    end if
+    if (process < 0 .and. .not. allocated(err)) &
+      call raise(err, exit_file, 'cannot start '//words(1)%text//': '//reason(error_number()))
+    if (process >= 0) then
+      do while (c_waitpid(process, status, 0_c_int) < 0)
+        if (error_number() /= interrupted_call) exit
+      end do
+      call judge(status, outcome)
+      call read_back(to, outcome%said)
+    end if
+    if (from >= 0) ignored = c_close(from)
+    if (to >= 0) ignored = c_close(to)
+  end subroutine run_child
+
+  !> Write the input from the beginning of its file; the place where the child reads stays there.
+  subroutine fill(descriptor, input, err)
+    integer(c_int), intent(in) :: descriptor
+    character(len=*), intent(in) :: input
+    type(error_type), allocatable, intent(out) :: err
+    integer :: done
+    integer(c_long) :: written
+
+    done = 0
+    do while (done < len(input))
+      written = c_pwrite(descriptor, input(done + 1:), int(len(input) - done, c_size_t), int(done, c_long))
+      if (written > 0) then
+        done = done + int(written)
+      else if (error_number() /= interrupted_call) then
+        call raise(err, exit_file, 'no memory for the input of another program: '//reason(error_number()))
+        return
+      end if
+    end do
+  end subroutine fill
+
+  !> The second process, which becomes the program. Everything it needs is made before it begins: between
+  !> fork and exec only system calls are safe.
+  subroutine start(words, from, to, process, folder)
+    type(string_type), intent(in) :: words(:)
+    integer(c_int), intent(in) :: from, to
+    integer(c_int), intent(out) :: process          !< negative: it could not be made
+    character(len=*), intent(in), optional :: folder
+    character(kind=c_char, len=:), allocatable, target :: letters
+    character(len=:), allocatable :: place
+    type(c_ptr) :: list(size(words) + 1)
+    integer(c_int) :: status
+    integer :: i, at
+
+    letters = ''
+    do i = 1, size(words)
+      letters = letters//words(i)%text//c_null_char
+    end do
+    at = 1
+    do i = 1, size(words)
+      list(i) = c_loc(letters(at:at))
+      at = at + len(words(i)%text) + 1
+    end do
+    list(size(list)) = c_null_ptr
+    place = '.'//c_null_char
+    if (present(folder)) place = folder//c_null_char
+    process = c_fork()
+    if (process /= 0) return
+    status = min(c_dup2(from, standard_input), c_dup2(to, standard_error), c_chdir(place))
+    if (status >= 0) status = c_execvp(list(1), list)
+    call c_exit_at_once(not_found)
+  end subroutine start
+
+  !> The status of waitpid: the low seven bits are the signal that ended it, the next byte its exit code.
+  pure subroutine judge(status, outcome)
+    integer(c_int), intent(in) :: status
+    type(child_outcome_type), intent(inout) :: outcome
+
+    outcome%code = ibits(status, 8, 8)
+    if (ibits(status, 0, 7) /= 0) outcome%code = 128 + ibits(status, 0, 7)
+    outcome%found = outcome%code /= not_found
+  end subroutine judge
+
+  subroutine read_back(descriptor, text)
+    integer(c_int), intent(in) :: descriptor
+    character(len=:), allocatable, intent(out) :: text
+    character(len=most_said) :: buffer
+    integer(c_long) :: count
+
+    count = c_pread(descriptor, buffer, int(most_said, c_size_t), 0_c_long)
+    text = trim(buffer(:max(int(count), 0)))
+  end subroutine read_back
+end module mech9_child_process

@@ -1,0 +1,84 @@
+!> Tests of mech9_child_process against what every Unix has: sh, true, pwd.
+program test_child_process
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type
+  use mech9_child_process, only: child_outcome_type, run_child
+  use mech9_testing, only: tester_type
+  implicit none
+  call run_tests()
+contains
+
+  subroutine run_tests()
+    type(tester_type) :: tester
+
+    call test_codes(tester)
+    call test_words(tester)
+    call test_much_input(tester)
+    call tester%finish()
+  end subroutine run_tests
+
+  !> sh -c SCRIPT NAME WORD, with an input.
+  subroutine run_shell(script, word, input, outcome, err, folder)
+    character(len=*), intent(in) :: script, word, input
+    type(child_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    character(len=*), intent(in), optional :: folder
+    type(string_type) :: words(5)
+
+    words(1)%text = 'sh'
+    words(2)%text = '-c'
+    words(3)%text = script
+    words(4)%text = 'name'
+    words(5)%text = word
+    call run_child(words, input, outcome, err, folder)
+  end subroutine run_shell
+
+  subroutine test_codes(tester)
+    type(tester_type), intent(inout) :: tester
+    type(child_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    type(string_type) :: words(1)
+
+    call run_shell('exit 3', '', '', outcome, err)
+    call tester%no_error(err, 'a program that fails is no error')
+    call tester%is_true(outcome%found .and. outcome%code == 3, 'its exit code')
+    call run_shell('kill -9 $$', '', '', outcome, err)
+    call tester%is_true(outcome%found .and. outcome%code == 128 + 9, 'the signal that ended it')
+    call run_shell('pwd >&2', '', '', outcome, err, folder='/')
+    call tester%is_true(outcome%said(1:1) == '/' .and. outcome%code == 0, 'the folder it works in')
+    words(1)%text = 'true'
+    call run_child(words, '', outcome, err)
+    call tester%is_true(outcome%found .and. outcome%code == 0 .and. outcome%said == '', 'true is true')
+    words(1)%text = 'no such program; true'
+    call run_child(words, '', outcome, err)
+    call tester%no_error(err, 'a program that is not there is no error')
+    call tester%is_true(.not. outcome%found, 'it is not found, and no shell reads its name')
+  end subroutine test_codes
+
+  !> A word arrives as it is, whatever a shell would make of it.
+  subroutine test_words(tester)
+    type(tester_type), intent(inout) :: tester
+    type(child_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    character(len=*), parameter :: hostile = '`exit 1`; $(exit 1) "''\ *'//achar(10)//'| & < > #'
+
+    call run_shell('printf %s "$1" >&2', hostile, '', outcome, err)
+    call tester%is_true(outcome%said == hostile, 'a word full of signs arrives as it is')
+    call run_shell('printf "<%s>" "$1" >&2', '', '', outcome, err)
+    call tester%is_true(outcome%said == '<>', 'an empty word too')
+  end subroutine test_words
+
+  !> More than a pipe holds goes in, and more than a pipe holds is said: nothing blocks.
+  subroutine test_much_input(tester)
+    type(tester_type), intent(inout) :: tester
+    type(child_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+
+    call run_shell('cat >&2; cat | wc -c >&2', '', repeat('0123456789', 100000), outcome, err)
+    call tester%no_error(err, 'a million bytes')
+    call tester%is_true(outcome%said == repeat('0123456789', 409)//'012345', 'the beginning of what it said')
+    call run_shell('wc -c >&2', '', repeat('0123456789', 100000), outcome, err)
+    call tester%is_true(verify(outcome%said, ' 1000000'//achar(10)) == 0 .and. index(outcome%said, '1000000') > 0, &
+                        'all of the input arrives')
+  end subroutine test_much_input
+end program test_child_process
