@@ -1,5 +1,5 @@
 !> The table of results: comment lines, a line of names, rows of numbers.
-!> Uses mech9_number_format, mech9_text_file, mech9_printable, mech9_clock and the base.
+!> Uses mech9_result_sink, mech9_number_format, mech9_text_file, mech9_printable, mech9_clock and the base.
 !>
 !>     # A slider-crank
 !>     # mech9k 0.1.0
@@ -15,6 +15,7 @@ module mech9_table
   use mech9_error, only: error_type, raise, exit_internal
   use mech9_text, only: string_type
   use mech9_clock, only: pacer_type
+  use mech9_result_sink, only: result_sink_type
   use mech9_number_format, only: number_format_type, number_width
   use mech9_printable, only: printable, column_name
   use mech9_text_file, only: text_file_type
@@ -28,7 +29,7 @@ module mech9_table
   character, parameter :: line_end = achar(10)
 
   !> A table being written.
-  type :: table_type
+  type, extends(result_sink_type) :: table_type
     private
     type(text_file_type) :: file
     type(number_format_type) :: format
@@ -40,8 +41,9 @@ module mech9_table
   contains
     procedure :: open => open_table
     procedure :: write_row
+    procedure :: write_rows
+    procedure :: flush => hand_over
     procedure :: close => close_table
-    procedure, private :: hand_over
   end type table_type
 
 contains
@@ -85,7 +87,7 @@ contains
       return
     end if
     if (self%used + self%row_size > len(self%buffer)) then
-      call self%hand_over(err)
+      call self%flush(err)
       if (allocated(err)) return
     end if
     at = self%used
@@ -95,8 +97,21 @@ contains
     end do
     self%buffer(at + 1:at + 1) = line_end
     self%used = at + 1
-    if (self%pacer%due()) call self%hand_over(err)
+    if (self%pacer%due()) call self%flush(err)
   end subroutine write_row
+
+  !> Write rows, one after the other.
+  subroutine write_rows(self, rows, err)
+    class(table_type), intent(inout) :: self
+    real(wp), intent(in) :: rows(:, :)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    do i = 1, size(rows, 2)
+      call self%write_row(rows(:, i), err)
+      if (allocated(err)) return
+    end do
+  end subroutine write_rows
 
   !> Write the last rows and close the file; does nothing to a table that is not open. The file is closed
   !> even when writing fails.
@@ -106,7 +121,7 @@ contains
     type(error_type), allocatable :: close_error
 
     if (.not. self%file%is_open()) return
-    call self%hand_over(err)
+    call self%flush(err)
     call self%file%close(close_error)
     if (.not. allocated(err)) call move_alloc(close_error, err)
     deallocate (self%buffer)

@@ -1,4 +1,4 @@
-!> What mech9d does with a mechanism. Uses task, recording, dynamic_run, dynamic_report.
+!> What mech9d does with a mechanism. Uses task, results, recording, dynamic_run, dynamic_report.
 module mech9_dynamic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -7,7 +7,8 @@ module mech9_dynamic_task
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_task, only: task_type, table_path_of, answers_only, print_check, announce
+  use mech9_task, only: task_type, answers_only, print_check, announce
+  use mech9_results, only: results_type
   use mech9_recording, only: recording_outcome_type, record
   use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
   use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients
@@ -61,17 +62,19 @@ contains
     type(plan_type), intent(in) :: plan
     type(dynamic_run_type), intent(inout) :: run
     type(diagnostics_type), intent(inout) :: diagnostics
+    type(results_type) :: results
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
-    character(len=:), allocatable :: table_path
 
-    table_path = table_path_of(options, mechanism)
     call announce(options, mechanism, plan)
-    call record(run, mechanism, table_path, options%has('quiet'), outcome, err)
-    if (.not. options%has('quiet')) call print_dynamic_report(error_unit, table_path, outcome, run)
+    call results%open(options, mechanism, run%program_name, run%columns, err)
+    if (.not. allocated(err)) call record(run, mechanism, results, options%has('quiet'), outcome, err)
+    if (.not. options%has('quiet')) call print_dynamic_report(error_unit, results%table_path, outcome, run)
+    if (allocated(err)) call diagnostics%add_error(err)
+    call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
-    call save_dynamic_report(options%argument('report'), mechanism, plan, table_path, diagnostics%code(), &
+    call save_dynamic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
                              outcome, run, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

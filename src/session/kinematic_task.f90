@@ -1,4 +1,4 @@
-!> What mech9k does with a mechanism. Uses task, range_text, recording, kinematic_run, kinematic_report.
+!> What mech9k does with a mechanism. Uses task, range_text, results, recording, kinematic_run, kinematic_report.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -7,8 +7,9 @@ module mech9_kinematic_task
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_task, only: task_type, table_path_of, answers_only, print_check, announce
+  use mech9_task, only: task_type, answers_only, print_check, announce
   use mech9_range_text, only: print_ranges
+  use mech9_results, only: results_type
   use mech9_recording, only: recording_outcome_type, record
   use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
   use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report
@@ -40,9 +41,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(kinematic_run_type) :: run
-    type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
-    character(len=:), allocatable :: table_path
 
     call assemble_start(mechanism, plan, start, err)
     if (allocated(err)) then
@@ -57,16 +56,32 @@ contains
       call print_ranges(output_unit, mechanism, plan, start)
       return
     end if
-    table_path = table_path_of(options, mechanism)
-    call announce(options, mechanism, plan)
     call new_kinematic_run(mechanism, plan, start, run)
-    call record(run, mechanism, table_path, options%has('quiet'), outcome, err)
+    call carry_out(options, mechanism, plan, run, diagnostics)
+  end subroutine work
+
+  !> The run itself and its report.
+  subroutine carry_out(options, mechanism, plan, run, diagnostics)
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(kinematic_run_type), intent(inout) :: run
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(results_type) :: results
+    type(recording_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+
+    call announce(options, mechanism, plan)
+    call results%open(options, mechanism, run%program_name, run%columns, err)
+    if (.not. allocated(err)) call record(run, mechanism, results, options%has('quiet'), outcome, err)
     if (.not. options%has('quiet')) &
-      call print_kinematic_report(error_unit, mechanism, plan, table_path, outcome, run%tracker)
+      call print_kinematic_report(error_unit, mechanism, plan, results%table_path, outcome, run%tracker)
+    if (allocated(err)) call diagnostics%add_error(err)
+    call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
-    call save_kinematic_report(options%argument('report'), mechanism, plan, table_path, diagnostics%code(), &
+    call save_kinematic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
                                outcome, run%tracker, err)
     if (allocated(err)) call diagnostics%add_error(err)
-  end subroutine work
+  end subroutine carry_out
 end module mech9_kinematic_task

@@ -1,5 +1,5 @@
 !> Recording a motion: rows are computed and written by turns, whatever computes them.
-!> Uses error, clock, mechanism, columns, table, progress, system, version.
+!> Uses error, clock, mechanism, columns, results, progress, system.
 module mech9_recording
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_interrupted
@@ -7,8 +7,7 @@ module mech9_recording
   use mech9_clock, only: seconds
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
-  use mech9_table, only: table_type
-  use mech9_version, only: version
+  use mech9_results, only: results_type
   use mech9_progress, only: progress_type
   use mech9_system, only: interrupted
   implicit none
@@ -47,17 +46,16 @@ module mech9_recording
 
 contains
 
-  !> Rows at all output times; into the table, unless its path is empty. When the motion cannot go on,
-  !> or the user interrupts, what was computed is written first.
-  subroutine record(source, mechanism, table_path, quiet, outcome, err)
+  !> Rows at all output times, into the results, which stay open. When the motion cannot go on, or the
+  !> user interrupts, what was computed is written first.
+  subroutine record(source, mechanism, results, quiet, outcome, err)
     class(motion_source_type), intent(inout) :: source
     type(mechanism_type), intent(in) :: mechanism
-    character(len=*), intent(in) :: table_path     !< '-' is standard output; empty: nothing is written
+    type(results_type), intent(inout) :: results
     logical, intent(in) :: quiet
     type(recording_outcome_type), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: err
-    type(error_type), allocatable :: stopped
-    type(table_type) :: table
+    type(error_type), allocatable :: stopped, at_flush
     type(progress_type) :: progress
     real(wp), allocatable :: rows(:, :)
     real(wp) :: clock
@@ -65,12 +63,6 @@ contains
 
     allocate (rows(source%columns%count, rows_together), source=0.0_wp)
     clock = seconds()
-    if (table_path /= '') then
-      call table%open(table_path, mechanism%title, source%program_name//' '//version, &
-                      source%columns%names(:source%columns%count), &
-                      source%columns%units(:source%columns%count), err)
-      if (allocated(err)) return
-    end if
     call progress%start(source%program_name, quiet)
     next = 0
     do while (next <= mechanism%time%intervals .and. .not. allocated(stopped))
@@ -78,12 +70,13 @@ contains
       call compute_rows(source, mechanism, progress, next, rows, count, stopped)
       call lap(clock, outcome%seconds_solving)
       outcome%rows = outcome%rows + count
-      if (table_path /= '') call write_rows(table, rows(:, :count), err)
+      call results%write_rows(rows(:, :count), err)
       if (allocated(err)) exit
     end do
     call progress%finish()
-    if (table_path /= '') call close_table(table, err)
+    call results%flush(at_flush)
     call lap(clock, outcome%seconds_writing)
+    if (.not. allocated(err)) call move_alloc(at_flush, err)
     if (.not. allocated(err)) call move_alloc(stopped, err)
   end subroutine record
 
@@ -110,28 +103,6 @@ contains
       call progress%update(real(next, wp)/max(1, mechanism%time%intervals))
     end do
   end subroutine compute_rows
-
-  subroutine write_rows(table, rows, err)
-    type(table_type), intent(inout) :: table
-    real(wp), intent(in) :: rows(:, :)
-    type(error_type), allocatable, intent(out) :: err
-    integer :: i
-
-    do i = 1, size(rows, 2)
-      call table%write_row(rows(:, i), err)
-      if (allocated(err)) return
-    end do
-  end subroutine write_rows
-
-  !> Close the table; an error that came before is kept.
-  subroutine close_table(table, err)
-    type(table_type), intent(inout) :: table
-    type(error_type), allocatable, intent(inout) :: err
-    type(error_type), allocatable :: at_close
-
-    call table%close(at_close)
-    if (.not. allocated(err)) call move_alloc(at_close, err)
-  end subroutine close_table
 
   !> Add the time since `clock` to a sum and set the clock.
   subroutine lap(clock, sum)

@@ -14,7 +14,7 @@ module mech9_task
   use mech9_plan_text, only: print_structure, print_mobility, print_mobility_report, print_plan
   implicit none
   private
-  public :: task_type, table_path_of, answers_only, print_check, announce
+  public :: task_type, answers_only, print_check, announce
 
   type, abstract :: task_type
     character(len=6) :: program_name = ''
@@ -35,18 +35,6 @@ module mech9_task
   end interface
 
 contains
-
-  !> Where the table goes: the command line comes before the data file; without either, standard output.
-  pure function table_path_of(options, mechanism) result(path)
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
-    character(len=:), allocatable :: path
-
-    path = '-'
-    if (mechanism%output%table /= '') path = mechanism%output%table
-    if (options%has('table')) path = options%argument('table')
-    if (options%has('no-write')) path = ''
-  end function table_path_of
 
   !> Is an answer asked for, and no run?
   pure logical function answers_only(options)

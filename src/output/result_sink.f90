@@ -1,0 +1,63 @@
+!> What takes the rows of a run, as the recording sees it: a table, a file of another kind, a picture.
+!> Uses the base.
+module mech9_result_sink
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  implicit none
+  private
+  public :: result_sink_type, sink_slot_type, append_sink
+
+  !> A sink is open when it is handed to a recording.
+  type, abstract :: result_sink_type
+  contains
+    procedure(rows_interface), deferred :: write_rows
+    procedure :: flush => flush_nothing
+    procedure(close_interface), deferred :: close
+  end type result_sink_type
+
+  !> One sink of any kind, for arrays of them.
+  type :: sink_slot_type
+    class(result_sink_type), allocatable :: sink
+  end type sink_slot_type
+
+  abstract interface
+    !> Take rows, which follow those before; they may wait for a moment. Errors name the file.
+    subroutine rows_interface(self, rows, err)
+      import :: result_sink_type, error_type, wp
+      class(result_sink_type), intent(inout) :: self
+      real(wp), intent(in) :: rows(:, :)      !< (columns, rows), the columns as they were announced
+      type(error_type), allocatable, intent(out) :: err
+    end subroutine rows_interface
+
+    !> Finish: nothing waits any more, and files are closed even when writing fails. Does nothing to a
+    !> sink that is closed.
+    subroutine close_interface(self, err)
+      import :: result_sink_type, error_type
+      class(result_sink_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: err
+    end subroutine close_interface
+  end interface
+
+contains
+
+  !> Let no row wait any longer; a sink that holds none back has nothing to do.
+  subroutine flush_nothing(self, err)
+    class(result_sink_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+  end subroutine flush_nothing
+
+  !> One sink more; `sink` is handed over.
+  subroutine append_sink(slots, sink)
+    type(sink_slot_type), allocatable, intent(inout) :: slots(:)
+    class(result_sink_type), allocatable, intent(inout) :: sink
+    type(sink_slot_type), allocatable :: grown(:)
+    integer :: i
+
+    allocate (grown(size(slots) + 1))
+    do i = 1, size(slots)
+      call move_alloc(slots(i)%sink, grown(i)%sink)
+    end do
+    call move_alloc(sink, grown(size(grown))%sink)
+    call move_alloc(grown, slots)
+  end subroutine append_sink
+end module mech9_result_sink
