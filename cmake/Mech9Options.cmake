@@ -7,7 +7,7 @@ option(MECH9_LTO "release: optimise across files when linking (a fifth faster, m
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "kind of build" FORCE)
 endif()
-set_property(CACHE CMAKE_BUILD_TYPE PROPERTY STRINGS Release Debug Sanitize Coverage)
+set_property(CACHE CMAKE_BUILD_TYPE PROPERTY STRINGS Release Debug Sanitize Threads Coverage)
 
 # The language and its warnings, for the project's own sources only.
 set(MECH9_FORTRAN_OPTIONS -std=f2008 -fimplicit-none -Wall -Wextra -Wpedantic
@@ -24,6 +24,7 @@ set(CMAKE_Fortran_FLAGS_DEBUG
 set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
 foreach(language C Fortran)
   set(CMAKE_${language}_FLAGS_SANITIZE "-g -O1 ${mech9_sanitizers} ${mech9_no_false_warnings}")
+  set(CMAKE_${language}_FLAGS_THREADS "-g -O1 -fsanitize=thread ${mech9_no_false_warnings}")
   set(CMAKE_${language}_FLAGS_COVERAGE "-g -O0 --coverage")
 endforeach()
 

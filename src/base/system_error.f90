@@ -3,10 +3,12 @@ module mech9_system_error
   use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_char, c_ptr, c_f_pointer, c_associated
   implicit none
   private
-  public :: error_number, reason, interrupted_call
+  public :: error_number, reason, interrupted_call, no_such_file
 
   !> The call was interrupted by a signal (EINTR, the same on all Unixes): to be made again.
   integer(c_int), parameter :: interrupted_call = 4
+  !> There is no such file or folder (ENOENT, the same on all Unixes).
+  integer(c_int), parameter :: no_such_file = 2
 
   interface
     ! where the C library of Linux keeps errno for this thread

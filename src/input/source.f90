@@ -1,9 +1,10 @@
-!> The text of an input, and where its lines begin. Uses error, text.
+!> The text of an input, and where its lines begin. Uses error, text, file_bytes.
 !>
 !> Everything read from an input carries a span of it, so that a message can point there.
 module mech9_source
-  use mech9_error, only: error_type, place_type, raise, exit_data, exit_file
+  use mech9_error, only: error_type, place_type, raise, exit_data
   use mech9_text, only: to_text
+  use mech9_file_bytes, only: read_bytes
   implicit none
   private
   public :: source_type, span_type, read_source, source_from_text
@@ -27,9 +28,6 @@ module mech9_source
     procedure :: byte_at
   end type source_type
 
-  !> More than this is no description of a mechanism; byte positions stay default integers.
-  integer, parameter :: largest_size = 1000000000
-  integer, parameter :: largest_pipe = 100000000
   character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
 
 contains
@@ -66,83 +64,6 @@ contains
     source%is_ascii = all_ascii(text)
     call find_lines(source)
   end function source_from_text
-
-  subroutine read_bytes(path, text, err)
-    character(len=*), intent(in) :: path
-    character(len=:), allocatable, intent(out) :: text
-    type(error_type), allocatable, intent(out) :: err
-    character(len=256) :: reason
-    integer :: unit, status
-    logical :: there
-
-    inquire (file=path, exist=there)
-    if (len_trim(path) == 0 .or. .not. there) then
-      call raise(err, exit_file, 'cannot be read: there is no such file')
-      return
-    end if
-    reason = ''
-    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
-          iostat=status, iomsg=reason)
-    if (status == 0) then
-      call read_open_unit(unit, text, status, reason)
-      close (unit)
-    end if
-    if (status /= 0) call raise(err, exit_file, 'cannot be read: '//trim(reason(index(reason, ': ', back=.true.) + 1:)))
-  end subroutine read_bytes
-
-  subroutine read_open_unit(unit, text, status, reason)
-    integer, intent(in) :: unit
-    character(len=:), allocatable, intent(out) :: text
-    integer, intent(out) :: status
-    character(len=*), intent(inout) :: reason
-    integer :: size_of_file
-
-    status = 0
-    inquire (unit=unit, size=size_of_file)
-    if (size_of_file > largest_size) then
-      status = 1
-      reason = 'it is too large for a data file'
-    else if (size_of_file > 0) then
-      allocate (character(len=size_of_file) :: text)
-      read (unit, iostat=status, iomsg=reason) text
-    else
-      call read_pipe(unit, text, status, reason)
-    end if
-  end subroutine read_open_unit
-
-  !> Pipes and devices have no size: read byte by byte until they end.
-  subroutine read_pipe(unit, text, status, reason)
-    integer, intent(in) :: unit
-    character(len=:), allocatable, intent(out) :: text
-    integer, intent(out) :: status
-    character(len=*), intent(inout) :: reason
-    character(len=:), allocatable :: grown
-    character :: byte
-    integer :: n
-
-    allocate (character(len=4096) :: text)
-    n = 0
-    do
-      read (unit, iostat=status, iomsg=reason) byte
-      if (is_iostat_end(status)) exit
-      if (status /= 0) return
-      if (n == len(text)) then
-        if (n >= largest_pipe) then
-          status = 1
-          reason = 'it is too large for a data file'
-          return
-        end if
-        allocate (character(len=2*n) :: grown)
-        grown(:n) = text
-        call move_alloc(grown, text)
-      end if
-      n = n + 1
-      text(n:n) = byte
-      if (byte == achar(0)) exit   ! no text: an endless device ends here too
-    end do
-    status = 0
-    text = text(:n)
-  end subroutine read_pipe
 
   !> Say so where the bytes are not a text that could be a data file.
   pure subroutine refuse_no_text(text, err)

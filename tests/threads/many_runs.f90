@@ -1,0 +1,120 @@
+!> Whole runs, from the data file to the rows, that share nothing: what several threads are given.
+!> Uses the input and session floors.
+module many_runs
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_document, only: document_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_parser, only: read_document
+  use mech9_reader, only: read_mechanism
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_recording, only: motion_source_type
+  use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
+  use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
+  implicit none
+  private
+  public :: run_type, list_runs, carry_out, same
+
+  !> One run and what came out of it.
+  type :: run_type
+    character(len=:), allocatable :: file
+    logical :: dynamic = .false.
+    real(wp), allocatable :: rows(:, :)     !< (columns, outputs)
+    logical :: done = .false.
+  end type run_type
+
+contains
+
+  !> The runs of the data files in `folder`: as many as there are, repeated until there are `count`.
+  subroutine list_runs(folder, count, runs)
+    character(len=*), intent(in) :: folder
+    integer, intent(in) :: count
+    type(run_type), allocatable, intent(out) :: runs(:)
+    character(len=*), parameter :: names(*) = [character(len=32) :: &
+      'kinematics_fig1', 'dynamics_fig1', 'kinematics_general_7r', 'dynamics_fivebar', 'kinematics_bennett', &
+      'dynamics_open_chain', 'kinematics_fig1_driven_at_q1', 'dynamics_spatial_slider_crank', &
+      'kinematics_slider_crank', 'kinematics_spatial_slider_crank']
+    integer :: i, which
+
+    allocate (runs(count))
+    do i = 1, count
+      which = 1 + modulo(i - 1, size(names))
+      runs(i)%file = folder//'/'//trim(names(which))//'.nml'
+      runs(i)%dynamic = index(names(which), 'dynamics') == 1
+    end do
+  end subroutine list_runs
+
+  !> Read, plan, assemble, and follow or integrate the motion.
+  subroutine carry_out(run)
+    type(run_type), intent(inout) :: run
+    type(document_type) :: document
+    type(diagnostics_type) :: diagnostics
+    type(mechanism_type) :: mechanism
+    type(error_type), allocatable :: err
+
+    call read_document(run%file, document, diagnostics)
+    call read_mechanism(document, .not. run%dynamic, mechanism, diagnostics)
+    if (diagnostics%failed()) return
+    ! short, so that the threads begin and end often
+    mechanism%time%intervals = 20
+    if (run%dynamic) then
+      call integrate(mechanism, run%rows, err)
+    else
+      call follow(mechanism, run%rows, err)
+    end if
+    run%done = .not. allocated(err)
+  end subroutine carry_out
+
+  subroutine follow(mechanism, rows, err)
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), allocatable, intent(out) :: rows(:, :)
+    type(error_type), allocatable, intent(out) :: err
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(kinematic_run_type) :: run
+
+    call assemble_start(mechanism, plan, start, err)
+    if (allocated(err)) return
+    call new_kinematic_run(mechanism, plan, start, run)
+    call fill(run, mechanism, rows, err)
+  end subroutine follow
+
+  subroutine integrate(mechanism, rows, err)
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), allocatable, intent(out) :: rows(:, :)
+    type(error_type), allocatable, intent(out) :: err
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(dynamic_run_type) :: run
+
+    call assemble_initial_state(mechanism, plan, start, err)
+    if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err)
+    if (.not. allocated(err)) call fill(run, mechanism, rows, err)
+    call run%close()
+  end subroutine integrate
+
+  subroutine fill(source, mechanism, rows, err)
+    class(motion_source_type), intent(inout) :: source
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), allocatable, intent(out) :: rows(:, :)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    allocate (rows(source%columns%count, 0:mechanism%time%intervals), source=0.0_wp)
+    do i = 0, mechanism%time%intervals
+      call source%row_at(mechanism%time%time(i), rows(:, i), err)
+      if (allocated(err)) return
+    end do
+  end subroutine fill
+
+  !> Did both end well, with the same numbers in every bit?
+  pure logical function same(a, b)
+    type(run_type), intent(in) :: a, b
+
+    same = a%done .and. b%done
+    if (same) same = all(shape(a%rows) == shape(b%rows))
+    if (same) same = all(transfer(a%rows, [0]) == transfer(b%rows, [0]))
+  end function same
+end module many_runs
