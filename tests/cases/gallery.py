@@ -1,0 +1,98 @@
+"""An example of the gallery against its expected.txt.
+
+usage: gallery.py NAME BIN SAMPLES      BIN holds mech9k and mech9d, SAMPLES the programs with user procedures, each
+                                        named after its first source (trammel.f90: trammel_k)
+
+A line of expected.txt is one of
+    # a comment
+    let name = expression
+    where | left | right | tolerance | why      |left - right| <= tolerance max(1, |right|)
+    --option | line | why                       the program, run with this option alone, prints this line
+where is `every row`, `first`, `last` or `t = number`. Expressions are of columns (q1, dq4, P.x), of points as wholes
+(distance(A, B)), numbers, + - * / **, functions of numpy, rad() and deg(), first(): the value of the first row.
+"""
+import os
+import re
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from gallery_list import examples
+from mech9_cases import Checks, run, table_and_report
+
+FUNCTIONS = {name: getattr(np, name) for name in 'sin cos tan arcsin arccos arctan arctan2 sqrt exp log pi'.split()}
+FUNCTIONS.update(rad=np.radians, deg=np.degrees, first=lambda x: x[0],
+                 distance=lambda a, b: np.sqrt(sum((x - y) ** 2 for x, y in zip(a, b))), __builtins__={})
+
+
+def names_of(table):
+    """What an expression may name: columns, with P.x spelt P_x, and points as their three components."""
+    known = dict(FUNCTIONS)
+    for column, values in table.items():
+        known[column.replace('.', '_')] = values
+        if column.endswith('.x'):
+            point = column[:-2]
+            known[point] = tuple(table[f'{point}.{axis}'] for axis in 'xyz')
+    return known
+
+
+def value_of(expression, known):
+    # a dot between a name and a component, not one within a number
+    return eval(re.sub(r'\b([A-Za-z]\w*)\.([A-Za-z])', r'\1_\2', expression), known)
+
+
+def rows_of(where, t):
+    """The rows meant, as a selection; none if the table has no such time."""
+    if where in ('every row', 'first', 'last'):
+        return {'every row': slice(None), 'first': slice(0, 1), 'last': slice(-1, None)}[where]
+    time = float(re.fullmatch(r't = (\S+)', where).group(1))
+    return np.flatnonzero(np.abs(t - time) <= 1e-12 * max(1.0, abs(time)))
+
+
+def check_values(checks, table, known, where, left, right, tolerance, why):
+    rows = rows_of(where, table['t'])
+    count = len(table['t'])
+    values, expected = (np.broadcast_to(value_of(side, known), (count,))[rows] for side in (left, right))
+    checks.near(values, expected, float(tolerance), f'{where}: {left} = {right} ({why})')
+
+
+def program_of(example, folder, samples):
+    if not example.procedures:
+        return os.path.join(folder, example.program)
+    first = os.path.splitext(os.path.basename(example.procedures[0]))[0]
+    return os.path.join(samples, f'{first}_{example.program[-1]}')
+
+
+def check_example(checks, example, program):
+    table, report = table_and_report(program, example.data)
+    checks.true(all(np.all(np.isfinite(values)) for values in table.values()), 'all numbers are finite')
+    # closed to round-off: 1e-16 of the size of the mechanism, times the conditioning of its chains
+    size = report.get('size', 1.0)
+    checks.true(np.max(table['closure']) <= 1e-12 * size, 'the chains are closed in every row', np.max(table['closure']))
+    known = names_of(table)
+    with open(os.path.join(os.path.dirname(example.data), 'expected.txt'), encoding='utf-8') as file:
+        lines = [line.split('#')[0].strip() for line in file]
+    for line in filter(None, lines):
+        parts = [part.strip() for part in line.split('|')]
+        if line.startswith('let '):
+            name, expression = line[4:].split('=', 1)
+            known[name.strip()] = value_of(expression, known)
+        elif line.startswith('--'):
+            option, wanted, why = parts
+            done = run(program, example.data, option)
+            checks.true(wanted in done.stdout.splitlines(), f'{option} tells: {wanted} ({why})', done.stdout)
+        else:
+            check_values(checks, table, known, *parts)
+
+
+def main():
+    name, folder, samples = sys.argv[1], *map(os.path.abspath, sys.argv[2:4])
+    example = next(example for example in examples() if example.name == name)
+    checks = Checks()
+    check_example(checks, example, program_of(example, folder, samples))
+    checks.true(checks.passed > 3, 'there is more to compare than that it runs')
+    checks.finish()
+
+
+main()
