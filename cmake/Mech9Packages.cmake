@@ -30,5 +30,18 @@ if(MECH9_SUNDIALS_MAJOR EQUAL 7)
   list(APPEND MECH9_SUNDIALS_LIBRARIES -Wl,--pop-state)
 endif()
 
+# Line editing at the terminal; without it lines are read as they come. libedit's functions of variable
+# arguments are called as ordinary ones, which on other processors may be another thing.
+if(MECH9_LINE_EDITING AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|amd64|AMD64|aarch64|arm64)$")
+  find_library(MECH9_LIBEDIT edit DOC "libedit (Debian: libedit-dev)")
+  mark_as_advanced(MECH9_LIBEDIT)
+  if(MECH9_LIBEDIT)
+    set(MECH9_LINE_EDITING_LIBRARIES "${MECH9_LIBEDIT}")
+  else()
+    message(STATUS "libedit was not found: no line editing at the terminal")
+  endif()
+endif()
+
 # The same libraries as files or linker options, for mech9-link, which works without CMake.
-set(MECH9_LINK_LIBRARIES ${MECH9_SUNDIALS_LIBRARIES} ${LAPACK_LIBRARIES} ${LAPACK_LINKER_FLAGS})
+set(MECH9_LINK_LIBRARIES ${MECH9_SUNDIALS_LIBRARIES} ${LAPACK_LIBRARIES} ${LAPACK_LINKER_FLAGS}
+  ${MECH9_LINE_EDITING_LIBRARIES})

@@ -6,17 +6,18 @@ module mech9_system
   implicit none
   private
   public :: exit_program, is_terminal, standard_input, standard_output, standard_error
-  public :: catch_interrupts, interrupted
+  public :: catch_interrupts, interrupted, hung_up
 
   !> The three standard files, for `is_terminal`.
   integer, parameter :: standard_input = 0, standard_output = 1, standard_error = 2
 
   ! Numbers of POSIX systems.
-  integer(c_int), parameter :: signal_interrupt = 2, signal_broken_pipe = 13, signal_terminate = 15
+  integer(c_int), parameter :: signal_hang_up = 1, signal_interrupt = 2, signal_broken_pipe = 13, &
+                               signal_terminate = 15
   !> SIG_DFL and SIG_IGN as addresses.
   integer(c_intptr_t), parameter :: default_action = 0, ignore_action = 1
 
-  !> Set by the signal handler, read by `interrupted`. A signal handler is given nothing but the number
+  !> The number of the signal that came, 0 before; set by the signal handler, read by `interrupted`. A signal handler is given nothing but the number
   !> of the signal, so that it can only reach a module variable: this is the one exception of the
   !> project to its rule that no module variable changes. An interrupt means the whole process, hence
   !> every mechanism running in it.
@@ -66,14 +67,17 @@ contains
     is_terminal = c_isatty(int(descriptor, c_int)) == 1
   end function is_terminal
 
-  !> From now on the first Ctrl-C, or the first request to terminate, only sets what `interrupted` tells,
-  !> so that a loop can end in order; a second one ends the program at once. A reader that goes away
-  !> (`mech9k ... | head`) becomes an error of writing instead of a silent death.
+  !> From now on the first Ctrl-C, request to terminate or closing of the terminal only sets what
+  !> `interrupted` tells, so that a loop can end in order; a second one ends the program at once. A reader
+  !> that goes away (`mech9k ... | head`) becomes an error of writing instead of a silent death. Called
+  !> again, it forgets what was caught: a session that outlives an interrupted run is ready for the next.
   subroutine catch_interrupts()
     type(c_funptr) :: previous
 
+    interrupt_flag = 0
     call catch(signal_interrupt)
     call catch(signal_terminate)
+    call catch(signal_hang_up)
     previous = c_signal(signal_broken_pipe, action(ignore_action))
   end subroutine catch_interrupts
 
@@ -95,13 +99,18 @@ contains
     interrupted = c_abs(interrupt_flag) /= 0
   end function interrupted
 
+  !> Whether it was the terminal that went away, so that nobody is there to be asked.
+  logical function hung_up()
+    hung_up = c_abs(interrupt_flag) == signal_hang_up
+  end function hung_up
+
   !> The signal handler. It may do very little: note the signal, and give the next one its default
   !> action, which is to end the program.
   subroutine note_signal(number) bind(c)
     integer(c_int), value :: number
     type(c_funptr) :: previous
 
-    interrupt_flag = 1
+    interrupt_flag = number
     previous = c_signal(number, action(default_action))
   end subroutine note_signal
 

@@ -1,0 +1,83 @@
+!> Completion of what is being typed: which of the words offered begin so, and what they have in common.
+!> Uses mech9_text only.
+module mech9_completion
+  use mech9_text, only: string_type, starts_with
+  implicit none
+  private
+  public :: beginning_of_word, completions, common_beginning, in_columns
+
+  !> What stands between words at a prompt.
+  character(len=*), parameter :: separators = ' ,='//achar(9)//achar(39)//achar(34)
+
+contains
+
+  !> The word being typed at the end of a text; empty where none is.
+  pure function beginning_of_word(text) result(beginning)
+    character(len=*), intent(in) :: text   !< the line up to the cursor
+    character(len=:), allocatable :: beginning
+
+    beginning = text(scan(text, separators, back=.true.) + 1:)
+  end function beginning_of_word
+
+  !> The words that begin so, in their order.
+  pure subroutine completions(words, beginning, found)
+    type(string_type), intent(in) :: words(:)
+    character(len=*), intent(in) :: beginning
+    type(string_type), allocatable, intent(out) :: found(:)
+    integer :: i, n
+
+    n = 0
+    do i = 1, size(words)
+      if (starts_with(words(i)%text, beginning)) n = n + 1
+    end do
+    allocate (found(n))
+    n = 0
+    do i = 1, size(words)
+      if (.not. starts_with(words(i)%text, beginning)) cycle
+      n = n + 1
+      found(n)%text = words(i)%text
+    end do
+  end subroutine completions
+
+  !> The longest text with which all of the words begin; empty where there are none.
+  pure function common_beginning(words) result(text)
+    type(string_type), intent(in) :: words(:)
+    character(len=:), allocatable :: text
+    integer :: i, n
+
+    text = ''
+    if (size(words) == 0) return
+    text = words(1)%text
+    do i = 2, size(words)
+      n = min(len(text), len(words(i)%text))
+      do while (n > 0)
+        if (text(:n) == words(i)%text(:n)) exit
+        n = n - 1
+      end do
+      text = text(:n)
+    end do
+  end function common_beginning
+
+  !> The words side by side in columns, as whole lines.
+  pure function in_columns(words, width) result(text)
+    type(string_type), intent(in) :: words(:)
+    integer, intent(in) :: width   !< letters in a line
+    character(len=:), allocatable :: text
+    integer :: i, column, columns
+
+    column = 2
+    do i = 1, size(words)
+      column = max(column, len(words(i)%text) + 2)
+    end do
+    columns = max(1, width/column)
+    text = ''
+    do i = 1, size(words)
+      text = text//words(i)%text
+      if (mod(i, columns) == 0 .or. i == size(words)) then
+        text = text//achar(10)
+      else
+        text = text//repeat(' ', column - len(words(i)%text))
+      end if
+    end do
+  end function in_columns
+end module mech9_completion

@@ -1,0 +1,98 @@
+!> Standard input byte by byte, as long as nobody interrupts. Uses system and ISO C binding.
+!>
+!> It calls the system's own `poll` and `read`: gfortran's runtime library waits on through signals, reads
+!> lines of a fixed length, and takes bytes that others (a line editor) would have.
+module mech9_input_bytes
+  use, intrinsic :: iso_c_binding, only: c_int, c_short, c_long, c_size_t, c_char
+  use mech9_system, only: interrupted, hung_up, standard_input
+  implicit none
+  private
+  public :: input_bytes_type, input_read, input_ended, input_interrupted
+
+  !> What came of asking for input: something; its end (end of file, Ctrl-D, a terminal that went away);
+  !> an interrupt (Ctrl-C, a request to terminate).
+  integer, parameter :: input_read = 0, input_ended = 1, input_interrupted = 2
+
+  !> How long to wait before looking again whether someone interrupts [ms]: a signal that comes just before
+  !> the wait begins does not break it off.
+  integer(c_int), parameter :: patience = 200
+  integer, parameter :: buffer_size = 4096
+
+  !> Standard input, and what was taken from it and not yet asked for.
+  type :: input_bytes_type
+    private
+    character(len=buffer_size) :: buffer
+    integer :: place = 0    !< of the byte given last
+    integer :: filled = 0
+  contains
+    procedure :: next_byte
+    procedure :: step_back
+    procedure, private :: refill
+  end type input_bytes_type
+
+  !> What `poll` is asked (struct pollfd).
+  type, bind(c) :: poll_type
+    integer(c_int) :: descriptor = standard_input
+    integer(c_short) :: events = 1    !< POLLIN
+    integer(c_short) :: answer = 0
+  end type poll_type
+
+  interface
+    integer(c_int) function c_poll(asked, count, timeout) bind(c, name='poll')
+      import :: c_int, c_long, poll_type
+      type(poll_type), intent(inout) :: asked
+      integer(c_long), value :: count
+      integer(c_int), value :: timeout
+    end function c_poll
+
+    integer(c_long) function c_read(descriptor, bytes, count) bind(c, name='read')
+      import :: c_int, c_long, c_size_t, c_char
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(out) :: bytes(*)
+      integer(c_size_t), value :: count
+    end function c_read
+  end interface
+
+contains
+
+  !> The next byte; waits for it.
+  subroutine next_byte(self, byte, status)
+    class(input_bytes_type), intent(inout) :: self
+    character, intent(out) :: byte
+    integer, intent(out) :: status   !< input_read, or why there is none
+
+    byte = achar(0)
+    status = input_read
+    if (self%place == self%filled) call self%refill(status)
+    if (status /= input_read) return
+    self%place = self%place + 1
+    byte = self%buffer(self%place:self%place)
+  end subroutine next_byte
+
+  !> Give the byte taken last once more.
+  subroutine step_back(self)
+    class(input_bytes_type), intent(inout) :: self
+
+    if (self%place > 0) self%place = self%place - 1
+  end subroutine step_back
+
+  subroutine refill(self, status)
+    class(input_bytes_type), intent(inout) :: self
+    integer, intent(out) :: status
+    type(poll_type) :: asked
+    integer :: ready, got
+
+    ready = 0
+    do while (ready <= 0 .and. .not. interrupted())
+      ready = int(c_poll(asked, 1_c_long, patience))
+    end do
+    if (interrupted()) then
+      status = merge(input_ended, input_interrupted, hung_up())
+      return
+    end if
+    got = int(c_read(asked%descriptor, self%buffer, int(buffer_size, c_size_t)))
+    self%place = 0
+    self%filled = max(got, 0)
+    status = merge(input_read, input_ended, got > 0)   ! a closed terminal answers with an error
+  end subroutine refill
+end module mech9_input_bytes

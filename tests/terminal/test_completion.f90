@@ -1,0 +1,64 @@
+!> Tests of completion: words that fit, what they have in common, the list of them.
+program test_completion
+  use mech9_text, only: string_type
+  use mech9_completion, only: beginning_of_word, completions, common_beginning, in_columns
+  use mech9_testing, only: tester_type
+  implicit none
+  call run_tests()
+contains
+
+  subroutine run_tests()
+    type(tester_type) :: tester
+
+    call test_beginning(tester)
+    call test_completions(tester)
+    call test_columns(tester)
+    call tester%finish()
+  end subroutine run_tests
+
+  subroutine test_beginning(tester)
+    type(tester_type), intent(inout) :: tester
+
+    call tester%is_true(beginning_of_word('') == '', 'nothing typed, nothing begun')
+    call tester%is_true(beginning_of_word('rev') == 'rev', 'the first word')
+    call tester%is_true(beginning_of_word('a bc') == 'bc', 'a second one')
+    call tester%is_true(len(beginning_of_word('a ')) == 0, 'behind a blank none is begun')
+    call tester%is_true(beginning_of_word('kind=''re') == 're', 'behind a quote')
+    call tester%is_true(beginning_of_word('q1,q2') == 'q2', 'behind a comma')
+  end subroutine test_beginning
+
+  subroutine test_completions(tester)
+    type(tester_type), intent(inout) :: tester
+    type(string_type) :: words(4)
+    type(string_type), allocatable :: found(:)
+
+    words(1)%text = 'prismatic'
+    words(2)%text = 'prism'
+    words(3)%text = 'revolute'
+    words(4)%text = 'point'
+    call completions(words, 'p', found)
+    call tester%is_true(size(found) == 3, 'three words begin with p')
+    call tester%is_true(common_beginning(found) == 'p', 'and have no more in common')
+    call completions(words, 'pr', found)
+    call tester%is_true(common_beginning(found) == 'prism', 'two have five letters in common')
+    call completions(words, 'r', found)
+    call tester%is_true(common_beginning(found) == 'revolute', 'one is meant')
+    call completions(words, 'revolutes', found)
+    call tester%is_true(size(found) == 0 .and. len(common_beginning(found)) == 0, 'more than the word is another word')
+    call completions(words, '', found)
+    call tester%is_true(size(found) == 4 .and. len(common_beginning(found)) == 0, 'all begin with nothing')
+  end subroutine test_completions
+
+  subroutine test_columns(tester)
+    type(tester_type), intent(inout) :: tester
+    type(string_type) :: words(3)
+    character, parameter :: eol = achar(10)
+
+    words(1)%text = 'a'
+    words(2)%text = 'bcd'
+    words(3)%text = 'ef'
+    call tester%is_true(in_columns(words, 79) == 'a    bcd  ef'//eol, 'all in one line')
+    call tester%is_true(in_columns(words, 12) == 'a    bcd'//eol//'ef'//eol, 'two in a line')
+    call tester%is_true(in_columns(words, 3) == 'a'//eol//'bcd'//eol//'ef'//eol, 'a word wider than the line stands alone')
+  end subroutine test_columns
+end program test_completion
