@@ -13,6 +13,7 @@ module mech9_result_sink
     procedure(rows_interface), deferred :: write_rows
     procedure :: flush => flush_nothing
     procedure(close_interface), deferred :: close
+    procedure :: words => no_words
   end type result_sink_type
 
   !> One sink of any kind, for arrays of them.
@@ -45,6 +46,14 @@ contains
     class(result_sink_type), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: err
   end subroutine flush_nothing
+
+  !> A line for the user about what was written, once it is closed; a sink with nothing to say has none.
+  function no_words(self) result(words)
+    class(result_sink_type), intent(in) :: self
+    character(len=:), allocatable :: words
+
+    words = ''
+  end function no_words
 
   !> One sink more; `sink` is handed over.
   subroutine append_sink(slots, sink)

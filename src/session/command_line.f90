@@ -273,6 +273,8 @@ contains
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (options%has('no-write') .and. options%has('table')) then
       call raise(err, exit_usage, '--no-write and --table contradict each other')
+    else if (options%has('no-write') .and. options%has('plot')) then
+      call raise(err, exit_usage, '--no-write and --plot contradict each other')
     else if (options%file == '') then
       call raise(err, exit_usage, 'no data file is given; '//program_name//' FILE runs one, ' &
                  //program_name//' --help tells more')

@@ -73,12 +73,17 @@ contains
 
     call announce(options, mechanism, plan)
     call results%open(options, mechanism, run%program_name, run%columns, err)
-    if (.not. allocated(err)) call record(run, mechanism, results, options%has('quiet'), outcome, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
+    call record(run, mechanism, results, options%has('quiet'), outcome, err)
     if (.not. options%has('quiet')) &
       call print_kinematic_report(error_unit, mechanism, plan, results%table_path, outcome, run%tracker)
     if (allocated(err)) call diagnostics%add_error(err)
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
+    if (.not. options%has('quiet')) call results%print_words(error_unit)
     if (.not. options%has('report')) return
     call save_kinematic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
                                outcome, run%tracker, err)

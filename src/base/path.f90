@@ -1,0 +1,53 @@
+!> Names of files taken apart: folder, name, ending. Uses mech9_text.
+module mech9_path
+  use mech9_text, only: lower
+  implicit none
+  private
+  public :: folder_of, name_of, ending_of, with_ending
+
+contains
+
+  !> The folder of a file, with the slash at its end; empty where the path names none.
+  pure function folder_of(path) result(folder)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: folder
+
+    folder = path(:index(path, '/', back=.true.))
+  end function folder_of
+
+  !> The name of a file without its folder.
+  pure function name_of(path) result(name)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: name
+
+    name = path(index(path, '/', back=.true.) + 1:)
+  end function name_of
+
+  !> The ending of a file's name in lower case, without the dot: svg, png, csv; empty where it has none.
+  pure function ending_of(path) result(ending)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: ending
+
+    ending = lower(path(last_dot(path) + 1:))
+  end function ending_of
+
+  !> The path with another ending, in the place of its own where it has one.
+  pure function with_ending(path, ending) result(changed)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: ending   !< without the dot; empty: none
+    character(len=:), allocatable :: changed
+
+    changed = path
+    if (ending_of(path) /= '') changed = path(:last_dot(path) - 1)
+    if (ending /= '') changed = changed//'.'//ending
+  end function with_ending
+
+  !> Place of the dot before the ending; the length of the path where there is no ending. A dot at the
+  !> beginning of a name (.hidden) belongs to the name.
+  pure integer function last_dot(path) result(place)
+    character(len=*), intent(in) :: path
+
+    place = index(path, '.', back=.true.)
+    if (place < len(folder_of(path)) + 2) place = len(path)
+  end function last_dot
+end module mech9_path

@@ -1,0 +1,34 @@
+!> Tests of mech9_path by what a person calls the parts of a file's name.
+program test_path
+  use mech9_path, only: folder_of, name_of, ending_of, with_ending
+  use mech9_testing, only: tester_type
+  implicit none
+  call run_tests()
+contains
+
+  subroutine run_tests()
+    type(tester_type) :: tester
+
+    call check(tester, 'a/b/c.dat', 'a/b/', 'c.dat', 'dat', 'a/b/c.svg')
+    call check(tester, 'c.tar.GZ', '', 'c.tar.GZ', 'gz', 'c.tar.svg')
+    call check(tester, '/c', '/', 'c', '', '/c.svg')
+    call check(tester, 'a.b/c', 'a.b/', 'c', '', 'a.b/c.svg')
+    call check(tester, '.hidden', '', '.hidden', '', '.hidden.svg')
+    call check(tester, 'a/.hidden.dat', 'a/', '.hidden.dat', 'dat', 'a/.hidden.svg')
+    call check(tester, '', '', '', '', '.svg')
+    call check(tester, 'c.', '', 'c.', '', 'c..svg')
+    call tester%is_true(with_ending('a/c.dat', '') == 'a/c', 'no ending')
+    call tester%finish()
+  end subroutine run_tests
+
+  subroutine check(tester, path, folder, name, ending, changed)
+    type(tester_type), intent(inout) :: tester
+    character(len=*), intent(in) :: path, folder, name, ending
+    character(len=*), intent(in) :: changed   !< with the ending svg
+
+    call tester%is_true(folder_of(path) == folder .and. len(folder_of(path)) == len(folder), path//': folder')
+    call tester%is_true(name_of(path) == name, path//': name')
+    call tester%is_true(ending_of(path) == ending, path//': ending')
+    call tester%is_true(with_ending(path, 'svg') == changed, path//': another ending')
+  end subroutine check
+end program test_path

@@ -1,0 +1,235 @@
+"""Plots by --plot: what stands in the scripts is what the table holds, gnuplot accepts them, hostile names and
+titles do no harm, and where gnuplot is missing or fails the program says so.
+
+usage: plots.py MECH9K MECH9D
+"""
+import fcntl
+import os
+import pty
+import re
+import shutil
+import stat
+import struct
+import subprocess
+import sys
+import tempfile
+import termios
+import xml.etree.ElementTree as xml
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import TREE, Checks, read_table, run
+
+FIG1 = os.path.join(TREE, 'examples', 'fig1', 'fig1.nml')
+PENDULUM = os.path.join(TREE, 'examples', 'pendulum', 'pendulum.nml')
+HOSTILE = '''it's "x" `touch harm` $(touch harm); @a {b}_c^d \\n \\ %s & <i> é'''
+
+mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
+checks = Checks()
+
+
+def read(path):
+    with open(path, encoding='utf-8') as file:
+        return file.read()
+
+
+def texts_of(picture):
+    """All that is written in an SVG picture; fails where it is not well-formed."""
+    found = []
+    for element in xml.parse(picture).getroot().iter():
+        if element.tag.endswith('}text'):
+            found.append(' '.join(''.join(element.itertext()).split()))
+    return found
+
+
+def curves_of(script, folder):
+    """The curves that gnuplot would draw, as it writes them with `set table`: an array of x and y for each."""
+    lines = [line for line in read(os.path.join(folder, script)).splitlines()
+             if not re.match('(un)?set (terminal|output|multiplot|format)', line)]
+    done = subprocess.run(['gnuplot', '-d'], input="set table 'curves.txt'\n" + '\n'.join(lines) + '\n', cwd=folder,
+                          text=True, capture_output=True, timeout=60)
+    checks.true(done.returncode == 0, f'{script}: gnuplot reads the script', done.stderr)
+    curves = []
+    for part in re.split(r'^# Curve \d.*$', read(os.path.join(folder, 'curves.txt')), flags=re.M)[1:]:
+        rows = [line.split()[:2] for line in part.splitlines() if line.strip() and not line.startswith('#')]
+        curves.append(np.array(rows, float))
+    return curves
+
+
+def check_picture(folder, name, expected, words, why):
+    """The picture is there, its words are those, its curves are `expected`: pairs of columns."""
+    if not checks.true(os.path.exists(os.path.join(folder, name + '.svg')), f'{why}: the picture is there'):
+        return
+    found = texts_of(os.path.join(folder, name + '.svg'))
+    for word in words:
+        checks.true(word in found, f'{why}: the picture says {word!r}', found)
+    curves = curves_of(name + '.gp', folder)
+    checks.equal(len(curves), len(expected), f'{why}: so many curves')
+    for number, (curve, (x, y)) in enumerate(zip(curves, expected), 1):
+        if checks.equal(len(curve), len(x), f'{why}: curve {number} has a point for each row'):
+            # gnuplot writes six significant digits
+            checks.near(curve, np.column_stack([x, y]), 1e-5, f'{why}: curve {number} is that of the table')
+
+
+def test_beside_table(folder):
+    done = run(mech9k, FIG1, '--table', 'out/motion.dat', '--plot', 'q3,P.x,q4,P.ax', '--plot', 'P.x:P.y',
+               '--plot', 'elsewhere.svg:dq5', folder=folder)
+    checks.equal(done.returncode, 0, 'plots beside the table')
+    checks.true('out/motion.svg' in done.stderr and 'out/motion.gp' in done.stderr, 'the files are told', done.stderr)
+    table = read_table(read(os.path.join(folder, 'out', 'motion.dat')))
+    t, out = table['t'], os.path.join(folder, 'out')
+    check_picture(out, 'motion', [(t, table['q3']), (t, table['q4']), (t, table['P.x']), (t, table['P.ax'])],
+                  ['Fig. 1: two closed chains, one degree of freedom', 't [s]', 'angle [rad]', 'q3', 'q4', 'P.x [m]',
+                   'P.ax [m/s²]'], 'over time')
+    check_picture(out, 'motion-2', [(table['P.x'], table['P.y'])], ['P.x [m]', 'P.y [m]'], 'one against another')
+    checks.true('motion.dat' in read(os.path.join(out, 'motion.gp')), 'the script reads the table beside it')
+    check_picture(folder, 'elsewhere', [(t, table['dq5'])], ['dq5 [rad/s]', 't [s]'], 'in another folder')
+    # the script alone draws the same picture again
+    first = read(os.path.join(out, 'motion.svg'))
+    os.remove(os.path.join(out, 'motion.svg'))
+    subprocess.run(['gnuplot', 'motion.gp'], cwd=out, check=True, timeout=60)
+    checks.equal(read(os.path.join(out, 'motion.svg')), first, 'the script draws the picture again')
+
+
+def test_without_table(folder):
+    data = os.path.join(folder, 'no table.nml')
+    with open(data, 'w', encoding='utf-8') as file:
+        file.write(re.sub(r"^&output.*?/", '', read(FIG1), flags=re.M | re.S))
+    done = run(mech9k, data, '--plot', 'q1', '--plot', 'small.png:q1', '--plot', 'page.pdf:q1:q2', folder=folder)
+    checks.equal((done.returncode, done.stdout), (0, ''), 'a plot and no table')
+    table = read_table(run(mech9k, data, folder=folder).stdout)
+    check_picture(folder, 'no table', [(table['t'], table['q1'])], ['q1 [rad]'], 'the data stand in the script')
+    for name, beginning in (('small.png', b'\x89PNG'), ('page.pdf', b'%PDF')):
+        with open(os.path.join(folder, name), 'rb') as file:
+            checks.true(file.read(4) == beginning, f'{name} is of its kind')
+    both = run(mech9k, data, '--plot', 'q1', '--table', '-', folder=folder)
+    checks.equal(read_table(both.stdout).keys(), table.keys(), 'a table on standard output as well')
+    run(mech9k, data, '--plot', 'q1', '--table', 'x.csv', folder=folder)
+    check_picture(folder, 'x', [(table['t'], table['q1'])], ['q1 [rad]'], 'beside CSV')
+    # a run of many rows: the picture shows some of them, the first among them
+    done = run(mech9k, data, '--set', 'time.intervals=30000', '--plot', 'many.svg:q1', folder=folder)
+    curve = curves_of('many.gp', folder)[0]
+    checks.true(5000 < len(curve) <= 10000, 'so many points as a picture can show', len(curve))
+    checks.near(curve[0], [table['t'][0], table['q1'][0]], 1e-5, 'from the start')
+    checks.near(curve[::30000 // 100 // 4, 0][:5] - curve[0, 0], np.arange(5) * (table['t'][-1] / 100), 1e-5,
+                'every so-manieth')
+    checks.near(curve[::75, 1], table['q1'], 1e-5, 'and those are the right ones')
+
+
+def test_dynamics(folder):
+    done = run(mech9d, PENDULUM, '--plot', 'energy.svg:E.kinetic,E.total,q1', folder=folder)
+    checks.equal(done.returncode, 0, 'a plot of mech9d')
+    curves = curves_of('energy.gp', folder)
+    checks.equal(len(curves), 3, 'energies and an angle')
+    checks.true('energy [J]' in texts_of(os.path.join(folder, 'energy.svg')), 'the energy axis')
+    # a pendulum that starts at rest: the kinetic energy starts at zero
+    checks.near(curves[0][0], [0, 0], 1e-12, 'its start')
+
+
+def test_hostile(folder):
+    # a line end cannot stand in a title, but in the name of a file
+    name = HOSTILE.replace('/', '') + '\n| x'
+    inside = os.path.join(folder, name)
+    os.mkdir(inside)
+    title = "mechanism.title='" + HOSTILE.replace("'", "''") + "'"
+    for path in (f'{name}/{name}.dat', f'<{name}.dat', f'|{name}.dat', '-x.dat', '$data.dat', '+.dat'):
+        done = run(mech9k, FIG1, '--set', title, f'--table={path}', '--plot', 'q1', folder=folder)
+        if not checks.equal(done.returncode, 0, f'table {path!r}'):
+            print(done.stderr)
+            continue
+        base = path[:-len('.dat')]
+        table = read_table(read(os.path.join(folder, path)))
+        words = ' '.join(HOSTILE.split())
+        where = os.path.join(folder, os.path.dirname(path))
+        check_picture(where, os.path.basename(base), [(table['t'], table['q1'])], [words], f'table {path!r}')
+    done = run(mech9k, FIG1, '--set', title, '--quiet', '--plot', 'term:q1', folder=folder)
+    checks.equal(done.returncode, 0, 'a hostile title in the terminal')
+    found = [file for _, _, files in os.walk(folder) for file in files]
+    checks.true('harm' not in found, 'nothing was carried out', found)
+
+
+def test_terminal(folder):
+    done = run(mech9k, FIG1, '--quiet', '--plot', 'term:q3,P.x', folder=folder)
+    lines = done.stdout.splitlines()
+    checks.equal(done.returncode, 0, 'a plot in the terminal')
+    checks.true(lines and max(map(len, lines)) <= 79, 'at most 79 columns in a pipe')
+    checks.true(len(lines) <= 2 * 24, 'two panels of 23 rows', len(lines))
+    checks.true(done.stdout.count('*') > 60 and 'q3 [rad]' in done.stdout and 'P.x [m]' in done.stdout, 'curves and labels')
+    checks.equal([name for name in os.listdir(folder) if not name.endswith('.dat')], [], 'no other file is left')
+    done = run(mech9k, FIG1, '--quiet', '--plot', 'term', folder=folder)
+    checks.true(all(f'q{i}' in done.stdout for i in range(1, 8)), 'all coordinates, where none is named')
+    try:
+        master, slave = pty.openpty()
+    except OSError:
+        print('no pseudo-terminal here: the size of a terminal is not checked')
+        return
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack('HHHH', 31, 101, 0, 0))
+    with subprocess.Popen([mech9k, FIG1, '--quiet', '--plot', 'term:q3'], cwd=folder, stdin=slave, stdout=slave,
+                          stderr=slave) as process:
+        os.close(slave)
+        got = b''
+        while True:
+            try:
+                piece = os.read(master, 65536)
+            except OSError:
+                break
+            if not piece:
+                break
+            got += piece
+        checks.equal(process.wait(60), 0, 'a plot in a pseudo-terminal')
+    os.close(master)
+    lines = got.decode().splitlines()
+    checks.true(90 < max(map(len, lines)) <= 100 and 28 <= len(lines) <= 31, 'of its size less one',
+                (max(map(len, lines)), len(lines)))
+
+
+def test_refusals(folder):
+    done = run(mech9k, FIG1, '--table', 'none.dat', '--plot', 'q1,q33', folder=folder)
+    checks.true(done.returncode == 2 and "did you mean 'q3'?" in done.stderr, 'an unknown name', done.stderr)
+    checks.equal(os.listdir(folder), [], 'nothing is written then')
+    done = run(mech9k, FIG1, '--no-write', '--plot', 'q1', folder=folder)
+    checks.equal(done.returncode, 2, 'a plot that is not to be written')
+    done = run(mech9k, FIG1, '--plot', 'no/such/folder.svg:q1', folder=folder)
+    checks.true(done.returncode == 8 and 'no/such/folder.gp' in done.stderr, 'a folder that is not there', done.stderr)
+
+
+def test_without_gnuplot(folder):
+    empty = os.path.join(folder, 'empty')
+    os.mkdir(empty)
+    path = os.environ['PATH']
+    os.environ['PATH'] = empty
+    try:
+        done = run(mech9k, FIG1, '--table', 'a.dat', '--plot', 'q1', folder=folder)
+        checks.true(done.returncode == 0 and 'gnuplot a.gp' in done.stderr, 'no gnuplot: the script is kept', done.stderr)
+        checks.true(not os.path.exists(os.path.join(folder, 'a.svg')), 'no picture then')
+        done = run(mech9k, FIG1, '--quiet', '--plot', 'term:q1', folder=folder)
+        checks.true(done.returncode == 8 and 'gnuplot' in done.stderr, 'no gnuplot for the terminal', done.stderr)
+        # one that fails, and one that is ended
+        for script, words in (('echo cannot draw >&2; exit 3', 'cannot draw'), ('kill -9 $$', 'ended with 137')):
+            fake = os.path.join(empty, 'gnuplot')
+            with open(fake, 'w', encoding='utf-8') as file:
+                file.write(f'#!{shutil.which("sh", path=path)}\n{script}\n')
+            os.chmod(fake, stat.S_IRWXU)
+            done = run(mech9k, FIG1, '--table', 'b.dat', '--plot', 'q1', folder=folder)
+            checks.true(done.returncode == 8 and words in done.stderr, f'gnuplot fails: {script}', done.stderr)
+            checks.equal(len(read_table(read(os.path.join(folder, 'b.dat')))['t']), 101, 'the table is whole')
+    finally:
+        os.environ['PATH'] = path
+    if shutil.which('gnuplot'):
+        subprocess.run(['gnuplot', 'a.gp'], cwd=folder, check=True, timeout=60)
+        checks.true('q1 [rad]' in texts_of(os.path.join(folder, 'a.svg')), 'gnuplot draws it later')
+
+
+tests = [test_refusals, test_without_gnuplot]
+if shutil.which('gnuplot'):
+    tests += [test_beside_table, test_without_table, test_dynamics, test_hostile, test_terminal]
+else:
+    print('gnuplot is not here: only what is said without it is checked')
+for test in tests:
+    with tempfile.TemporaryDirectory() as folder:
+        os.mkdir(os.path.join(folder, 'work'))
+        if test is test_beside_table:
+            os.mkdir(os.path.join(folder, 'work', 'out'))
+        test(os.path.join(folder, 'work'))
+checks.finish()
