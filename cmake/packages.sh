@@ -5,7 +5,7 @@
 # The lists: what a build needs, and what the tests need besides. libc6-dev is only a
 # recommendation of gcc, so that a minimal system can have a compiler that cannot link.
 packages_build="gfortran libc6-dev cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev"
-packages_tests="python3 python3-numpy gnuplot-nox graphviz"
+packages_tests="python3 python3-numpy gnuplot-nox graphviz groff-base"
 
 # The packages among the arguments that are not installed.
 missing_packages() {

@@ -4,50 +4,72 @@ module mech9_data_help
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text, nearest_name
   use mech9_grammar, only: group_table, item_table, item_row_type, group_row_type, unlimited, find_group_row, rows_of_group, &
-                           names_of_groups
+                           find_item_rows, names_of_groups, names_in_group
   implicit none
   private
-  public :: write_data_help, write_data_tables, values_text, unit_text, default_text
+  public :: write_data_help, write_data_tables
+  public :: values_text, unit_text, default_text, takes_text, meaning_text, use_text
 
   character(len=*), parameter :: indent = '      '
 
 contains
 
-  !> Help on a group, with all of its names; on all groups in short where none is named.
-  subroutine write_data_help(unit, group, err)
+  !> Help on a group with all of its names, or on one name of it; a short list of the groups where none is meant.
+  subroutine write_data_help(unit, subject, err)
     integer, intent(in) :: unit
-    character(len=*), intent(in) :: group           !< with or without its &; empty: a list of all groups
+    character(len=*), intent(in) :: subject         !< GROUP or GROUP.NAME, with or without &; empty: all groups
     type(error_type), allocatable, intent(out) :: err
-    character(len=:), allocatable :: name, hint
+    character(len=:), allocatable :: group, name
     integer, allocatable :: rows(:)
-    integer :: row, i
+    integer :: row, dot, i
 
-    if (group == '') then
+    if (subject == '') then
       call list_groups(unit)
       return
     end if
-    name = trim(group)
-    if (name(1:1) == '&') name = name(2:)
-    row = find_group_row(name)
+    group = trim(subject)
+    if (group(1:1) == '&') group = group(2:)
+    dot = index(group//'.', '.')
+    name = group(min(dot, len(group)) + 1:)
+    group = group(:dot - 1)
+    row = find_group_row(group)
     if (row == 0) then
-      hint = nearest_name(name, names_of_groups())
-      if (hint /= '') hint = '; did you mean '//hint//'?'
-      call raise(err, exit_usage, 'there is no group '''//name//''' in a data file'//hint)
+      call raise(err, exit_usage, 'there is no group '''//group//''' in a data file'// &
+                 hint(group, names_of_groups(), '--help-data lists the groups'))
+      return
+    end if
+    rows = rows_of_group(group)
+    if (name /= '') rows = find_item_rows(group, name)
+    if (size(rows) == 0) then
+      call raise(err, exit_usage, 'there is no name '''//name//''' in &'//trim(group_table(row)%name)// &
+                 hint(name, names_in_group(group), '--help-data '//trim(group_table(row)%name)//' lists its names'))
       return
     end if
     write (unit, '(3a)') '&', trim(group_table(row)%name), ': '//trim(group_table(row)%help)
     write (unit, '(2a)') indent(:2), use_text(group_table(row))
-    rows = rows_of_group(name)
     do i = 1, size(rows)
       call describe_item(unit, item_table(rows(i)))
     end do
   end subroutine write_data_help
 
+  !> What was probably meant; where nothing is near, what else helps.
+  pure function hint(word, known, otherwise) result(text)
+    character(len=*), intent(in) :: word, known(:), otherwise
+    character(len=:), allocatable :: text
+
+    text = nearest_name(word, known)
+    if (text == '') then
+      text = '; '//otherwise
+    else
+      text = '; did you mean '//text//'?'
+    end if
+  end function hint
+
   subroutine list_groups(unit)
     integer, intent(in) :: unit
     integer :: i
 
-    write (unit, '(a)') 'The groups of a data file, in any order; --help-data GROUP tells of one:'
+    write (unit, '(a)') 'The groups of a data file, in any order; --help-data GROUP tells of one, GROUP.NAME of a name in it:'
     do i = 1, size(group_table)
       write (unit, '(2x,a,a12,a)') '&', group_table(i)%name//'   ', trim(group_table(i)%help)
     end do
@@ -60,7 +82,7 @@ contains
     write (unit, '(a)')
     write (unit, '(2a)') indent(:2), trim(row%name)//' = '//trim(row%example)
     write (unit, '(2a)') indent, meaning_text(row)
-    write (unit, '(2a)') indent, values_text(row)//unit_in_brackets(row)//'; '//default_text(row)
+    write (unit, '(2a)') indent, takes_text(row)
   end subroutine describe_item
 
   !> The groups one after the other, each with a Markdown table of its names.
@@ -170,13 +192,19 @@ contains
     end select
   end function unit_text
 
-  pure function unit_in_brackets(row) result(text)
+  !> What a name takes, in which unit, and what holds without it.
+  pure function takes_text(row) result(text)
     type(item_row_type), intent(in) :: row
     character(len=:), allocatable :: text
 
-    text = ''
-    if (row%unit /= '') text = ' ['//unit_text(row)//']'
-  end function unit_in_brackets
+    text = values_text(row)
+    if (row%unit /= '') text = text//' ['//unit_text(row)//']'
+    if (row%needed) then
+      text = text//'; must be given'
+    else
+      text = text//'; if not given: '//default_text(row)
+    end if
+  end function takes_text
 
   !> What happens where the name is not given.
   pure function default_text(row) result(text)
@@ -194,6 +222,7 @@ contains
     end if
   end function default_text
 
+  !> What it means, and for which kinds of the group it is.
   pure function meaning_text(row) result(text)
     type(item_row_type), intent(in) :: row
     character(len=:), allocatable :: text

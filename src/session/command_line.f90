@@ -7,7 +7,7 @@ module mech9_command_line
                            no_argument, optional_argument, whole_number, assignment
   implicit none
   private
-  public :: command_line_type, get_command_words, parse_command_line, help_text
+  public :: command_line_type, get_command_words, parse_command_line
 
   !> An option as it was given.
   type :: given_type
@@ -280,40 +280,4 @@ contains
                  //program_name//' --help tells more')
     end if
   end subroutine judge
-
-  !> The text of --help, of whole lines, the last one without its end.
-  pure function help_text(program_name) result(text)
-    character(len=*), intent(in) :: program_name
-    character(len=:), allocatable :: text
-    character(len=32) :: left
-    integer :: i
-
-    text = 'usage: '//program_name//' FILE [options]'//achar(10)// &
-           '       runs the mechanism that the data file FILE describes'//achar(10)//achar(10)// &
-           'options:'
-    do i = 1, size(options_table)
-      if (index(options_table(i)%programs, program_name) == 0) cycle
-      left = option_form(options_table(i))
-      text = text//achar(10)//'  '//left//trim(options_table(i)%help)
-    end do
-    text = text//achar(10)//achar(10)// &
-           'Results go to files or standard output, talk to standard error.'//achar(10)// &
-           'Exit codes: 0 done, 1 internal error, 2 usage, 3 data file, 4 structure or mobility,'//achar(10)// &
-           '5 cannot be assembled, 6 singular position or branch, 7 integrator,'//achar(10)// &
-           '8 file input or output, 130 interrupted.'
-  end function help_text
-
-  !> An option as it is written: "--table PATH", "--help-data [GROUP]".
-  pure function option_form(option) result(form)
-    type(option_type), intent(in) :: option
-    character(len=:), allocatable :: form
-
-    form = '--'//trim(option%name)
-    if (option%takes == no_argument) return
-    if (option%takes == optional_argument) then
-      form = form//' ['//trim(option%argument)//']'
-    else
-      form = form//' '//trim(option%argument)
-    end if
-  end function option_form
 end module mech9_command_line

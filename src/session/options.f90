@@ -52,8 +52,8 @@ module mech9_options
                 'say more'), &
     option_type('help', no_argument, '', any_text, .false., both, &
                 'print this text'), &
-    option_type('help-data', optional_argument, 'GROUP', any_text, .false., both, &
-                'explain the data file, or one group of it'), &
+    option_type('help-data', optional_argument, 'GROUP[.NAME]', any_text, .false., both, &
+                'explain the data file, one group of it, or one name'), &
     option_type('version', no_argument, '', any_text, .false., both, &
                 'print the version')]
 

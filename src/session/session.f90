@@ -4,7 +4,8 @@ module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type, exit_done
   use mech9_text, only: string_type
-  use mech9_command_line, only: command_line_type, get_command_words, parse_command_line, help_text
+  use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
+  use mech9_help_text, only: help_text
   use mech9_version, only: version_text
   use mech9_system, only: catch_interrupts, exit_program
   use mech9_document, only: document_type

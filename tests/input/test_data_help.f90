@@ -63,6 +63,18 @@ contains
     if (allocated(err)) call tester%is_true(index(err%message, 'pair') > 0, 'the nearest one is named')
     call help_of('&', text, err)
     call tester%has_error(err, exit_usage, 'no name at all')
+    call help_of('Load.Stiffness', text, err)
+    call tester%no_error(err, 'one name')
+    call tester%is_true(index(text, 'spring') > 0 .and. index(text, 'coordinate') > 0, 'both of its meanings')
+    call tester%is_true(index(text, 'free_length = ') == 0, 'and nothing of another name')
+    call help_of('load.stifness', text, err)
+    call tester%has_error(err, exit_usage, 'a name that is not there')
+    if (allocated(err)) call tester%is_true(index(err%message, 'stiffness') > 0, 'the nearest one is named')
+    call help_of('laod.stiffness', text, err)
+    call tester%has_error(err, exit_usage, 'a group that is not there')
+    if (allocated(err)) call tester%is_true(index(err%message, 'load') > 0, 'its nearest one is named')
+    call help_of('load.', text, err)
+    call tester%no_error(err, 'a name still to be typed is the whole group')
   end subroutine the_help
 
   subroutine help_of(group, text, err)

@@ -3,7 +3,8 @@ program test_command_line
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
   use mech9_options, only: options_table, option_names, find_option, needed_argument, whole_number
-  use mech9_command_line, only: command_line_type, parse_command_line, help_text
+  use mech9_command_line, only: command_line_type, parse_command_line
+  use mech9_help_text, only: help_text
   use mech9_testing, only: tester_type
   implicit none
   call run_tests()

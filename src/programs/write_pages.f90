@@ -1,0 +1,7 @@
+!> Writes manual pages and completions for the shell into the current folder; a part of the build.
+program write_pages_here
+  use mech9_pages, only: write_pages
+  implicit none
+
+  call write_pages()
+end program write_pages_here

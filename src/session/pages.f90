@@ -1,0 +1,43 @@
+!> The files about the programs that are installed beside them: manual pages and completions.
+!> Uses manual_page, bash_completion, system, text_file and the base.
+module mech9_pages
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: error_type, exit_done
+  use mech9_text_file, only: text_file_type
+  use mech9_system, only: exit_program
+  use mech9_manual_page, only: manual_page
+  use mech9_bash_completion, only: bash_completion
+  implicit none
+  private
+  public :: write_pages
+
+  character(len=6), parameter :: programs(*) = ['mech9k', 'mech9d']
+
+contains
+
+  !> Write them into the current folder, as PROGRAM.1 and PROGRAM.bash, and end the program.
+  subroutine write_pages()
+    type(error_type), allocatable :: err
+    integer :: i
+
+    do i = 1, size(programs)
+      call write_file(programs(i)//'.1', manual_page(programs(i)), err)
+      if (.not. allocated(err)) call write_file(programs(i)//'.bash', bash_completion(programs(i)), err)
+      if (allocated(err)) then
+        write (error_unit, '(a)') err%message
+        call exit_program(err%code)
+      end if
+    end do
+    call exit_program(exit_done)
+  end subroutine write_pages
+
+  subroutine write_file(path, text, err)
+    character(len=*), intent(in) :: path, text
+    type(error_type), allocatable, intent(out) :: err
+    type(text_file_type) :: file
+
+    call file%open(path, err)
+    if (.not. allocated(err)) call file%write(text, err)
+    if (.not. allocated(err)) call file%close(err)
+  end subroutine write_file
+end module mech9_pages
