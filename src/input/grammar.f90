@@ -197,6 +197,11 @@ module mech9_grammar
                   'file for the table of results', '''fig1.dat'''), &
     item_row_type('output', 'hdf5', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'HDF5 file for the results', '''fig1.h5'''), &
+    item_row_type('output', 'sketch', 'text', 1, 1, '', optional, '''''', '', '', '', &
+                  'SVG file for a drawing of the mechanism at the start', '''fig1.svg'''), &
+    item_row_type('output', 'view', 'text', 1, 1, '', optional, '''''', '', '', '', &
+                  'of the sketch: axes to the right and up, as in xz; iso; or the direction to the viewer, as in 1,-2,1', &
+                  '''xz'''), &
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'mech9k: a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &
                   '.true.'), &

@@ -118,6 +118,8 @@ contains
     group = group_or_empty(document, 'output')
     mechanism%output%table = get_text(group, 'table')
     mechanism%output%hdf5 = get_text(group, 'hdf5')
+    mechanism%output%sketch = get_text(group, 'sketch')
+    mechanism%output%view = get_text(group, 'view')
     mechanism%output%conditioning = get_logical(group, 'conditioning')
     group = group_or_empty(document, 'solver')
     mechanism%solver%method = get_text(group, 'method')

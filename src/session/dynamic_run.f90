@@ -129,6 +129,7 @@ contains
       potential = potential_energy(system%mechanism, system%plan, system%dynamics, system%state, system%work%view)
       row(used + 1:used + 3) = [kinetic, potential, kinetic + potential]
       row(used + 4) = largest_closure(system%plan, system%state)
+      if (allocated(self%film)) call self%film%take(system%mechanism, system%plan, system%state)
     end associate
     if (.not. self%started) self%energy_at_start = kinetic + potential
     self%started = .true.

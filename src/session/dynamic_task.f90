@@ -9,6 +9,7 @@ module mech9_dynamic_task
   use mech9_state, only: state_type
   use mech9_task, only: task_type, answers_only, print_check, announce
   use mech9_results, only: results_type
+  use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_recording, only: recording_outcome_type, record
   use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
   use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients
@@ -39,25 +40,30 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics
     type(plan_type) :: plan
     type(state_type) :: start
+    type(picture_requests_type) :: pictures
     type(dynamic_run_type) :: run
     type(error_type), allocatable :: err
 
-    call assemble_initial_state(mechanism, plan, start, err)
+    call read_picture_requests(options, mechanism, self%program_name, pictures, err)
+    if (.not. allocated(err)) call assemble_initial_state(mechanism, plan, start, err)
     if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
       call print_check(options, mechanism, plan, start)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
+      if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
+      if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, mechanism, plan, run, diagnostics)
+      call carry_out(options, pictures, mechanism, plan, run, diagnostics)
     end if
     call run%close()
   end subroutine work
 
   !> The run itself and its report.
-  subroutine carry_out(options, mechanism, plan, run, diagnostics)
+  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics)
     type(command_line_type), intent(in) :: options
+    type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(dynamic_run_type), intent(inout) :: run
@@ -67,6 +73,7 @@ contains
     type(error_type), allocatable :: err
 
     call announce(options, mechanism, plan)
+    if (pictures%any_wanted()) run%film = pictures%film_for(mechanism, mechanism%time%intervals + 1)
     call results%open(options, mechanism, run%program_name, run%columns, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
@@ -78,6 +85,8 @@ contains
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('quiet')) call results%print_words(error_unit)
+    if (allocated(run%film)) call pictures%save(mechanism, run%film, err)
+    if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
     call save_dynamic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
                              outcome, run, err)

@@ -74,6 +74,7 @@ contains
     if (allocated(err)) return
     call self%columns%fill(self%mechanism, self%plan, self%tracker%state, row, used)
     row(used + 1) = largest_closure(self%plan, self%tracker%state)
+    if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%tracker%state)
     if (self%mechanism%output%conditioning) call find_conditioning(self%tracker, row(used + 2))
   end subroutine row_at
 end module mech9_kinematic_run

@@ -10,6 +10,7 @@ module mech9_kinematic_task
   use mech9_task, only: task_type, answers_only, print_check, announce
   use mech9_range_text, only: print_ranges
   use mech9_results, only: results_type
+  use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_recording, only: recording_outcome_type, record
   use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
   use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report
@@ -40,16 +41,20 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics
     type(plan_type) :: plan
     type(state_type) :: start
+    type(picture_requests_type) :: pictures
     type(kinematic_run_type) :: run
     type(error_type), allocatable :: err
 
-    call assemble_start(mechanism, plan, start, err)
+    call read_picture_requests(options, mechanism, self%program_name, pictures, err)
+    if (.not. allocated(err)) call assemble_start(mechanism, plan, start, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return
     end if
     if (answers_only(options)) then
       call print_check(options, mechanism, plan, start)
+      if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
+      if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
     if (options%has('range')) then
@@ -57,12 +62,13 @@ contains
       return
     end if
     call new_kinematic_run(mechanism, plan, start, run)
-    call carry_out(options, mechanism, plan, run, diagnostics)
+    call carry_out(options, pictures, mechanism, plan, run, diagnostics)
   end subroutine work
 
   !> The run itself and its report.
-  subroutine carry_out(options, mechanism, plan, run, diagnostics)
+  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics)
     type(command_line_type), intent(in) :: options
+    type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(kinematic_run_type), intent(inout) :: run
@@ -72,6 +78,7 @@ contains
     type(error_type), allocatable :: err
 
     call announce(options, mechanism, plan)
+    if (pictures%any_wanted()) run%film = pictures%film_for(mechanism, mechanism%time%intervals + 1)
     call results%open(options, mechanism, run%program_name, run%columns, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
@@ -84,6 +91,8 @@ contains
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('quiet')) call results%print_words(error_unit)
+    if (allocated(run%film)) call pictures%save(mechanism, run%film, err)
+    if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
     call save_kinematic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
                                outcome, run%tracker, err)

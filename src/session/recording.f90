@@ -1,5 +1,5 @@
 !> Recording a motion: rows are computed and written by turns, whatever computes them.
-!> Uses error, clock, mechanism, columns, results, progress, system.
+!> Uses error, clock, mechanism, columns, film, results, progress, system.
 module mech9_recording
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_interrupted
@@ -7,6 +7,7 @@ module mech9_recording
   use mech9_clock, only: seconds
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
+  use mech9_film, only: film_type
   use mech9_results, only: results_type
   use mech9_progress, only: progress_type
   use mech9_system, only: interrupted
@@ -22,6 +23,7 @@ module mech9_recording
   type, abstract :: motion_source_type
     character(len=6) :: program_name = ''
     type(columns_type) :: columns
+    type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
   contains
     procedure(row_interface), deferred :: row_at
   end type motion_source_type

@@ -1,0 +1,286 @@
+!> From a mechanism and its film to a scene: paths and guides, links, springs, pairs, points and labels.
+!> Uses kinds, rotation, text, mechanism, spring_load, film, pair_axes, skeleton, projection, scene,
+!> link_shapes, pair_symbols.
+module mech9_scene_making
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_spring_load, only: spring_load_type
+  use mech9_film, only: film_type
+  use mech9_pair_axes, only: free, turning
+  use mech9_skeleton, only: skeleton_type
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, open_path, closed_path, segments, spring, mark, label, in_trace, in_curve, in_plate, &
+                         in_tube, in_spring, as_dot, as_centre, as_name, as_number
+  use mech9_link_shapes, only: distinct_points, find_shape
+  use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_coordinate_names
+  implicit none
+  private
+  public :: make_scene
+
+  !> Points of a link nearer than this part of the mechanism's size are one for the eye.
+  real(wp), parameter :: same = 0.004_wp
+  !> Links and coordinates are labelled where there are no more than these.
+  integer, parameter :: most_labelled = 24
+
+  !> Points that give a link its shape, in the link's system, with the nodes that stand there.
+  type :: outline_type
+    integer :: count = 0
+    real(wp), allocatable :: points(:, :)   !< (3,count)
+    integer, allocatable :: nodes(:)
+  end type outline_type
+
+contains
+
+  !> The scene of a film. It is drawn for one projection: symbols have their size on the page.
+  subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
+    logical, intent(in) :: planar               !< seen along the normal of its plane
+    logical, intent(in) :: with_masses          !< mark the mass centres
+    type(scene_type), intent(out) :: scene
+    type(symbols_type) :: symbols
+    type(outline_type) :: outlines(skeleton%graph%n_links)
+    integer :: shapes(skeleton%graph%n_links)   !< item of each link, 0: none
+    integer :: link
+
+    call prepare_symbols(film, skeleton, projection, planar, scene, symbols)
+    call add_paths(mechanism, film, scene)
+    call add_curves(film, skeleton, scene)
+    call add_guides(skeleton, projection, scene, symbols)
+    call add_stands(film, skeleton, projection, scene, symbols)
+    shapes = 0
+    scene%first_sorted = scene%n_items + 1
+    do link = 2, size(outlines)
+      call find_outline(mechanism, skeleton, symbols, link, scene, outlines(link))
+      call add_link(skeleton, symbols, link, scene, outlines(link), shapes(link))
+    end do
+    call add_springs(mechanism, shapes, scene)
+    call add_symbols(film, skeleton, projection, shapes, scene, symbols)
+    scene%last_sorted = scene%n_items
+    call add_points(mechanism, with_masses, scene)
+    call add_names(mechanism, skeleton, symbols, outlines, scene)
+  end subroutine make_scene
+
+  !> Where the points have been.
+  subroutine add_paths(mechanism, film, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(scene_type), intent(inout) :: scene
+    integer :: nodes(film%n_path_points), i, n
+
+    if (film%n_path_points < 2) return
+    do i = 1, size(mechanism%points)
+      if (mechanism%points(i)%link == 1) cycle
+      do n = 1, film%n_path_points
+        call scene%add_node(1, film%paths(:, i, n), nodes(n))
+      end do
+      call scene%add_item(open_path, in_trace, nodes, mechanism%points(i)%link)
+    end do
+  end subroutine add_paths
+
+  !> The curves on which users' pairs guide the origins of their moving links.
+  subroutine add_curves(film, skeleton, scene)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(scene_type), intent(inout) :: scene
+    integer :: nodes(film%n_frames), k, frame
+
+    if (film%n_frames < 2) return
+    do k = 1, size(skeleton%places)
+      associate (place => skeleton%places(k))
+        if (place%kind /= free) cycle
+        do frame = 1, film%n_frames
+          call scene%add_node(place%links(1), film%local(frame, place%links(1), film%p(:, place%links(2), frame)), &
+                              nodes(frame))
+        end do
+        call scene%add_item(open_path, in_curve, nodes, place%links(1))
+      end associate
+    end do
+  end subroutine add_curves
+
+  !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
+  !> mass centre besides.
+  subroutine find_outline(mechanism, skeleton, symbols, link, scene, outline)
+    type(mechanism_type), intent(in) :: mechanism
+    type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
+    integer, intent(in) :: link
+    type(scene_type), intent(inout) :: scene
+    type(outline_type), intent(out) :: outline
+    integer :: i, k, side
+
+    associate (graph => skeleton%graph)
+      do i = graph%first(link), graph%first(link + 1) - 1
+        k = graph%pair_at(i)
+        associate (place => skeleton%places(k))
+          side = merge(1, 2, place%links(1) == link)
+          if (place%kind == turning .or. side == place%carrier) then
+            call add_to_outline(outline, place%points(:, side), symbols%node(k))
+          else if (place%telescopic .or. place%kind == free) then
+            cycle
+          else
+            call add_to_outline(outline, scene%node_at(:, symbols%guide(1, k)), symbols%guide(1, k))
+            call add_to_outline(outline, scene%node_at(:, symbols%guide(2, k)), symbols%guide(2, k))
+          end if
+        end associate
+      end do
+    end associate
+    do i = 1, size(mechanism%points)
+      if (mechanism%points(i)%link == link) call add_place(scene, link, mechanism%points(i)%position, outline)
+    end do
+    do i = 1, size(mechanism%loads)
+      select type (load => mechanism%loads(i)%load)
+      type is (spring_load_type)
+        if (load%links(1) == link) call add_place(scene, link, load%positions(:, 1), outline)
+        if (load%links(2) == link) call add_place(scene, link, load%positions(:, 2), outline)
+      end select
+    end do
+    ! what hangs on one pair reaches to its mass at least
+    if (skeleton%graph%first(link + 1) - skeleton%graph%first(link) > 1) return
+    do i = 1, size(mechanism%bodies)
+      if (mechanism%bodies(i)%link == link) call add_place(scene, link, mechanism%bodies(i)%centre, outline)
+    end do
+  end subroutine find_outline
+
+  subroutine add_place(scene, link, at, outline)
+    type(scene_type), intent(inout) :: scene
+    integer, intent(in) :: link
+    real(wp), intent(in) :: at(3)
+    type(outline_type), intent(inout) :: outline
+    integer :: node
+
+    call scene%add_node(link, at, node)
+    call add_to_outline(outline, at, node)
+  end subroutine add_place
+
+  pure subroutine add_to_outline(outline, point, node)
+    type(outline_type), intent(inout) :: outline
+    real(wp), intent(in) :: point(3)
+    integer, intent(in) :: node
+    real(wp), allocatable :: points(:, :)
+    integer, allocatable :: nodes(:)
+
+    if (.not. allocated(outline%nodes)) allocate (outline%points(3, 8), outline%nodes(8))
+    if (outline%count == size(outline%nodes)) then
+      allocate (points(3, 2*outline%count), nodes(2*outline%count))
+      points(:, :outline%count) = outline%points
+      nodes(:outline%count) = outline%nodes
+      call move_alloc(points, outline%points)
+      call move_alloc(nodes, outline%nodes)
+    end if
+    outline%count = outline%count + 1
+    outline%points(:, outline%count) = point
+    outline%nodes(outline%count) = node
+  end subroutine add_to_outline
+
+  !> Bar or plate of a link, and what reaches from it to pairs that move along it.
+  subroutine add_link(skeleton, symbols, link, scene, outline, shape)
+    type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
+    integer, intent(in) :: link
+    type(scene_type), intent(inout) :: scene
+    type(outline_type), intent(inout) :: outline
+    integer, intent(out) :: shape
+    integer, allocatable :: chosen(:), order(:)
+    logical :: closed
+    integer :: i, k, side
+
+    shape = 0
+    if (outline%count > 0) then
+      chosen = distinct_points(outline%points(:, :outline%count), same*skeleton%size)
+      outline%points(:, :size(chosen)) = outline%points(:, chosen)
+      outline%nodes(:size(chosen)) = outline%nodes(chosen)
+      outline%count = size(chosen)
+      call find_shape(outline%points(:, :outline%count), same*skeleton%size, order, closed)
+      if (size(order) > 0) then
+        call scene%add_item(merge(closed_path, segments, closed), in_plate, outline%nodes(order), link)
+        shape = scene%n_items
+      end if
+    end if
+    associate (graph => skeleton%graph)
+      do i = graph%first(link), graph%first(link + 1) - 1
+        k = graph%pair_at(i)
+        associate (place => skeleton%places(k))
+          side = merge(1, 2, place%links(1) == link)
+          if (place%telescopic .and. side == place%carrier) then
+            call scene%add_item(open_path, in_tube, [symbols%guide(1, k), symbols%node(k)], link, above=[shape])
+            shape = scene%n_items
+          else if (place%telescopic) then
+            call scene%add_item(open_path, in_plate, [symbols%guide(2, k), symbols%node(k)], link)
+            shape = scene%n_items
+            call add_to_outline(outline, place%pins(:, side), symbols%guide(2, k))
+          else if (place%kind == free .and. side == 1 .and. outline%count > 0) then
+            call scene%add_item(open_path, in_plate, [outline%nodes(1), symbols%node(k)], link)
+            if (shape == 0) shape = scene%n_items
+          end if
+        end associate
+      end do
+    end associate
+  end subroutine add_link
+
+  subroutine add_springs(mechanism, shapes, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: shapes(:)
+    type(scene_type), intent(inout) :: scene
+    integer :: i, from, to
+
+    do i = 1, size(mechanism%loads)
+      select type (load => mechanism%loads(i)%load)
+      type is (spring_load_type)
+        call scene%add_node(load%links(1), load%positions(:, 1), from)
+        call scene%add_node(load%links(2), load%positions(:, 2), to)
+        call scene%add_item(spring, in_spring, [from, to], above=shapes(load%links))
+      end select
+    end do
+  end subroutine add_springs
+
+  !> Points, with their names, and mass centres.
+  subroutine add_points(mechanism, with_masses, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    logical, intent(in) :: with_masses
+    type(scene_type), intent(inout) :: scene
+    integer :: i, node
+
+    if (with_masses) then
+      do i = 1, size(mechanism%bodies)
+        if (mechanism%bodies(i)%link == 1 .or. .not. mechanism%bodies(i)%mass > 0.0_wp) cycle
+        call scene%add_node(mechanism%bodies(i)%link, mechanism%bodies(i)%centre, node)
+        call scene%add_item(mark, as_centre, [node])
+      end do
+    end if
+    do i = 1, size(mechanism%points)
+      call scene%add_node(mechanism%points(i)%link, mechanism%points(i)%position, node)
+      call scene%add_item(mark, as_dot, [node], mechanism%points(i)%link)
+      call scene%add_item(label, as_name, [node], text=mechanism%points(i)%name, shift=[7.0_wp, -7.0_wp])
+    end do
+  end subroutine add_points
+
+  !> Numbers of the links in their middles, and names of the coordinates beside their pairs.
+  subroutine add_names(mechanism, skeleton, symbols, outlines, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
+    type(outline_type), intent(in) :: outlines(:)
+    type(scene_type), intent(inout) :: scene
+    real(wp) :: middle(3)
+    integer :: link, node
+
+    if (size(outlines) <= most_labelled) then
+      do link = 2, size(outlines)
+        associate (outline => outlines(link))
+          if (outline%count < 2) cycle
+          ! of a bar not quite the middle, where the mass centre is often
+          middle = sum(outline%points(:, :outline%count), 2)/outline%count
+          if (outline%count == 2) middle = 0.6_wp*outline%points(:, 1) + 0.4_wp*outline%points(:, 2)
+          call scene%add_node(link, middle, node)
+          call scene%add_item(label, as_number, [node], link, text=to_text(link))
+        end associate
+      end do
+    end if
+    if (size(skeleton%places) <= most_labelled) &
+      call add_coordinate_names(mechanism%structure%independent, symbols, scene)
+  end subroutine add_names
+end module mech9_scene_making
