@@ -1,4 +1,4 @@
-!> Assembly: closing the chains of a block from a rough guess. Uses kinds, error, least_squares,
+!> Assembly, that is, closing the chains of a block from a rough guess. Uses kinds, error, least_squares,
 !> random, plan, state, composition, closure, solver.
 !>
 !> Damped least squares (Levenberg and Marquardt), finished by Newton's method. Where the guess leads

@@ -30,7 +30,7 @@ module mech9_result_sink
       type(error_type), allocatable, intent(out) :: err
     end subroutine rows_interface
 
-    !> Finish: nothing waits any more, and files are closed even when writing fails. Does nothing to a
+    !> To finish: nothing waits any more, and files are closed even when writing fails. Does nothing to a
     !> sink that is closed.
     subroutine close_interface(self, err)
       import :: result_sink_type, error_type

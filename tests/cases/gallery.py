@@ -13,7 +13,9 @@ where is `every row`, `first`, `last` or `t = number`. Expressions are of column
 """
 import os
 import re
+import shlex
 import sys
+import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
@@ -86,11 +88,24 @@ def check_example(checks, example, program):
             check_values(checks, table, known, *parts)
 
 
+def check_options(checks, example, program):
+    """What the README says to try: the options between backticks are understood, whatever comes of them."""
+    with open(os.path.join(os.path.dirname(example.data), 'README.md'), encoding='utf-8') as file:
+        tried = [text for text in re.findall(r'`(--[^`]+)`', file.read()) if '...' not in text]
+    with tempfile.TemporaryDirectory() as folder:
+        for text in tried:
+            done = run(program, example.data, *shlex.split(text), folder=folder)
+            # 2 and 3: wrong options, wrong values
+            checks.true(done.returncode in (0, 4, 5, 6, 7), f'{text}: ends with {done.returncode}', done.stderr)
+
+
 def main():
     name, folder, samples = sys.argv[1], *map(os.path.abspath, sys.argv[2:4])
     example = next(example for example in examples() if example.name == name)
     checks = Checks()
-    check_example(checks, example, program_of(example, folder, samples))
+    program = program_of(example, folder, samples)
+    check_example(checks, example, program)
+    check_options(checks, example, program)
     checks.true(checks.passed > 3, 'there is more to compare than that it runs')
     checks.finish()
 

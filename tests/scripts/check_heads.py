@@ -17,6 +17,7 @@ MODULE = re.compile(r'\A((?:!>[^\n]*\n)+)module (mech9_\w+)\n(.*?)^end module \2
 DEFINITION = re.compile(
     r'^\s*(?:(?:pure|impure|elemental|recursive|module|integer|logical|real\(\w+\)|character\([^)]*\)|type\(\w+\))\s+)*'
     r'(?:(?:subroutine|function)\s+(\w+)\b|type(?:\s*,[^:]*)?\s*::\s*(\w+)\s*$|interface\s+(\w+)\s*$)')
+METADATA = re.compile(r'!> [\w-]+:\s')
 INTRINSIC = set('sqrt exp log sin cos tan asin acos atan atan2 sinh cosh tanh abs min max'.split())
 
 
@@ -55,6 +56,7 @@ def check_module(checks, path, text):
         return
     head, name, body = match.groups()
     checks.true(re.search(r'\bUses\b', head), f'{path}: the head says what it uses')
+    checks.true(not METADATA.match(head), f'{path}: begins with a sentence; "word:" would be metadata to FORD')
     order = [re.search(pattern, body, re.M) for pattern in (r'^  implicit none$', r'^  private$', r'^  public ::')]
     if checks.true(all(order), f'{path}: implicit none, private and a list of public names'):
         places = [found.start() for found in order]
