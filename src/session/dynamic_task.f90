@@ -5,6 +5,7 @@ module mech9_dynamic_task
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_task, only: task_type, answers_only, print_check, announce
@@ -33,11 +34,12 @@ contains
   end function dynamic_task
 
   !> Plan, assemble, work out the start, and run unless only a check is asked for.
-  subroutine work(self, options, mechanism, diagnostics)
+  subroutine work(self, options, mechanism, diagnostics, kept)
     class(dynamic_task_type), intent(in) :: self
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
     type(diagnostics_type), intent(inout) :: diagnostics
+    type(kept_rows_type), intent(inout), optional :: kept
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
@@ -55,19 +57,20 @@ contains
       if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
       if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, mechanism, plan, run, diagnostics)
+      call carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
     end if
     call run%close()
   end subroutine work
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics)
+  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(dynamic_run_type), intent(inout) :: run
     type(diagnostics_type), intent(inout) :: diagnostics
+    type(kept_rows_type), intent(inout), optional :: kept
     type(results_type) :: results
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
@@ -79,7 +82,7 @@ contains
       call diagnostics%add_error(err)
       return
     end if
-    call record(run, mechanism, results, options%has('quiet'), outcome, err)
+    call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) call print_dynamic_report(error_unit, results%table_path, outcome, run)
     if (allocated(err)) call diagnostics%add_error(err)
     call results%close(err)

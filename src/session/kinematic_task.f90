@@ -5,6 +5,7 @@ module mech9_kinematic_task
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_task, only: task_type, answers_only, print_check, announce
@@ -34,11 +35,12 @@ contains
   end function kinematic_task
 
   !> Plan, assemble, and run unless only a check is asked for.
-  subroutine work(self, options, mechanism, diagnostics)
+  subroutine work(self, options, mechanism, diagnostics, kept)
     class(kinematic_task_type), intent(in) :: self
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
     type(diagnostics_type), intent(inout) :: diagnostics
+    type(kept_rows_type), intent(inout), optional :: kept
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
@@ -62,17 +64,18 @@ contains
       return
     end if
     call new_kinematic_run(mechanism, plan, start, run)
-    call carry_out(options, pictures, mechanism, plan, run, diagnostics)
+    call carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
   end subroutine work
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics)
+  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(kinematic_run_type), intent(inout) :: run
     type(diagnostics_type), intent(inout) :: diagnostics
+    type(kept_rows_type), intent(inout), optional :: kept
     type(results_type) :: results
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
@@ -84,7 +87,7 @@ contains
       call diagnostics%add_error(err)
       return
     end if
-    call record(run, mechanism, results, options%has('quiet'), outcome, err)
+    call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) &
       call print_kinematic_report(error_unit, mechanism, plan, results%table_path, outcome, run%tracker)
     if (allocated(err)) call diagnostics%add_error(err)

@@ -7,6 +7,7 @@ module mech9_recording
   use mech9_clock, only: seconds
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
+  use mech9_kept_rows, only: kept_rows_type
   use mech9_film, only: film_type
   use mech9_results, only: results_type
   use mech9_progress, only: progress_type
@@ -50,13 +51,14 @@ contains
 
   !> Rows at all output times, into the results, which stay open. When the motion cannot go on, or the
   !> user interrupts, what was computed is written first.
-  subroutine record(source, mechanism, results, quiet, outcome, err)
+  subroutine record(source, mechanism, results, quiet, outcome, err, kept)
     class(motion_source_type), intent(inout) :: source
     type(mechanism_type), intent(in) :: mechanism
     type(results_type), intent(inout) :: results
     logical, intent(in) :: quiet
     type(recording_outcome_type), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: err
+    type(kept_rows_type), intent(inout), optional :: kept   !< for who looks at the rows after the run
     type(error_type), allocatable :: stopped, at_flush
     type(progress_type) :: progress
     real(wp), allocatable :: rows(:, :)
@@ -64,6 +66,9 @@ contains
     integer :: next, count
 
     allocate (rows(source%columns%count, rows_together), source=0.0_wp)
+    if (present(kept)) &
+      call kept%begin(mechanism%title, source%columns%names(:source%columns%count), &
+                      source%columns%units(:source%columns%count), mechanism%time%intervals + 1)
     clock = seconds()
     call progress%start(source%program_name, quiet)
     next = 0
@@ -72,6 +77,7 @@ contains
       call compute_rows(source, mechanism, progress, next, rows, count, stopped)
       call lap(clock, outcome%seconds_solving)
       outcome%rows = outcome%rows + count
+      if (present(kept)) call kept%take(rows(:, :count))
       call results%write_rows(rows(:, :count), err)
       if (allocated(err)) exit
     end do

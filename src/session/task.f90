@@ -1,11 +1,12 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
 !> Uses command_line, mechanism, plan, state, mobility_report,
-!> assemblies_text, plan_text, diagnostics.
+!> assemblies_text, plan_text, diagnostics, kept_rows.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_kept_rows, only: kept_rows_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -25,12 +26,13 @@ module mech9_task
 
   abstract interface
     !> Do what the options ask for. Errors go to `diagnostics`, which knows the places in the data file.
-    subroutine work_interface(self, options, mechanism, diagnostics)
-      import :: task_type, command_line_type, mechanism_type, diagnostics_type
+    subroutine work_interface(self, options, mechanism, diagnostics, kept)
+      import :: task_type, command_line_type, mechanism_type, diagnostics_type, kept_rows_type
       class(task_type), intent(in) :: self
       type(command_line_type), intent(in) :: options
       type(mechanism_type), intent(in) :: mechanism
       type(diagnostics_type), intent(inout) :: diagnostics
+      type(kept_rows_type), intent(inout), optional :: kept   !< the rows of a run, for who looks at them after it
     end subroutine work_interface
   end interface
 

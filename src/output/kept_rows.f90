@@ -1,0 +1,75 @@
+!> The results of a run kept in memory, to be looked at when it is over. Uses the base.
+module mech9_kept_rows
+  use mech9_kinds, only: wp, long
+  use mech9_text, only: string_type, nearest_name
+  implicit none
+  private
+  public :: kept_rows_type
+
+  !> Numbers that are kept at most (128 MiB); of longer runs only every so-manieth row is.
+  integer(long), parameter :: most_numbers = 2_long**24
+
+  type :: kept_rows_type
+    character(len=:), allocatable :: title
+    type(string_type), allocatable :: names(:), units(:)   !< of the columns, time first
+    real(wp), allocatable :: rows(:, :)                    !< rows(:, i): row i; `count` of them are filled
+    integer :: count = 0                                   !< rows kept
+    integer :: stride = 1                                  !< every so-manieth row is kept
+    integer :: seen = 0                                    !< rows taken
+  contains
+    procedure :: begin
+    procedure :: take
+    procedure :: column
+  end type kept_rows_type
+
+contains
+
+  !> Begin anew with nothing.
+  pure subroutine begin(self, title, names, units, expected)
+    class(kept_rows_type), intent(inout) :: self
+    character(len=*), intent(in) :: title
+    type(string_type), intent(in) :: names(:), units(:)    !< of the columns, time first
+    integer, intent(in) :: expected                        !< how many rows will come at most
+
+    self%title = title
+    self%names = names
+    self%units = units
+    self%stride = 1 + int((size(names)*int(expected, long))/most_numbers)
+    self%count = 0
+    self%seen = 0
+    if (allocated(self%rows)) deallocate (self%rows)
+    allocate (self%rows(size(names), 1 + (max(expected, 1) - 1)/self%stride))
+  end subroutine begin
+
+  !> Keep rows, which follow those before.
+  pure subroutine take(self, rows)
+    class(kept_rows_type), intent(inout) :: self
+    real(wp), intent(in) :: rows(:, :)                     !< (columns, rows)
+    integer :: i
+
+    do i = 1, size(rows, 2)
+      if (modulo(self%seen, self%stride) == 0 .and. self%count < size(self%rows, 2)) then
+        self%count = self%count + 1
+        self%rows(:, self%count) = rows(:, i)
+      end if
+      self%seen = self%seen + 1
+    end do
+  end subroutine take
+
+  !> Number of the column with a name; 0 where there is none, and then what was probably meant.
+  pure subroutine column(self, name, number, meant)
+    class(kept_rows_type), intent(in) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(out) :: number
+    character(len=:), allocatable, intent(out) :: meant    !< empty where no name is near
+    character(len=len(name) + 8) :: known(size(self%names))
+
+    meant = ''
+    do number = 1, size(self%names)
+      if (self%names(number)%text == name) return
+      known(number) = self%names(number)%text
+    end do
+    number = 0
+    meant = nearest_name(name, known)
+  end subroutine column
+end module mech9_kept_rows

@@ -1,0 +1,51 @@
+!> Some columns and the last rows of results as lines for the terminal. Uses the base, kept_rows.
+module mech9_rows_text
+  use mech9_text, only: to_text
+  use mech9_kept_rows, only: kept_rows_type
+  implicit none
+  private
+  public :: rows_text, columns_that_fit
+
+  !> Width of a column, and columns that fit on 80 letters.
+  integer, parameter :: column_width = 13, columns_that_fit = 6
+  character, parameter :: eol = achar(10)
+
+contains
+
+  !> Names, units and the last rows, of whole lines.
+  pure function rows_text(kept, columns, last) result(text)
+    type(kept_rows_type), intent(in) :: kept
+    integer, intent(in) :: columns(:)         !< numbers of the columns to show
+    integer, intent(in) :: last               !< how many rows
+    character(len=:), allocatable :: text
+    integer :: i, k, shown
+
+    text = ''
+    do k = 1, size(columns)
+      text = text//at_right(kept%names(columns(k))%text)
+    end do
+    text = text//eol
+    do k = 1, size(columns)
+      text = text//at_right(kept%units(columns(k))%text)
+    end do
+    text = text//eol
+    shown = min(last, kept%count)
+    do i = kept%count - shown + 1, kept%count
+      do k = 1, size(columns)
+        text = text//at_right(to_text(kept%rows(columns(k), i), 7))
+      end do
+      text = text//eol
+    end do
+    text = text//'(the last '//to_text(shown)//' of '//to_text(kept%count)//' rows'
+    if (kept%stride > 1) text = text//', every '//to_text(kept%stride)//'th of the run'
+    text = text//'; '//to_text(size(columns))//' of '//to_text(size(kept%names))//' columns)'//eol
+  end function rows_text
+
+  !> A text in its column, with a blank before it even where it is too long.
+  pure function at_right(text) result(padded)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: padded
+
+    padded = repeat(' ', max(1, column_width - len(text)))//text
+  end function at_right
+end module mech9_rows_text

@@ -1,0 +1,172 @@
+!> Two runs held against each other: the largest difference in each column. Uses the base, kept_rows.
+module mech9_run_comparison
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_kept_rows, only: kept_rows_type
+  implicit none
+  private
+  public :: difference_type, comparison_type, compare_runs, comparison_text
+
+  !> How two runs differ in one column.
+  type :: difference_type
+    integer :: column = 0                 !< of the later run
+    real(wp) :: difference = 0.0_wp       !< largest |later - earlier|, in the column's unit
+    real(wp) :: time = 0.0_wp             !< where it is [s]
+    real(wp) :: before = 0.0_wp, after = 0.0_wp
+    real(wp) :: share = 0.0_wp            !< of the largest absolute value of this unit in either run
+  end type difference_type
+
+  !> Two runs, at the times that they have in common.
+  type :: comparison_type
+    integer :: times = 0
+    integer :: same = 0                                !< columns that do not differ at all
+    integer :: alike = 0                               !< columns that differ by no more than round-off
+    type(difference_type), allocatable :: columns(:)   !< that differ by more, the greatest share first
+  end type comparison_type
+
+  !> Output times that differ by less than this share are one: they are computed from start, end and number.
+  real(wp), parameter :: same_time = 1.0e-12_wp
+  !> A share that round-off along different ways can come to, as when a tolerance is changed.
+  real(wp), parameter :: round_off = 1.0e-12_wp
+  !> Lines of a comparison, so that it stays on the screen.
+  integer, parameter :: most_lines = 15
+  character, parameter :: eol = achar(10)
+
+contains
+
+  !> Compare the columns that two runs have in common by name.
+  pure subroutine compare_runs(earlier, later, comparison)
+    type(kept_rows_type), intent(in) :: earlier, later
+    type(comparison_type), intent(out) :: comparison
+    integer :: pairs(2, min(earlier%count, later%count))
+    type(difference_type) :: difference
+    character(len=:), allocatable :: meant
+    real(wp) :: greatest_before(size(earlier%names)), greatest_now(size(later%names)), greatest
+    integer :: i, other
+
+    allocate (comparison%columns(0))
+    call pair_times(earlier, later, pairs, comparison%times)
+    if (comparison%times == 0) return
+    greatest_before = greatest_of_unit(earlier)
+    greatest_now = greatest_of_unit(later)
+    do i = 2, size(later%names)
+      call earlier%column(later%names(i)%text, other, meant)
+      if (other == 0) cycle
+      difference = difference_in(earlier%rows(other, pairs(1, :comparison%times)), &
+                                 later%rows(i, pairs(2, :comparison%times)), later%rows(1, pairs(2, :comparison%times)))
+      difference%column = i
+      greatest = max(greatest_before(other), greatest_now(i))
+      if (greatest > 0.0_wp) difference%share = difference%difference/greatest
+      if (difference%share > round_off) then
+        call insert(comparison%columns, difference)
+      else if (difference%difference > 0.0_wp) then
+        comparison%alike = comparison%alike + 1
+      else
+        comparison%same = comparison%same + 1
+      end if
+    end do
+  end subroutine compare_runs
+
+  !> Rows of the two runs that belong to one time.
+  pure subroutine pair_times(earlier, later, pairs, n)
+    type(kept_rows_type), intent(in) :: earlier, later
+    integer, intent(inout) :: pairs(:, :)
+    integer, intent(out) :: n
+    real(wp) :: one, other
+    integer :: i, j
+
+    n = 0
+    i = 1
+    j = 1
+    do while (i <= earlier%count .and. j <= later%count)
+      one = earlier%rows(1, i)
+      other = later%rows(1, j)
+      if (abs(one - other) <= same_time*max(1.0_wp, abs(one))) then
+        n = n + 1
+        pairs(:, n) = [i, j]
+        i = i + 1
+        j = j + 1
+      else if (one < other) then
+        i = i + 1
+      else
+        j = j + 1
+      end if
+    end do
+  end subroutine pair_times
+
+  pure type(difference_type) function difference_in(before, after, times) result(difference)
+    real(wp), intent(in) :: before(:), after(:), times(:)
+    integer :: i
+
+    i = maxloc(abs(after - before), dim=1)
+    difference%difference = abs(after(i) - before(i))
+    difference%time = times(i)
+    difference%before = before(i)
+    difference%after = after(i)
+  end function difference_in
+
+  !> For each column the largest absolute value in all columns of its unit. What is zero but for round-off, such
+  !> as the height of a planar motion, is small against it.
+  pure function greatest_of_unit(kept) result(greatest)
+    type(kept_rows_type), intent(in) :: kept
+    real(wp) :: greatest(size(kept%names))
+    real(wp) :: own(size(kept%names))
+    integer :: i, k
+
+    own = 0.0_wp
+    do k = 1, kept%count
+      own = max(own, abs(kept%rows(:, k)))
+    end do
+    do i = 1, size(own)
+      greatest(i) = own(i)
+      do k = 1, size(own)
+        if (kept%units(k)%text == kept%units(i)%text) greatest(i) = max(greatest(i), own(k))
+      end do
+    end do
+  end function greatest_of_unit
+
+  !> Into the list at its place.
+  pure subroutine insert(list, difference)
+    type(difference_type), allocatable, intent(inout) :: list(:)
+    type(difference_type), intent(in) :: difference
+    integer :: place
+
+    place = count(list%share >= difference%share)
+    list = [list(:place), difference, list(place + 1:)]
+  end subroutine insert
+
+  !> A comparison in words, of whole lines of 79 letters at most.
+  pure function comparison_text(comparison, later) result(text)
+    type(comparison_type), intent(in) :: comparison
+    type(kept_rows_type), intent(in) :: later
+    character(len=:), allocatable :: text
+    character(len=79) :: line
+    integer :: i
+
+    if (comparison%times == 0) then
+      text = 'The two runs have no time in common.'//eol
+      return
+    end if
+    text = 'Compared at the '//to_text(comparison%times)//' times that both runs have: '
+    if (size(comparison%columns) == 0) then
+      text = text//'all columns are the same, '
+      if (comparison%alike == 0) text = text//'to the last bit.'//eol
+      if (comparison%alike > 0) text = text//'but for round-off.'//eol
+      return
+    end if
+    text = text//to_text(size(comparison%columns))//' columns differ, '// &
+           to_text(comparison%same + comparison%alike)//' do not.'//eol
+    write (line, '(a16,5a12)') 'column', 'difference', 'of largest', 'at t [s]', 'before', 'now'
+    text = text//trim(line)//eol
+    do i = 1, min(size(comparison%columns), most_lines)
+      associate (column => comparison%columns(i))
+        write (line, '(a16,5a12)') later%names(column%column)%text, to_text(column%difference, 4), &
+          to_text(100.0_wp*column%share, 3)//' %', to_text(column%time, 5), to_text(column%before, 5), &
+          to_text(column%after, 5)
+      end associate
+      text = text//trim(line)//eol
+    end do
+    if (size(comparison%columns) > most_lines) &
+      text = text//'and '//to_text(size(comparison%columns) - most_lines)//' columns that differ less.'//eol
+  end function comparison_text
+end module mech9_run_comparison
