@@ -46,7 +46,7 @@ contains
 
     allocate (err)
     err%code = code
-    err%message = message
+    err%message = trim(message)
     if (present(place)) err%place = place
   end subroutine raise
 

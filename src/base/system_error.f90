@@ -37,22 +37,20 @@ contains
     error_number = number
   end function error_number
 
-  !> The system's words for an error number.
+  !> The system's words for an error number, padded with blanks.
   function reason(number) result(text)
     integer(c_int), intent(in) :: number
-    character(len=:), allocatable :: text
+    character(len=80) :: text
     character(kind=c_char), pointer :: letters(:)
     type(c_ptr) :: words
     integer :: i
 
     words = c_strerror(number)
-    if (.not. c_associated(words)) then
-      text = 'unknown reason'
-      return
-    end if
+    text = 'unknown reason'
+    if (.not. c_associated(words)) return
     call c_f_pointer(words, letters, [c_strlen(words)])
-    allocate (character(len=size(letters)) :: text)
-    do i = 1, size(letters)
+    text = ''
+    do i = 1, min(size(letters), len(text))
       text(i:i) = letters(i)
     end do
   end function reason

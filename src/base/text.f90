@@ -1,10 +1,15 @@
 !> Small helpers for text: numbers as text, case, lists, nearest names. Uses mech9_kinds only.
+!>
+!> Functions here and wherever threads may meet have results of explicit length: gfortran keeps the length of
+!> a result `character(len=:), allocatable` in a static variable of the caller, which threads would share.
 module mech9_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_kinds, only: wp, long
   implicit none
   private
-  public :: string_type, to_text, lower, join, nearest_name, starts_with
+  public :: string_type, to_text, some_of, lower, join, nearest_name, starts_with
+
+  integer, parameter :: longest_real = 48     !< characters of a real number
 
   !> One text of its own length, for arrays of texts.
   type :: string_type
@@ -13,90 +18,188 @@ module mech9_text
 
   !> A number as text without surrounding blanks.
   interface to_text
-    module procedure integer_to_text, long_to_text, real_to_text, integers_to_text
+    module procedure integer_to_text, long_to_text, real_to_text, digits_to_text, integers_to_text, separated_integers
   end interface to_text
 
 contains
 
+  ! Lengths of results: gfortran wants them before the functions that have them.
+
+  !> Digits of an integer, and its sign if it has one.
+  pure integer function integer_length(number) result(length)
+    integer(long), intent(in) :: number
+    integer(long) :: rest
+
+    length = merge(2, 1, number < 0)
+    rest = number/10
+    do while (rest /= 0)
+      length = length + 1
+      rest = rest/10
+    end do
+  end function integer_length
+
+  pure integer function real_length(number, digits) result(length)
+    real(wp), intent(in) :: number
+    integer, intent(in) :: digits
+    character(len=longest_real) :: buffer
+
+    call write_real(number, digits, buffer)
+    length = len_trim(buffer)
+  end function real_length
+
+  pure integer function integers_length(numbers, separator) result(length)
+    integer, intent(in) :: numbers(:)
+    character(len=*), intent(in) :: separator
+    integer :: i
+
+    length = len(separator)*max(size(numbers) - 1, 0)
+    do i = 1, size(numbers)
+      length = length + integer_length(int(numbers(i), long))
+    end do
+  end function integers_length
+
+  pure integer function some_length(numbers, most) result(length)
+    integer, intent(in) :: numbers(:), most
+
+    length = integers_length(numbers(:min(size(numbers), most)), ', ')
+    if (size(numbers) > most) &
+      length = length + len(' and  more') + integer_length(int(size(numbers) - most, long))
+  end function some_length
+
+  pure integer function joined_length(strings, separator) result(length)
+    type(string_type), intent(in) :: strings(:)
+    character(len=*), intent(in) :: separator
+    integer :: i
+
+    length = len(separator)*max(size(strings) - 1, 0)
+    do i = 1, size(strings)
+      length = length + len(strings(i)%text)
+    end do
+  end function joined_length
+
+  pure integer function nearest_length(word, known) result(length)
+    character(len=*), intent(in) :: word, known(:)
+    integer :: place
+
+    length = 0
+    place = nearest_place(word, known)
+    if (place > 0) length = len_trim(known(place))
+  end function nearest_length
+
   pure function integer_to_text(number) result(text)
     integer, intent(in) :: number
-    character(len=:), allocatable :: text
+    character(len=integer_length(int(number, long))) :: text
 
-    text = long_to_text(int(number, long))
+    write (text, '(i0)') number
   end function integer_to_text
 
   pure function long_to_text(number) result(text)
     integer(long), intent(in) :: number
-    character(len=:), allocatable :: text
-    character(len=24) :: buffer
+    character(len=integer_length(number)) :: text
 
-    write (buffer, '(i0)') number
-    text = trim(buffer)
+    write (text, '(i0)') number
   end function long_to_text
 
-  !> A real number with as many significant digits as asked for (6 unless given), plain where
-  !> that is readable: 0.25, 1200, 1.5E-07.
-  pure function real_to_text(number, digits) result(text)
+  !> A real number with six significant digits.
+  pure function real_to_text(number) result(text)
     real(wp), intent(in) :: number
-    integer, intent(in), optional :: digits
-    character(len=:), allocatable :: text
-    character(len=48) :: buffer
-    character(len=16) :: form
-    integer :: n, last, exponent
+    character(len=real_length(number, 6)) :: text
 
-    n = 6
-    if (present(digits)) n = digits
+    text = digits_to_text(number, 6)
+  end function real_to_text
+
+  !> A real number with as many significant digits as asked for.
+  pure function digits_to_text(number, digits) result(text)
+    real(wp), intent(in) :: number
+    integer, intent(in) :: digits
+    character(len=real_length(number, digits)) :: text
+    character(len=longest_real) :: buffer
+
+    call write_real(number, digits, buffer)
+    text = buffer
+  end function digits_to_text
+
+  !> Plain where that is readable, padded with blanks: 0.25, 1200, 1.5e-7.
+  pure subroutine write_real(number, digits, text)
+    real(wp), intent(in) :: number
+    integer, intent(in) :: digits
+    character(len=longest_real), intent(out) :: text
+    character(len=longest_real) :: buffer
+    character(len=16) :: form
+    integer :: exponent
+
     if (ieee_is_nan(number)) then
       text = 'NaN'
       return
     else if (abs(number) > huge(number)) then
       text = merge('Infinity ', '-Infinity', number > 0.0_wp)
-      text = trim(text)
       return
     end if
-    write (form, '(a,i0,a)') '(es48.', n - 1, 'e3)'
+    write (form, '(a,i0,a)') '(es48.', digits - 1, 'e3)'
     write (buffer, form) number
     read (buffer(index(buffer, 'E') + 1:), *) exponent
     if (abs(number) <= 0.0_wp) then
       text = '0'
-    else if (exponent >= -4 .and. exponent < max(n, 6)) then
-      write (form, '(a,i0,a)') '(f48.', max(n - 1 - exponent, 0), ')'
+    else if (exponent >= -4 .and. exponent < max(digits, 6)) then
+      write (form, '(a,i0,a)') '(f48.', max(digits - 1 - exponent, 0), ')'
       write (buffer, form) number
-      text = trim(adjustl(buffer))
-      if (index(text, '.') > 0) then
-        last = verify(text, '0', back=.true.)
-        if (text(last:last) == '.') last = last - 1
-        text = text(:last)
-      end if
+      text = adjustl(buffer)
+      if (index(text, '.') > 0) text = without_zeros(trim(text))
     else
-      last = index(buffer, 'E') - 1
-      last = verify(buffer(:last), '0', back=.true.)
-      if (buffer(last:last) == '.') last = last - 1
-      text = trim(adjustl(buffer(:last)))//'e'//to_text(exponent)
+      text = adjustl(buffer(:index(buffer, 'E') - 1))
+      text = trim(without_zeros(trim(text)))//'e'//to_text(exponent)
     end if
-    if (text(1:1) == '.') text = '0'//text
-    if (starts_with(text, '-.')) text = '-0'//text(2:)
-  end function real_to_text
+    if (text(1:1) == '.') text = '0'//trim(text)
+    if (starts_with(text, '-.')) text = '-0'//trim(text(2:))
+  end subroutine write_real
+
+  !> A decimal number without the zeros at its end, padded with blanks.
+  pure function without_zeros(number) result(text)
+    character(len=*), intent(in) :: number
+    character(len=len(number)) :: text
+    integer :: last
+
+    last = verify(number, '0', back=.true.)
+    if (number(last:last) == '.') last = last - 1
+    text = number(:last)
+  end function without_zeros
 
   !> Integers separated by commas: "1, 2, 5".
-  pure function integers_to_text(numbers, separator) result(text)
+  pure function integers_to_text(numbers) result(text)
     integer, intent(in) :: numbers(:)
-    character(len=*), intent(in), optional :: separator
-    character(len=:), allocatable :: text
-    integer :: i
+    character(len=integers_length(numbers, ', ')) :: text
 
-    text = ''
+    text = separated_integers(numbers, ', ')
+  end function integers_to_text
+
+  !> Integers with a separator between them.
+  pure function separated_integers(numbers, separator) result(text)
+    integer, intent(in) :: numbers(:)
+    character(len=*), intent(in) :: separator
+    character(len=integers_length(numbers, separator)) :: text
+    integer :: i, n, next
+
+    n = 0
     do i = 1, size(numbers)
       if (i > 1) then
-        if (present(separator)) then
-          text = text//separator
-        else
-          text = text//', '
-        end if
+        text(n + 1:n + len(separator)) = separator
+        n = n + len(separator)
       end if
-      text = text//integer_to_text(numbers(i))
+      next = n + integer_length(int(numbers(i), long))
+      write (text(n + 1:next), '(i0)') numbers(i)
+      n = next
     end do
-  end function integers_to_text
+  end function separated_integers
+
+  !> "1, 2, 5"; of a long list the beginning: "1, 2, 3 and 12 more".
+  pure function some_of(numbers, most) result(text)
+    integer, intent(in) :: numbers(:)
+    integer, intent(in) :: most       !< so many are written
+    character(len=some_length(numbers, most)) :: text
+
+    text = to_text(numbers(:min(size(numbers), most)))
+    if (size(numbers) > most) text = trim(text)//' and '//to_text(size(numbers) - most)//' more'
+  end function some_of
 
   !> The text in lower case (ASCII letters only; other bytes stay).
   pure function lower(text) result(lowered)
@@ -126,13 +229,17 @@ contains
   pure function join(strings, separator) result(text)
     type(string_type), intent(in) :: strings(:)
     character(len=*), intent(in) :: separator
-    character(len=:), allocatable :: text
-    integer :: i
+    character(len=joined_length(strings, separator)) :: text
+    integer :: i, n
 
-    text = ''
+    n = 0
     do i = 1, size(strings)
-      if (i > 1) text = text//separator
-      text = text//strings(i)%text
+      if (i > 1) then
+        text(n + 1:n + len(separator)) = separator
+        n = n + len(separator)
+      end if
+      text(n + 1:n + len(strings(i)%text)) = strings(i)%text
+      n = n + len(strings(i)%text)
     end do
   end function join
 
@@ -141,19 +248,27 @@ contains
   pure function nearest_name(word, known) result(name)
     character(len=*), intent(in) :: word
     character(len=*), intent(in) :: known(:)   !< blank-padded names
-    character(len=:), allocatable :: name
-    integer :: i, distance, best
+    character(len=nearest_length(word, known)) :: name
 
     name = ''
+    if (len(name) > 0) name = known(nearest_place(word, known))
+  end function nearest_name
+
+  !> Where the nearest name stands; 0 where none is near.
+  pure integer function nearest_place(word, known) result(place)
+    character(len=*), intent(in) :: word, known(:)
+    integer :: i, distance, best
+
+    place = 0
     best = 1 + max(1, (len_trim(word) + 1)/3)
     do i = 1, size(known)
       distance = edit_distance(lower(trim(word)), lower(trim(known(i))))
       if (distance < best) then
         best = distance
-        name = trim(known(i))
+        place = i
       end if
     end do
-  end function nearest_name
+  end function nearest_place
 
   !> Fewest insertions, deletions, changes and exchanges of neighbours that turn a into b.
   pure integer function edit_distance(a, b) result(distance)

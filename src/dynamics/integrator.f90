@@ -170,7 +170,7 @@ contains
       self%steps_to_stop = 0
     end if
     if (self%steps_to_stop < self%maximum_steps) return
-    call raise(err, exit_integrator, stands(self)//to_text(self%maximum_steps)// &
+    call raise(err, exit_integrator, trim(stands(self%t))//' '//to_text(self%maximum_steps)// &
                ' steps were not enough to come to t = '//to_text(t_stop, 10)//' s, and they are now '// &
                to_text(abs(self%stepper%next_step()), 3)//' s long. The motion is stiff (try method ''bdf''), or the'// &
                ' tolerances are too small, or maximum_steps is')
@@ -292,11 +292,11 @@ contains
   end function statistics
 
   !> Where the integration stands, as the beginning of a message.
-  function stands(self) result(text)
-    class(integrator_type), intent(in) :: self
-    character(len=:), allocatable :: text
+  pure function stands(t) result(text)
+    real(wp), intent(in) :: t        !< where it stands [s]
+    character(len=80) :: text
 
-    text = 'the integration cannot go on from t = '//to_text(self%t, 10)//' s: '
+    text = 'the integration cannot go on from t = '//to_text(t, 10)//' s:'
   end function stands
 
   !> The failure of a step in plain words.
@@ -311,18 +311,18 @@ contains
     end if
     select case (outcome)
     case (too_inaccurate)
-      call raise(err, exit_integrator, stands(self)//'however short the step, its error stays too large.'// &
+      call raise(err, exit_integrator, trim(stands(self%t))//' however short the step, its error stays too large.'// &
                  ' Look for a force that jumps or grows without limit there; or raise the tolerances')
     case (not_convergent, evaluation_failed)
-      call raise(err, exit_integrator, stands(self)//'the equations of an implicit step cannot be solved.'// &
+      call raise(err, exit_integrator, trim(stands(self%t))//' the equations of an implicit step cannot be solved.'// &
                  ' Look for a force that jumps there; or try another method')
     case (too_accurate)
-      call raise(err, exit_integrator, stands(self)//'the tolerances ask for more digits than the numbers'// &
+      call raise(err, exit_integrator, trim(stands(self%t))//' the tolerances ask for more digits than the numbers'// &
                  ' have. Raise relative_tolerance or absolute_tolerance')
     case (out_of_memory)
-      call raise(err, exit_integrator, stands(self)//'there is not enough memory')
+      call raise(err, exit_integrator, trim(stands(self%t))//' there is not enough memory')
     case default
-      call raise(err, exit_internal, stands(self)//'its settings do not fit together')
+      call raise(err, exit_internal, trim(stands(self%t))//' its settings do not fit together')
     end select
   end subroutine explain
 
@@ -332,7 +332,7 @@ contains
     type(error_type), allocatable, intent(out) :: err
 
     err = self%box%failure
-    call add_place(err, stands(self)//'at t = '//to_text(self%box%t_failed, 10)//' s')
+    call add_place(err, trim(stands(self%t))//' at t = '//to_text(self%box%t_failed, 10)//' s')
   end subroutine explain_by_system
 
   !> The step has become shorter than time can be told apart.
@@ -344,7 +344,7 @@ contains
       call explain_by_system(self, err)
       return
     end if
-    call raise(err, exit_integrator, stands(self)//'the steps have become too short for time to advance.'// &
+    call raise(err, exit_integrator, trim(stands(self%t))//' the steps have become too short for time to advance.'// &
                ' The motion becomes infinitely fast there, or comes to a position that it cannot pass')
   end subroutine explain_full_stop
 

@@ -16,6 +16,8 @@ module mech9_checker
   private
   public :: check_document
 
+  integer, parameter :: kind_length = 16    !< of the longest kind of a group
+
 contains
 
   !> Check all groups. Each group gets its row of the grammar, one plain item for each name, and the
@@ -69,7 +71,7 @@ contains
   pure subroutine check_group(group, diagnostics)
     type(group_type), intent(inout) :: group
     type(diagnostics_type), intent(inout) :: diagnostics
-    character(len=:), allocatable :: kind
+    character(len=kind_length) :: kind
 
     call merge_group(group, diagnostics)
     kind = kind_of(group)
@@ -111,7 +113,7 @@ contains
   !> The kind a group says it is; empty where it has none, or a wrong one.
   pure function kind_of(group) result(kind)
     type(group_type), intent(in) :: group
-    character(len=:), allocatable :: kind
+    character(len=kind_length) :: kind
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -142,7 +144,7 @@ contains
           call check_item(item, item_table(row), diagnostics)
         else if (kind /= '') then
           call diagnostics%add(item%span, ''''//item%name//''' does not belong to '//trim(group%name)// &
-                               's of kind '''//kind//'''')
+                               's of kind '''//trim(kind)//'''')
         end if
       end associate
     end do

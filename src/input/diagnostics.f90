@@ -8,6 +8,11 @@ module mech9_diagnostics
   private
   public :: diagnostics_type, printable
 
+  !> A text made safe to print.
+  interface printable
+    module procedure printable_text, printable_beginning
+  end interface printable
+
   type :: diagnostic_type
     type(span_type) :: span
     character(len=:), allocatable :: message
@@ -28,7 +33,7 @@ module mech9_diagnostics
     procedure :: code
     procedure :: place
     procedure :: text_of
-    procedure :: rendered
+    procedure :: render
     procedure :: report
   end type diagnostics_type
 
@@ -135,23 +140,40 @@ contains
     if (span%source == 1) place = self%sources(1)%place(span%first)
   end function place
 
+  pure integer function cut_length(text, longest) result(length)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: longest
+
+    length = len(text)
+    if (length > longest) length = character_start(text, longest, 1) - 1 + len('...')
+  end function cut_length
+
+  pure integer function length_of(self, span) result(length)
+    type(diagnostics_type), intent(in) :: self
+    type(span_type), intent(in) :: span
+
+    length = 0
+    if (span%source == 0) return
+    length = cut_length(self%sources(span%source)%text(span%first:span%last), longest_quote)
+  end function length_of
+
   !> A span as it is written, for messages: short and printable.
   pure function text_of(self, span) result(text)
     class(diagnostics_type), intent(in) :: self
     type(span_type), intent(in) :: span
-    character(len=:), allocatable :: text
+    character(len=length_of(self, span)) :: text
 
-    text = ''
     if (span%source == 0) return
     text = printable(self%sources(span%source)%text(span%first:span%last), longest_quote)
   end function text_of
 
   !> Error number i in the order of the places, as it is shown: message, line, carets.
-  pure function rendered(self, i) result(text)
+  pure subroutine render(self, i, text)
     class(diagnostics_type), intent(in) :: self
     integer, intent(in) :: i
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(out) :: text
     type(diagnostic_type) :: this
+    type(place_type) :: position
     integer, allocatable :: order(:)
 
     order = sorted(self)
@@ -162,19 +184,26 @@ contains
       return
     end if
     associate (source => self%sources(this%span%source))
-      text = printable(source%name)//': '//this%message
-      if (this%span%first > 0) text = prefix(source, this%span)//this%message//excerpt(source, this%span)
+      text = printable(source%name)//':'
+      if (this%span%first > 0 .and. source%is_file) then
+        position = source%place(this%span%first)
+        text = text//to_text(position%line)//':'//to_text(position%column)//':'
+      end if
+      text = text//' '//this%message
+      if (this%span%first > 0) call append_excerpt(source, this%span, text)
     end associate
-  end function rendered
+  end subroutine render
 
   !> Print the errors in the order of their places, at most twenty of them.
   subroutine report(self, unit)
     class(diagnostics_type), intent(in) :: self
     integer, intent(in) :: unit
+    character(len=:), allocatable :: text
     integer :: i
 
     do i = 1, min(self%kept_count, most_shown)
-      write (unit, '(a)') self%rendered(i)
+      call self%render(i, text)
+      write (unit, '(a)') text
     end do
     if (self%count > most_shown) &
       write (unit, '(3a)') 'and ', to_text(self%count - most_shown), ' more'
@@ -209,25 +238,11 @@ contains
     end if
   end function before
 
-  pure function prefix(source, span) result(text)
+  !> Append the line of a span with carets under the span; of a long line, a window around it.
+  pure subroutine append_excerpt(source, span, text)
     type(source_type), intent(in) :: source
     type(span_type), intent(in) :: span
-    character(len=:), allocatable :: text
-    type(place_type) :: position
-
-    text = printable(source%name)//':'
-    if (source%is_file) then
-      position = source%place(span%first)
-      text = text//to_text(position%line)//':'//to_text(position%column)//':'
-    end if
-    text = text//' '
-  end function prefix
-
-  !> The line of a span with carets under the span; of a long line, a window around it.
-  pure function excerpt(source, span) result(text)
-    type(source_type), intent(in) :: source
-    type(span_type), intent(in) :: span
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(inout) :: text
     character(len=:), allocatable :: line, carets
     type(place_type) :: position
     integer :: first, last, from, to, i
@@ -253,8 +268,8 @@ contains
       carets = '   '//carets
     end if
     if (to < last) line = line//'...'
-    text = new_line('a')//line//new_line('a')//carets
-  end function excerpt
+    text = text//new_line('a')//line//new_line('a')//carets
+  end subroutine append_excerpt
 
   !> The first byte of the character that byte `at` belongs to.
   pure integer function character_start(text, at, least) result(start)
@@ -279,20 +294,25 @@ contains
     end do
   end function count_characters
 
-  !> A text that may come from anywhere, safe to print: control bytes become question marks
-  !> (tabs stay), and a text longer than `longest` bytes is cut.
-  pure function printable(text, longest) result(shown)
+  !> A text that may come from anywhere, safe to print: control bytes become question marks (tabs stay).
+  pure function printable_text(text) result(shown)
     character(len=*), intent(in) :: text
-    integer, intent(in), optional :: longest
-    character(len=:), allocatable :: shown
+    character(len=len(text)) :: shown
     integer :: i
 
     shown = text
-    if (present(longest)) then
-      if (len(text) > longest) shown = text(:character_start(text, longest, 1) - 1)//'...'
-    end if
     do i = 1, len(shown)
       if ((iachar(shown(i:i)) < 32 .and. shown(i:i) /= achar(9)) .or. iachar(shown(i:i)) == 127) shown(i:i) = '?'
     end do
-  end function printable
+  end function printable_text
+
+  !> The same, cut where it is longer than `longest` bytes.
+  pure function printable_beginning(text, longest) result(shown)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: longest
+    character(len=cut_length(text, longest)) :: shown
+
+    shown = printable_text(text)
+    if (len(text) > longest) shown = printable_text(text(:len(shown) - len('...')))//'...'
+  end function printable_beginning
 end module mech9_diagnostics

@@ -170,7 +170,7 @@ contains
   !> Path of a file named in a data file: relative names start from the data file's folder.
   pure function beside(data_file, name) result(path)
     character(len=*), intent(in) :: data_file, name
-    character(len=:), allocatable :: path
+    character(len=len(name) + merge(0, index(data_file, '/', back=.true.), starts_with(name, '/'))) :: path
 
     path = name
     if (.not. starts_with(name, '/')) path = data_file(:index(data_file, '/', back=.true.))//name

@@ -102,7 +102,7 @@ contains
     n = size(item%values)
     if (n >= row%low .and. n <= row%high) return
     message = to_text(n)//merge(' value ', ' values', n == 1)
-    message = trim(message)//' for '''//item%name//''' where '//expected_count(row)
+    message = trim(message)//' for '''//item%name//''' where '//trim(expected_count(row))
     if (n > row%high) then
       if (n == 2*row%high .and. decimal_commas(item, diagnostics)) then
         message = message//'; a decimal comma? write '//diagnostics%text_of(item%values(1)%span)//'.'// &
@@ -116,12 +116,14 @@ contains
 
   pure function expected_count(row) result(text)
     type(item_row_type), intent(in) :: row
-    character(len=:), allocatable :: text
+    character(len=60) :: text
 
-    text = to_text(row%low)//' is expected'
-    if (row%low > 1) text = to_text(row%low)//' are expected'
-    if (row%high > row%low) text = 'at least '//text
-    if (row%high > row%low .and. row%high < unlimited) text = to_text(row%low)//' to '//to_text(row%high)//' are expected'
+    if (row%high > row%low .and. row%high < unlimited) then
+      text = to_text(row%low)//' to '//to_text(row%high)//' are expected'
+    else
+      text = to_text(row%low)//trim(merge(' are expected', ' is expected ', row%low > 1))
+      if (row%high > row%low) text = 'at least '//trim(text)
+    end if
   end function expected_count
 
   !> All values are whole numbers in pairs joined by a comma without a blank: 1,5.

@@ -74,7 +74,7 @@ contains
         first = 1
       else
         call diagnostics%add(item%span, ''''//item%name//''' is given twice in this group'// &
-                             line_of(before, diagnostics))
+                             trim(line_of(before, diagnostics)))
       end if
     case (1)
       first = max(item%subscripts(1)%first, 1)
@@ -87,7 +87,7 @@ contains
   pure function line_of(span, diagnostics) result(text)
     type(span_type), intent(in) :: span
     type(diagnostics_type), intent(in) :: diagnostics
-    character(len=:), allocatable :: text
+    character(len=60) :: text
 
     text = ''
     if (span%source /= 1) return

@@ -150,22 +150,37 @@ contains
     end if
   end function get_logical
 
+  !> Length of a text that is given, or of its default, which stands in quotes.
+  pure integer function text_length(group, name) result(length)
+    type(group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    i = find_item(group, name)
+    if (i > 0) then
+      length = len_trim(group%items(i)%values(1)%text)
+    else
+      associate (default => item_table(row_of(group, name))%default)
+        length = 0
+        if (index(default, '''''') == 1) length = len_trim(default) - 2
+      end associate
+    end if
+  end function text_length
+
   !> A text without blanks at its end; words of a list in lower case.
   pure function get_text(group, name) result(text)
     type(group_type), intent(in) :: group
     character(len=*), intent(in) :: name
-    character(len=:), allocatable :: text
+    character(len=text_length(group, name)) :: text
     integer :: i, row
 
-    text = ''
     i = find_item(group, name)
     row = row_of(group, name)
     if (i > 0) then
-      text = trim(group%items(i)%values(1)%text)
+      text = group%items(i)%values(1)%text
       if (item_table(row)%words /= '') text = lower(text)
-    else if (index(item_table(row)%default, '''') == 1) then
-      text = trim(item_table(row)%default)
-      text = text(2:len(text) - 1)
+    else if (len(text) > 0) then
+      text = item_table(row)%default(2:)
     end if
   end function get_text
 

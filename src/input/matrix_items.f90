@@ -98,12 +98,12 @@ contains
       columns = bounds(item%subscripts(2), n)
     end if
     if (max(rows(2), columns(2)) > n) then
-      call diagnostics%add(item%span, 'the subscripts of '''//label(item)//''' go beyond the '//to_text(n)//' links')
+      call diagnostics%add(item%span, 'the subscripts of '''//trim(label(item))//''' go beyond the '//to_text(n)//' links')
       return
     end if
     expected = max(rows(2) - rows(1) + 1, 0)*max(columns(2) - columns(1) + 1, 0)
     if (expected /= size(item%values)) then
-      call diagnostics%add(item%span, label(item)//' has '//to_text(size(item%values))//merge(' value ', ' values', &
+      call diagnostics%add(item%span, trim(label(item))//' has '//to_text(size(item%values))//merge(' value ', ' values', &
                            size(item%values) == 1)//' where '//to_text(n)//' links need '//to_text(expected))
       return
     end if
@@ -136,7 +136,7 @@ contains
   !> "row 2 of c", "column 3 of c", or the item as it is called.
   pure function label(item) result(text)
     type(item_type), intent(in) :: item
-    character(len=:), allocatable :: text
+    character(len=32) :: text
 
     text = 'c'
     if (size(item%subscripts) /= 2) return

@@ -165,24 +165,18 @@ contains
     call pose_from_axis(point, axis, zero, frame, ok)
     if (ok) return
     if (.not. any(abs(axis) > 0.0_wp)) then
-      call diagnostics%add(span_of(group, prefix//'axis', 1), 'the '//prefix//'axis of pair '//number_of(group)// &
-                           ' is zero; it must have a direction')
+      call diagnostics%add(span_of(group, prefix//'axis', 1), 'the '//prefix//'axis of pair '// &
+                           to_text(get_integer(group, 'coordinate'))//' is zero; it must have a direction')
     else if (.not. any(abs(zero) > 0.0_wp)) then
-      call diagnostics%add(span_of(group, prefix//'zero', 1), 'the '//prefix//'zero of pair '//number_of(group)// &
-                           ' is zero; it must have a direction')
+      call diagnostics%add(span_of(group, prefix//'zero', 1), 'the '//prefix//'zero of pair '// &
+                           to_text(get_integer(group, 'coordinate'))//' is zero; it must have a direction')
     else if (has_name(group, prefix//'zero') .or. prefix == '') then
-      call diagnostics%add(span_of(group, prefix//'zero'), 'the '//prefix//'zero of pair '//number_of(group)// &
-                           ' lies along the axis; it must point away from it')
+      call diagnostics%add(span_of(group, prefix//'zero'), 'the '//prefix//'zero of pair '// &
+                           to_text(get_integer(group, 'coordinate'))//' lies along the axis; it must point away from it')
     else
-      call diagnostics%add(span_of(group, 'zero'), 'the zero of pair '//number_of(group)// &
-                           ' lies along its moving_axis; give a moving_zero too')
+      call diagnostics%add(span_of(group, 'zero'), 'the zero of pair '// &
+                           to_text(get_integer(group, 'coordinate'))//' lies along its moving_axis; give a moving_zero too')
     end if
   end subroutine make_frame
 
-  pure function number_of(group) result(text)
-    type(group_type), intent(in) :: group
-    character(len=:), allocatable :: text
-
-    text = to_text(get_integer(group, 'coordinate'))
-  end function number_of
 end module mech9_pair_reader

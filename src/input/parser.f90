@@ -83,7 +83,7 @@ contains
       if (index(text(first:line_end - 1), '&') > 0) at = first + index(text(first:line_end - 1), '&') - 1
       if (.not. told) call diagnostics%add(span_type(source, first, first + len_trim(text(first:at - 1)) - 1), &
                                            'this stands outside every group; a group begins with & and ends with /'// &
-                                           slash_advice(text, first))
+                                           trim(slash_advice(text, first)))
       told = .true.
     end do
   end subroutine find_group
@@ -92,7 +92,7 @@ contains
   pure function slash_advice(text, at) result(advice)
     character(len=*), intent(in) :: text
     integer, intent(in) :: at
-    character(len=:), allocatable :: advice
+    character(len=96) :: advice
 
     advice = ''
     if (at < 3) return

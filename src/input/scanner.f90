@@ -186,7 +186,7 @@ contains
       else
         value%span = span_type(source, at, at)
         value%kind = value_bad
-        call diagnostics%add(value%span, 'unexpected '''//text(at:at)//''''//advice(text(at:at)))
+        call diagnostics%add(value%span, 'unexpected '''//text(at:at)//''''//trim(advice(text(at:at))))
         at = at + 1
       end if
     end if
@@ -194,7 +194,7 @@ contains
 
   pure function advice(mark) result(text)
     character, intent(in) :: mark
-    character(len=:), allocatable :: text
+    character(len=64) :: text
 
     select case (mark)
     case (';')
@@ -265,7 +265,7 @@ contains
     call find_closing_quote(text, at, closed)
     if (closed) then
       value%kind = value_text
-      value%text = without_doubled(text(first + 1:at - 1), text(first:first))
+      call undouble(text(first + 1:at - 1), text(first:first), value%text)
       value%span = span_type(source, first, at)
       at = at + 1
     else
@@ -299,10 +299,10 @@ contains
   end subroutine find_closing_quote
 
   !> The text with each doubled quote written once.
-  pure function without_doubled(text, quote) result(content)
+  pure subroutine undouble(text, quote, content)
     character(len=*), intent(in) :: text
     character, intent(in) :: quote
-    character(len=:), allocatable :: content
+    character(len=:), allocatable, intent(out) :: content
     integer :: i, n
 
     content = text
@@ -315,7 +315,7 @@ contains
       if (text(i:i) == quote) i = i + 1
     end do
     content = content(:n)
-  end function without_doubled
+  end subroutine undouble
 
   !> A line with a forgotten quote whose last mark is a slash: that slash most likely ends the group.
   pure logical function closes_group(line)

@@ -3,9 +3,9 @@
 !> lookup, matrix_items, diagnostics and the structure floor.
 module mech9_structure_reader
   use mech9_error, only: exit_structure
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, some_of
   use mech9_source, only: span_type
-  use mech9_finding, only: finding_type
+  use mech9_finding, only: finding_type, longest_list
   use mech9_structure, only: structure_type, structure_from_pairs, structure_from_matrix, check_pair_links
   use mech9_structural_vectors, only: structural_vectors_type, structure_from_vectors
   use mech9_transformation, only: transform
@@ -218,7 +218,8 @@ contains
       in_cq = any(cq == k)
       if (in_cq .eqv. second%independent(k)) cycle
       call diagnostics%add(span_of(data%structure, 'rdw', findloc_value(data, k)), 'cq and rdw disagree about coordinate '// &
-                           to_text(k)//': by cq it is '//kind_word(in_cq)//', by rdw '//kind_word(.not. in_cq), exit_structure)
+                           to_text(k)//': by cq it is '//trim(kind_word(in_cq))//', by rdw '// &
+                           trim(kind_word(.not. in_cq)), exit_structure)
     end do
     do k = 1, size(cq)
       if (cq(k) > second%n_coordinates) &
@@ -227,13 +228,6 @@ contains
     end do
   end subroutine compare_independent
 
-  pure function kind_word(independent) result(word)
-    logical, intent(in) :: independent
-    character(len=:), allocatable :: word
-
-    word = 'dependent'
-    if (independent) word = 'independent'
-  end function kind_word
 
   !> Where the structure comes from elsewhere, the pairs must agree with it, one for each coordinate.
   pure subroutine compare_with_pairs(document, data, structure, diagnostics)
@@ -288,19 +282,16 @@ contains
     if (.not. data%all_pairs .or. m /= n_coordinates) return
     missing = pack([(k, k=1, m)], data%group_of_pair == 0)
     if (size(missing) > 0) &
-      call diagnostics%add(data%n_coordinates_span, 'no &pair is given for coordinate'//plural(missing), exit_structure)
+      call diagnostics%add(data%n_coordinates_span, 'no &pair is given for coordinate'// &
+                           trim(merge('s', ' ', size(missing) > 1))//' '//some_of(missing, longest_list), exit_structure)
   end subroutine take_pairs
 
-  !> " 3", "s 3, 5", at most eight of them.
-  pure function plural(numbers) result(text)
-    integer, intent(in) :: numbers(:)
-    character(len=:), allocatable :: text
-    integer, parameter :: most = 8
+  pure function kind_word(independent) result(word)
+    logical, intent(in) :: independent
+    character(len=11) :: word
 
-    text = ' '//to_text(numbers(:min(size(numbers), most)))
-    if (size(numbers) > 1) text = 's'//text
-    if (size(numbers) > most) text = text//' and '//to_text(size(numbers) - most)//' more'
-  end function plural
+    word = merge('independent', 'dependent  ', independent)
+  end function kind_word
 
   !> Report findings of the structure floor where the numbers stand.
   pure subroutine report(findings, document, data, diagnostics)

@@ -3,7 +3,7 @@
 module mech9_diagnosis
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, some_of
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -12,7 +12,7 @@ module mech9_diagnosis
   use mech9_mobility, only: find_motions, choose_coordinates, shares_of, moves_least
   implicit none
   private
-  public :: judge_choice, refuse_open, refuse_undetermined, some_of
+  public :: judge_choice, refuse_open, refuse_undetermined
 
   !> Numbers that a list in a message shows at most.
   integer, parameter :: longest_list = 24
@@ -37,6 +37,7 @@ contains
     type(state_type) :: trial
     real(wp), allocatable :: motions(:, :), best(:, :), positions(:, :)
     logical, dimension(plan%n_coordinates) :: wanted, chosen, back, held
+    character(len=:), allocatable :: text
     integer :: i, k
 
     closed = .false.
@@ -67,7 +68,8 @@ contains
       if (.not. allocated(best)) best = motions
       if (size(motions, 2) < size(best, 2)) best = motions
     end do
-    call raise(err, exit_structure, words_on_choice(plan, best, wanted))
+    call explain_choice(plan, best, wanted, text)
+    call raise(err, exit_structure, text)
   end subroutine judge_choice
 
   !> General closed positions near one that may be special, and the coordinates that come back to it
@@ -111,57 +113,55 @@ contains
   end subroutine find_positions
 
   !> What is wrong with a choice of independent coordinates, and what would serve.
-  function words_on_choice(plan, motions, wanted) result(text)
+  subroutine explain_choice(plan, motions, wanted, text)
     type(plan_type), intent(in) :: plan
     real(wp), intent(in) :: motions(:, :)
     logical, intent(in) :: wanted(:)
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(out) :: text
     logical :: chosen(size(wanted)), others(size(wanted))
     real(wp), allocatable :: shares(:, :)
     integer :: f, i, k, m
 
     m = size(wanted)
     f = size(motions, 2)
-    text = 'the mobility is '//to_text(f)//' ('//to_text(m)//' coordinates, rank '//to_text(m - f)//'), and '// &
-           words_on_count(count(wanted))
+    text = 'the mobility is '//to_text(f)//' ('//to_text(m)//' coordinates, rank '//to_text(m - f)//'), and '
+    select case (count(wanted))
+    case (0)
+      text = text//'no coordinate is independent'
+    case (1)
+      text = text//'1 coordinate is independent'
+    case default
+      text = text//to_text(count(wanted))//' coordinates are independent'
+    end select
     if (f == 0) then
       text = text//'; the mechanism cannot move, no coordinate can be independent'
       return
     end if
     call choose_coordinates(motions, wanted, chosen)
     call shares_of(motions, chosen, shares)
-    text = text//needed_words(shares, wanted, chosen)//surplus_words(shares, wanted, chosen)// &
-           '; cq = '//some_of(numbers_of(chosen))//' would serve'
+    call explain_needed(shares, wanted, chosen, text)
+    call explain_surplus(shares, wanted, chosen, text)
+    text = text//'; cq = '//some_of(numbers_of(chosen), longest_list)//' would serve'
     i = 0
     do k = 1, m
       if (.not. chosen(k)) cycle
       i = i + 1
       others = abs(shares(:, i)) > moves_least .and. .not. chosen
       if (i <= longest_list .and. any(others)) &
-        text = text//'; instead of '//to_text(k)//' also '//some_of(numbers_of(others))
+        text = text//'; instead of '//to_text(k)//' also '//some_of(numbers_of(others), longest_list)
     end do
     others = [(norm2(motions(k, :)) <= moves_least, k=1, m)]
-    if (any(others)) text = text//'; never: '//some_of(numbers_of(others))//', which cannot move'
-  end function words_on_choice
+    if (any(others)) text = text//'; never: '//some_of(numbers_of(others), longest_list)//', which cannot move'
+  end subroutine explain_choice
 
-  pure function words_on_count(n) result(text)
-    integer, intent(in) :: n
-    character(len=:), allocatable :: text
-
-    text = to_text(n)//' coordinates are independent'
-    if (n == 0) text = 'no coordinate is independent'
-    if (n == 1) text = '1 coordinate is independent'
-  end function words_on_count
-
-  !> "; 1 more of the coordinates 2, 3 must be independent (cq)", or nothing.
-  pure function needed_words(shares, wanted, chosen) result(text)
+  !> Append "; 1 more of the coordinates 2, 3 must be independent (cq)", or nothing.
+  pure subroutine explain_needed(shares, wanted, chosen, text)
     real(wp), intent(in) :: shares(:, :)
     logical, intent(in) :: wanted(:), chosen(:)
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(inout) :: text
     logical :: could(size(wanted))
     integer :: i, k
 
-    text = ''
     if (all(wanted .or. .not. chosen)) return
     could = .false.
     i = 0
@@ -170,19 +170,18 @@ contains
       i = i + 1
       if (.not. wanted(k)) could = could .or. (abs(shares(:, i)) > moves_least .and. .not. wanted)
     end do
-    text = '; '//to_text(count(chosen .and. .not. wanted))//' more of the coordinates '// &
-           some_of(numbers_of(could))//' must be independent (cq)'
-  end function needed_words
+    text = text//'; '//to_text(count(chosen .and. .not. wanted))//' more of the coordinates '// &
+           some_of(numbers_of(could), longest_list)//' must be independent (cq)'
+  end subroutine explain_needed
 
-  !> "; take 1 of the coordinates 1, 2 off the independent ones (cq)", or nothing.
-  pure function surplus_words(shares, wanted, chosen) result(text)
+  !> Append "; take 1 of the coordinates 1, 2 off the independent ones (cq)", or nothing.
+  pure subroutine explain_surplus(shares, wanted, chosen, text)
     real(wp), intent(in) :: shares(:, :)
     logical, intent(in) :: wanted(:), chosen(:)
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(inout) :: text
     logical :: could(size(wanted))
     integer :: i, k, j
 
-    text = ''
     if (all(chosen .or. .not. wanted)) return
     could = wanted .and. .not. chosen
     do j = 1, size(wanted)
@@ -194,9 +193,9 @@ contains
         if (wanted(k) .and. abs(shares(j, i)) > moves_least) could(k) = .true.
       end do
     end do
-    text = '; take '//to_text(count(wanted .and. .not. chosen))//' of the coordinates '// &
-           some_of(numbers_of(could))//' off the independent ones (cq)'
-  end function surplus_words
+    text = text//'; take '//to_text(count(wanted .and. .not. chosen))//' of the coordinates '// &
+           some_of(numbers_of(could), longest_list)//' off the independent ones (cq)'
+  end subroutine explain_surplus
 
   !> Coordinates that no chain determines, of a mechanism too large to be judged in one piece.
   subroutine refuse_undetermined(undetermined, err)
@@ -204,7 +203,7 @@ contains
     type(error_type), allocatable, intent(out) :: err
 
     call raise(err, exit_structure, 'the independent coordinates cannot determine the others: '// &
-               to_text(size(undetermined))//' more must be independent (cq); '//some_of(undetermined)// &
+               to_text(size(undetermined))//' more must be independent (cq); '//some_of(undetermined, longest_list)// &
                ' would serve')
   end subroutine refuse_undetermined
 
@@ -238,15 +237,4 @@ contains
     numbers = pack([(i, i=1, size(mask))], mask)
   end function numbers_of
 
-  !> "1, 2, 5"; of a long list only the beginning.
-  pure function some_of(numbers) result(text)
-    integer, intent(in) :: numbers(:)
-    character(len=:), allocatable :: text
-
-    if (size(numbers) <= longest_list) then
-      text = to_text(numbers)
-    else
-      text = to_text(numbers(:longest_list))//' and '//to_text(size(numbers) - longest_list)//' more'
-    end if
-  end function some_of
 end module mech9_diagnosis

@@ -231,10 +231,18 @@ contains
     unknowns_of = size(block%unknowns)
   end function unknowns_of
 
+  pure integer function chain_names_length(block) result(length)
+    type(block_type), intent(in) :: block
+
+    length = len('an open chain')
+    if (size(block%chains) == 1) length = len('closed chain ') + len(to_text(block%chains))
+    if (size(block%chains) > 1) length = len('closed chains  together') + len(to_text(block%chains))
+  end function chain_names_length
+
   !> "closed chain 2" or "closed chains 1, 3 together".
   pure function chain_names(block) result(names)
     type(block_type), intent(in) :: block
-    character(len=:), allocatable :: names
+    character(len=chain_names_length(block)) :: names
 
     if (size(block%chains) == 0) then
       names = 'an open chain'

@@ -105,8 +105,9 @@ contains
     if (ways%dead) then
       text = text//', a dead point, where rates are not finite; start a little beside it'
     else if (ways%count == 2) then
-      text = text//', where two branches meet: '//rates_in_words(plan, block, ways)// &
-             '; start a little beside it, on the one that is meant'
+      text = text//', where two branches meet: '
+      call append_rates(plan, block, ways, text)
+      text = text//'; start a little beside it, on the one that is meant'
     else if (ways%unclear .or. already) then
       text = text//', where it is not certain how it goes on; start a little beside it'
     else if (ways%count == 0) then
@@ -119,15 +120,14 @@ contains
     call raise(err, exit_singular, text)
   end subroutine leave_special
 
-  !> "dq2 : dq3 : dq4 = 1 : 0.5 : 2 or 1 : -0.5 : 3" with the rates themselves.
-  pure function rates_in_words(plan, block, ways) result(text)
+  !> Append the rates by which it could go on: "dq2 = 1, dq3 = 0.5 or dq2 = 1, dq3 = -0.5 (rad/s, m/s)".
+  pure subroutine append_rates(plan, block, ways, text)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     type(ways_type), intent(in) :: ways
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(inout) :: text
     integer :: way, i
 
-    text = ''
     do way = 1, ways%count
       if (way > 1) text = text//' or '
       do i = 1, size(block%unknowns)
@@ -136,7 +136,7 @@ contains
       end do
     end do
     text = text//' (rad/s, m/s)'
-  end function rates_in_words
+  end subroutine append_rates
 
   !> The way on from a special start.
   subroutine begin_passage(mechanism, plan, tracker, err)
@@ -353,16 +353,33 @@ contains
     call raise(err, exit_singular, 'the motion cannot go on beyond t = '//to_text(tracker%ahead%t, 13)//' s: '//text)
   end subroutine refuse
 
-  !> "closed chain 2 (coordinates 4, 6, 7)".
-  pure function words_of_block(plan, block) result(words)
+  !> The coordinates that a block determines, in their order.
+  pure function coordinates_of(plan, block) result(coordinates)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
-    character(len=:), allocatable :: words
+    integer, allocatable :: coordinates(:)
     logical :: mine(plan%n_coordinates)
     integer :: k
 
     mine = .false.
     mine(plan%steps(block%unknowns)%coordinate) = .true.
-    words = chain_names(block)//' (coordinates '//to_text(pack([(k, k=1, plan%n_coordinates)], mine))//')'
+    coordinates = pack([(k, k=1, plan%n_coordinates)], mine)
+  end function coordinates_of
+
+  pure integer function words_length(plan, block) result(length)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+
+    length = len(chain_names(block)) + len(' (coordinates )') + len(to_text(coordinates_of(plan, block)))
+  end function words_length
+
+  !> "closed chain 2 (coordinates 4, 6, 7)".
+  pure function words_of_block(plan, block) result(words)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    character(len=words_length(plan, block)) :: words
+
+    words = chain_names(block)//' (coordinates '//to_text(coordinates_of(plan, block))//')'
   end function words_of_block
+
 end module mech9_tracking

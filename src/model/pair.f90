@@ -10,7 +10,9 @@ module mech9_pair
   use mech9_pose, only: pose_type
   implicit none
   private
-  public :: pair_type, pair_slot_type, pair_motion_type, screw_factors_type
+  public :: pair_type, pair_slot_type, pair_motion_type, screw_factors_type, kind_name_length
+
+  integer, parameter :: kind_name_length = 9   !< of the longest, prismatic
 
   !> Where a pair puts its moving link at one value of q, and how that changes with q.
   !> All vectors in the axes of the reference link.
@@ -71,9 +73,9 @@ module mech9_pair
 
     !> The name of its kind as in the data file, for reports.
     pure function kind_name_interface(self) result(name)
-      import :: pair_type
+      import :: pair_type, kind_name_length
       class(pair_type), intent(in) :: self
-      character(len=:), allocatable :: name
+      character(len=kind_name_length) :: name
     end function kind_name_interface
 
     !> How often one evaluation calls a user's procedure; 0 for built-in pairs.

@@ -8,7 +8,7 @@ module mech9_screw_pair
   use mech9_error, only: error_type
   use mech9_rotation, only: cross
   use mech9_pose, only: pose_type, compose, inverse, pose_from_dh, identity_pose
-  use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type
+  use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type, kind_name_length
   implicit none
   private
   public :: screw_pair_type, revolute_pair, prismatic_pair, helical_pair
@@ -117,7 +117,7 @@ contains
 
   pure function kind_name(self) result(name)
     class(screw_pair_type), intent(in) :: self
-    character(len=:), allocatable :: name
+    character(len=kind_name_length) :: name
 
     if (.not. self%angular) then
       name = 'prismatic'

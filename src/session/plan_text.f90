@@ -1,20 +1,21 @@
 !> Structure and plan in words, for --structure, --check and --plan. Uses text, structure, mechanism,
-!> plan, mobility_report, planning, diagnosis.
+!> plan, mobility_report, planning.
 module mech9_plan_text
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, some_of
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_mobility_report, only: mobility_report_type
   use mech9_planning, only: chain_names
-  use mech9_diagnosis, only: some_of
   implicit none
   private
   public :: print_structure, print_mobility, print_mobility_report, print_plan
 
   !> Lines of one sort that are printed at most.
   integer, parameter :: most_lines = 40
+  !> Numbers that a list shows at most.
+  integer, parameter :: longest_list = 24
   !> Rates below this, against a rate of one, are none.
   real(wp), parameter :: least_share = 1.0e-9_wp
 
@@ -82,7 +83,7 @@ contains
     call print_kind(unit, .not. report%moves, 'cannot move, hence not be independent: ')
     call print_kind(unit, report%dimensions == 0, 'on no closed chain: ')
     do i = 1, size(report%idle)
-      write (unit, '(a)') 'idle: coordinates '//some_of(report%idle(i)%coordinates)//' can move while links '// &
+      write (unit, '(a)') 'idle: coordinates '//some_of(report%idle(i)%coordinates, longest_list)//' can move while links '// &
         to_text(report%idle(i)%ends(1))//' and '//to_text(report%idle(i)%ends(2))//' stand still'
     end do
   end subroutine print_mobility_report
@@ -122,7 +123,7 @@ contains
     others = pack([(k, k=1, plan%n_coordinates)], abs(report%shares(:, i)) > least_share)
     others = pack(others, others /= plan%independent(i))
     if (size(others) > 0) then
-      write (unit, '(a)') 'instead of '//to_text(plan%independent(i))//' could be independent: '//some_of(others)
+      write (unit, '(a)') 'instead of '//to_text(plan%independent(i))//' could be independent: '//some_of(others, longest_list)
     else
       write (unit, '(a)') 'independent in any case: '//to_text(plan%independent(i))
     end if
@@ -134,7 +135,7 @@ contains
     character(len=*), intent(in) :: words
     integer :: k
 
-    if (any(mask)) write (unit, '(2a)') words, some_of(pack([(k, k=1, size(mask))], mask))
+    if (any(mask)) write (unit, '(2a)') words, some_of(pack([(k, k=1, size(mask))], mask), longest_list)
   end subroutine print_kind
 
   !> The blocks in order, each with its chains, unknowns, equations and rank.

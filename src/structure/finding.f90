@@ -1,12 +1,13 @@
-!> What is wrong with structural data, and at which number. Uses text.
+!> What is wrong with structural data, and at which number. Uses nothing.
 !>
 !> Checks of data collect findings, so that a user sees all that is wrong at once, and whoever read
 !> the data file can point at the very number.
 module mech9_finding
-  use mech9_text, only: to_text
   implicit none
   private
-  public :: finding_type, finding_list_type, listed
+  public :: finding_type, finding_list_type, longest_list
+
+  integer, parameter :: longest_list = 8    !< numbers that a message lists
 
   !> One thing that is wrong.
   type :: finding_type
@@ -61,16 +62,4 @@ contains
     if (allocated(self%items)) deallocate (self%items)
   end subroutine hand_over
 
-  !> Numbers for a message, a long list shortened: "3, 5, 6, 7, 9, 10, ... (12 in all)".
-  pure function listed(numbers) result(text)
-    integer, intent(in) :: numbers(:)
-    character(len=:), allocatable :: text
-    integer, parameter :: most = 8
-
-    if (size(numbers) <= most) then
-      text = to_text(numbers)
-    else
-      text = to_text(numbers(:most - 2))//', ... ('//to_text(size(numbers))//' in all)'
-    end if
-  end function listed
 end module mech9_finding

@@ -2,8 +2,8 @@
 !> kinematic chains are run through. Uses kinds, text, finding, structure.
 module mech9_structural_vectors
   use mech9_kinds, only: long
-  use mech9_text, only: to_text
-  use mech9_finding, only: finding_type, finding_list_type, listed
+  use mech9_text, only: to_text, some_of
+  use mech9_finding, only: finding_type, finding_list_type, longest_list
   use mech9_structure, only: structure_type
   implicit none
   private
@@ -251,9 +251,9 @@ contains
     integer :: i
 
     missing = pack([(i, i=1, size(known))], .not. known)
-    if (size(missing) > 0) call list%add('nrg', [0, 0], 'no chain reaches these links: '//listed(missing))
+    if (size(missing) > 0) call list%add('nrg', [0, 0], 'no chain reaches these links: '//some_of(missing, longest_list))
     missing = pack([(i, i=1, size(used))], .not. used)
-    if (size(missing) > 0) call list%add('nws', [0, 0], 'these coordinates are missing in nws: '//listed(missing))
+    if (size(missing) > 0) call list%add('nws', [0, 0], 'these coordinates are missing in nws: '//some_of(missing, longest_list))
   end subroutine check_complete
 
   pure subroutine check_kinds(vectors, list)

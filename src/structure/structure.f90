@@ -3,8 +3,8 @@
 !>
 !> Held sparsely, as two links a pair: the coincidence matrix C itself is only ever read.
 module mech9_structure
-  use mech9_text, only: to_text
-  use mech9_finding, only: finding_type, finding_list_type, listed
+  use mech9_text, only: to_text, some_of
+  use mech9_finding, only: finding_type, finding_list_type, longest_list
   implicit none
   private
   public :: structure_type, finding_type
@@ -143,10 +143,10 @@ contains
     end do
     apart = pack([(i, i=1, n_links)], group /= 1)
     if (size(apart) == 1) then
-      call list%add(name, [0, 0], 'link '//listed(apart)//' is not connected to link 1 (the frame); '// &
+      call list%add(name, [0, 0], 'link '//some_of(apart, longest_list)//' is not connected to link 1 (the frame); '// &
                     'give a pair that joins it')
     else if (size(apart) > 1) then
-      call list%add(name, [0, 0], 'links '//listed(apart)//' are not connected to link 1 (the frame); '// &
+      call list%add(name, [0, 0], 'links '//some_of(apart, longest_list)//' are not connected to link 1 (the frame); '// &
                     'give pairs that join them')
     end if
   end subroutine check_connected
@@ -171,7 +171,7 @@ contains
     integer :: i
 
     do i = 1, size(c, 1)
-      if (c(i, i) /= 0) call list%add('c', [i, i], entry_text(c, i, i)// &
+      if (c(i, i) /= 0) call list%add('c', [i, i], trim(entry_text(c, i, i))// &
                                       ' is on the diagonal and must be 0: no pair joins a link to itself')
     end do
   end subroutine check_diagonal
@@ -184,7 +184,7 @@ contains
     do i = 2, size(c, 1)
       do j = 1, i - 1
         if (c(i, j) /= c(j, i)) &
-          call list%add('c', [i, j], 'C is not symmetric: '//entry_text(c, j, i)//', but '//entry_text(c, i, j))
+          call list%add('c', [i, j], 'C is not symmetric: '//trim(entry_text(c, j, i))//', but '//trim(entry_text(c, i, j)))
       end do
     end do
   end subroutine check_symmetry
@@ -207,7 +207,7 @@ contains
         if (k == 0 .or. i == j) cycle
         if (k < 0 .or. k > m) then
           if (j > i .or. c(j, i) /= k) &
-            call list%add('c', [i, j], entry_text(c, i, j)//' is no number of a coordinate; they are 1 to '//to_text(m))
+            call list%add('c', [i, j], trim(entry_text(c, i, j))//' is no number of a coordinate; they are 1 to '//to_text(m))
           cycle
         end if
         present_in_c(k) = .true.
@@ -223,9 +223,9 @@ contains
     end do
     missing = pack([(k, k=1, m)], .not. present_in_c)
     if (size(missing) == 1) then
-      call list%add('c', [0, 0], 'coordinate '//listed(missing)//' is missing in C')
+      call list%add('c', [0, 0], 'coordinate '//some_of(missing, longest_list)//' is missing in C')
     else if (size(missing) > 1) then
-      call list%add('c', [0, 0], 'coordinates '//listed(missing)//' are missing in C')
+      call list%add('c', [0, 0], 'coordinates '//some_of(missing, longest_list)//' are missing in C')
     end if
   end subroutine take_links
 
@@ -268,7 +268,7 @@ contains
   !> "c(2,3) = 4"
   pure function entry_text(c, i, j) result(text)
     integer, intent(in) :: c(:, :), i, j
-    character(len=:), allocatable :: text
+    character(len=48) :: text
 
     text = 'c('//to_text(i)//','//to_text(j)//') = '//to_text(c(i, j))
   end function entry_text

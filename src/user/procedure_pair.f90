@@ -9,7 +9,7 @@ module mech9_procedure_pair
   use mech9_differentiation, only: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil
   use mech9_rotation, only: axial_vector
   use mech9_pose, only: pose_type, pose_from_points
-  use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type
+  use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type, kind_name_length
   use mech9_not_linked, only: not_linked
   use mech9_user_pair, only: user_pair
   use mech9_user_pair_values, only: user_pair_values
@@ -191,7 +191,7 @@ contains
 
   pure function kind_name(self) result(name)
     class(procedure_pair_type), intent(in) :: self
-    character(len=:), allocatable :: name
+    character(len=kind_name_length) :: name
 
     name = 'user'
   end function kind_name

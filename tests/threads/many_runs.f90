@@ -21,21 +21,23 @@ module many_runs
   type :: run_type
     character(len=:), allocatable :: file
     logical :: dynamic = .false.
-    real(wp), allocatable :: rows(:, :)     !< (columns, outputs)
-    logical :: done = .false.
+    real(wp), allocatable :: rows(:, :)     !< (columns, outputs); none of a data file that is refused
+    character(len=:), allocatable :: said    !< of such a data file
+    logical :: done = .false.                !< ended as it should
   end type run_type
 
 contains
 
-  !> The runs of the data files in `folder`: as many as there are, repeated until there are `count`.
+  !> Runs of the data files under `folder`, in turn; some of them are to be refused.
   subroutine list_runs(folder, count, runs)
     character(len=*), intent(in) :: folder
     integer, intent(in) :: count
     type(run_type), allocatable, intent(out) :: runs(:)
-    character(len=*), parameter :: names(*) = [character(len=32) :: &
-      'kinematics_fig1', 'dynamics_fig1', 'kinematics_general_7r', 'dynamics_fivebar', 'kinematics_bennett', &
-      'dynamics_open_chain', 'kinematics_fig1_driven_at_q1', 'dynamics_spatial_slider_crank', &
-      'kinematics_slider_crank', 'kinematics_spatial_slider_crank']
+    character(len=*), parameter :: names(*) = [character(len=40) :: 'reference/kinematics_fig1', &
+      'reference/dynamics_fig1', 'cases/malformed/errors_together', 'reference/kinematics_general_7r', &
+      'reference/dynamics_fivebar', 'reference/kinematics_bennett', 'reference/dynamics_open_chain', &
+      'reference/kinematics_fig1_driven_at_q1', 'cases/malformed/links_apart', &
+      'reference/dynamics_spatial_slider_crank', 'reference/kinematics_slider_crank']
     integer :: i, which
 
     allocate (runs(count))
@@ -56,7 +58,11 @@ contains
 
     call read_document(run%file, document, diagnostics)
     call read_mechanism(document, .not. run%dynamic, mechanism, diagnostics)
-    if (diagnostics%failed()) return
+    if (diagnostics%failed()) then
+      call diagnostics%render(1, run%said)
+      run%done = index(run%file, 'malformed') > 0
+      return
+    end if
     ! short, so that the threads begin and end often
     mechanism%time%intervals = 20
     if (run%dynamic) then
@@ -109,12 +115,18 @@ contains
     end do
   end subroutine fill
 
-  !> Did both end well, with the same numbers in every bit?
+  !> Did both end as they should, with the same numbers in every bit, or the same words?
   pure logical function same(a, b)
     type(run_type), intent(in) :: a, b
 
     same = a%done .and. b%done
-    if (same) same = all(shape(a%rows) == shape(b%rows))
-    if (same) same = all(transfer(a%rows, [0]) == transfer(b%rows, [0]))
+    if (.not. same) return
+    if (allocated(a%said) .or. allocated(b%said)) then
+      same = allocated(a%said) .and. allocated(b%said)
+      if (same) same = a%said == b%said
+    else
+      same = all(shape(a%rows) == shape(b%rows))
+      if (same) same = all(transfer(a%rows, [0]) == transfer(b%rows, [0]))
+    end if
   end function same
 end module many_runs
