@@ -7,18 +7,35 @@ module mech9_path
 
 contains
 
+  !> Place of the dot before the ending; the length of the path where there is no ending. A dot at the
+  !> beginning of a name (.hidden) belongs to the name.
+  pure integer function last_dot(path) result(place)
+    character(len=*), intent(in) :: path
+
+    place = index(path, '.', back=.true.)
+    if (place < index(path, '/', back=.true.) + 2) place = len(path)
+  end function last_dot
+
+  pure integer function changed_length(path, ending) result(length)
+    character(len=*), intent(in) :: path, ending
+
+    length = last_dot(path)
+    if (length < len(path)) length = length - 1
+    if (ending /= '') length = length + 1 + len(ending)
+  end function changed_length
+
   !> The folder of a file, with the slash at its end; empty where the path names none.
   pure function folder_of(path) result(folder)
     character(len=*), intent(in) :: path
-    character(len=:), allocatable :: folder
+    character(len=index(path, '/', back=.true.)) :: folder
 
-    folder = path(:index(path, '/', back=.true.))
+    folder = path
   end function folder_of
 
   !> The name of a file without its folder.
   pure function name_of(path) result(name)
     character(len=*), intent(in) :: path
-    character(len=:), allocatable :: name
+    character(len=len(path) - index(path, '/', back=.true.)) :: name
 
     name = path(index(path, '/', back=.true.) + 1:)
   end function name_of
@@ -26,7 +43,7 @@ contains
   !> The ending of a file's name in lower case, without the dot: svg, png, csv; empty where it has none.
   pure function ending_of(path) result(ending)
     character(len=*), intent(in) :: path
-    character(len=:), allocatable :: ending
+    character(len=len(path) - last_dot(path)) :: ending
 
     ending = lower(path(last_dot(path) + 1:))
   end function ending_of
@@ -35,19 +52,9 @@ contains
   pure function with_ending(path, ending) result(changed)
     character(len=*), intent(in) :: path
     character(len=*), intent(in) :: ending   !< without the dot; empty: none
-    character(len=:), allocatable :: changed
+    character(len=changed_length(path, ending)) :: changed
 
     changed = path
-    if (ending_of(path) /= '') changed = path(:last_dot(path) - 1)
-    if (ending /= '') changed = changed//'.'//ending
+    if (ending /= '') changed = path(:len(changed) - len(ending) - 1)//'.'//ending
   end function with_ending
-
-  !> Place of the dot before the ending; the length of the path where there is no ending. A dot at the
-  !> beginning of a name (.hidden) belongs to the name.
-  pure integer function last_dot(path) result(place)
-    character(len=*), intent(in) :: path
-
-    place = index(path, '.', back=.true.)
-    if (place < len(folder_of(path)) + 2) place = len(path)
-  end function last_dot
 end module mech9_path

@@ -4,7 +4,7 @@ module mech9_curved_pair
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_rotation, only: about_axis
-  use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type
+  use mech9_pair, only: pair_type, kind_name_length, pair_motion_type, screw_factors_type
   implicit none
   private
   public :: curved_pair_type
@@ -46,7 +46,7 @@ contains
 
   pure function kind_name(self) result(name)
     class(curved_pair_type), intent(in) :: self
-    character(len=:), allocatable :: name
+    character(len=kind_name_length) :: name
 
     name = 'curved'
   end function kind_name

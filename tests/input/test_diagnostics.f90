@@ -31,8 +31,8 @@ contains
       call g%add_source(source_from_text('f.nml', text), number)
     end if
     call g%add(span_type(number, first, last), 'message')
-    call tester%is_true(g%rendered(1) == expected, why)
-    if (g%rendered(1) /= expected) print '(a)', g%rendered(1)
+    call tester%is_true(rendered(g, 1) == expected, why)
+    if (rendered(g, 1) /= expected) print '(a)', rendered(g, 1)
   end subroutine shows
 
   subroutine the_form()
@@ -46,7 +46,7 @@ contains
     call shows("a"//achar(27)//"b"//eol, 3, 3, "f.nml:1:3: message"//eol//"a?b"//eol//"  ^", 'control bytes are not printed')
     call g%add_source(source_from_text('--set', 'time.end=x', is_file=.false.), number)
     call g%add(span_type(number, 10, 10), 'message')
-    call tester%is_true(g%rendered(1) == '--set: message'//eol//'time.end=x'//eol//'         ^', 'a setting has no line number')
+    call tester%is_true(rendered(g, 1) == '--set: message'//eol//'time.end=x'//eol//'         ^', 'a setting has no line number')
   end subroutine the_form
 
   subroutine tabs_and_alphabets()
@@ -68,7 +68,7 @@ contains
     text = repeat('0123456789', 5000)//'X'//repeat('abcdefghij', 5000)
     call g%add_source(source_from_text('f.nml', text), number)
     call g%add(span_type(number, 50001, 50001), 'message')
-    shown = g%rendered(1)
+    shown = rendered(g, 1)
     lines(1) = index(shown, eol)
     lines(2) = lines(1) + index(shown(lines(1) + 1:), eol)
     call tester%is_true(index(shown, 'f.nml:1:50001:') == 1, 'the column is that of the file')
@@ -119,11 +119,19 @@ contains
     call g%add_source(source_from_text('f.nml', "&a /"//eol//" &pair x=1 /"//eol), number)
     call raise(err, exit_assembly, 'message', place_type(2, 2))
     call g%add_error(err)
-    call tester%is_true(g%rendered(1) == 'f.nml:2:2: message'//eol//' &pair x=1 /'//eol//' ^^^^^', &
+    call tester%is_true(rendered(g, 1) == 'f.nml:2:2: message'//eol//' &pair x=1 /'//eol//' ^^^^^', &
                         'a failure with a place in the model shows where it was written')
     call tester%is_true(g%code() == exit_assembly, 'its code is kept')
     call raise(err, exit_assembly, 'nowhere', place_type(77, 2))
     call g%add_error(err)
-    call tester%is_true(g%rendered(2) == 'f.nml: nowhere', 'a place that is not there does no harm')
+    call tester%is_true(rendered(g, 2) == 'f.nml: nowhere', 'a place that is not there does no harm')
   end subroutine failures_from_elsewhere
+
+  function rendered(diagnostics, i) result(text)
+    type(diagnostics_type), intent(in) :: diagnostics
+    integer, intent(in) :: i
+    character(len=:), allocatable :: text
+
+    call diagnostics%render(i, text)
+  end function rendered
 end program test_diagnostics

@@ -44,7 +44,7 @@ contains
     do i = 1, count
       which = 1 + modulo(i - 1, size(names))
       runs(i)%file = folder//'/'//trim(names(which))//'.nml'
-      runs(i)%dynamic = index(names(which), 'dynamics') == 1
+      runs(i)%dynamic = index(names(which), '/dynamics') > 0
     end do
   end subroutine list_runs
 
