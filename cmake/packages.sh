@@ -1,11 +1,12 @@
 # Installs the Debian packages that building and testing need. Sourced by examples/run and tests/run:
-#   . cmake/packages.sh && need_packages build tests
+#   . cmake/packages.sh && need_packages build pictures tests
 # Does nothing, quickly and without network, when all are there.
 
-# The lists: what a build needs, and what the tests need besides. libc6-dev is only a
+# The lists: what a build needs, what draws the pictures, and what the tests need besides. libc6-dev is only a
 # recommendation of gcc, so that a minimal system can have a compiler that cannot link.
 packages_build="gfortran libc6-dev cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev"
-packages_tests="python3 python3-numpy gnuplot-nox graphviz groff-base"
+packages_pictures="gnuplot-nox graphviz"
+packages_tests="python3 python3-numpy groff-base"
 
 # The packages among the arguments that are not installed.
 missing_packages() {
@@ -23,12 +24,13 @@ as_root() {
   if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
-# Install what is missing of the named lists (build, tests).
+# Install what is missing of the named lists (build, pictures, tests).
 need_packages() {
   local list wanted="" missing
   for list in "$@"; do
     case $list in
       build) wanted="$wanted $packages_build" ;;
+      pictures) wanted="$wanted $packages_pictures" ;;
       tests) wanted="$wanted $packages_tests" ;;
       *) echo "need_packages: no list named $list" >&2; return 1 ;;
     esac
