@@ -16,6 +16,7 @@ import re
 import shlex
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
@@ -99,6 +100,20 @@ def check_options(checks, example, program):
             checks.true(done.returncode in (0, 4, 5, 6, 7), f'{text}: ends with {done.returncode}', done.stderr)
 
 
+def check_picture(checks, example, program):
+    """The picture beside the README, and one drawn now: drawings that a browser can read, of this mechanism."""
+    with tempfile.TemporaryDirectory() as folder:
+        drawn = os.path.join(folder, 'drawn.svg')
+        done = run(program, example.data, '--sketch', drawn, '--no-write', folder=folder)
+        checks.equal(done.returncode, 0, f'it can be drawn\n{done.stderr}')
+        titles = []
+        for path in (drawn, os.path.join(os.path.dirname(example.data), example.name + '.svg')):
+            root = xml.etree.ElementTree.parse(path).getroot()
+            checks.true(root.tag.endswith('}svg') and len(list(root.iter())) > 20, f'{path} is a drawing')
+            titles.append([text.text for text in root.iter() if text.tag.endswith('}title')][:1])
+        checks.equal(titles[1], titles[0], 'the picture beside the README has the title of the data file')
+
+
 def main():
     name, folder, samples = sys.argv[1], *map(os.path.abspath, sys.argv[2:4])
     example = next(example for example in examples() if example.name == name)
@@ -106,6 +121,7 @@ def main():
     program = program_of(example, folder, samples)
     check_example(checks, example, program)
     check_options(checks, example, program)
+    check_picture(checks, example, program)
     checks.true(checks.passed > 3, 'there is more to compare than that it runs')
     checks.finish()
 
