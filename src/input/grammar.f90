@@ -199,8 +199,11 @@ module mech9_grammar
                   'HDF5 file for the results', '''fig1.h5'''), &
     item_row_type('output', 'sketch', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'SVG file for a drawing of the mechanism at the start', '''fig1.svg'''), &
+    item_row_type('output', 'animation', 'text', 1, 1, '', optional, '''''', '', '', '', &
+                  'file for the moving mechanism: .html is a page that plays it, .svg and .gif are pictures that repeat', &
+                  '''fig1.html'''), &
     item_row_type('output', 'view', 'text', 1, 1, '', optional, '''''', '', '', '', &
-                  'of the sketch: axes to the right and up, as in xz; iso; or the direction to the viewer, as in 1,-2,1', &
+                  'of these pictures: axes to the right and up, as in xz; iso; or the direction to the viewer, as in 1,-2,1', &
                   '''xz'''), &
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'mech9k: a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &

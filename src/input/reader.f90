@@ -119,6 +119,7 @@ contains
     mechanism%output%table = get_text(group, 'table')
     mechanism%output%hdf5 = get_text(group, 'hdf5')
     mechanism%output%sketch = get_text(group, 'sketch')
+    mechanism%output%animation = get_text(group, 'animation')
     mechanism%output%view = get_text(group, 'view')
     mechanism%output%conditioning = get_logical(group, 'conditioning')
     group = group_or_empty(document, 'solver')

@@ -27,7 +27,8 @@ module mech9_settings
     character(len=:), allocatable :: table
     character(len=:), allocatable :: hdf5
     character(len=:), allocatable :: sketch
-    character(len=:), allocatable :: view     !< of the sketch; empty: the best one
+    character(len=:), allocatable :: animation
+    character(len=:), allocatable :: view     !< of both; empty: the best one
     logical :: conditioning = .false.         !< a column of the least singular value
   end type output_settings_type
 

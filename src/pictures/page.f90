@@ -20,6 +20,7 @@ module mech9_page
   contains
     procedure :: put
     procedure :: line
+    procedure :: text => text_of_page
     procedure :: save => save_page
   end type page_type
 
@@ -49,6 +50,15 @@ contains
     call self%put(text)
     call self%put(line_end)
   end subroutine line
+
+  !> All of it.
+  pure function text_of_page(self) result(text)
+    class(page_type), intent(in) :: self
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (self%used > 0) text = self%buffer(:self%used)
+  end function text_of_page
 
   !> Write the page into a file; '-' is standard output. Errors are exit_file.
   subroutine save_page(self, path, err)

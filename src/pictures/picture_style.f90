@@ -76,7 +76,7 @@ contains
     do i = 1, in_cross
       css = css//rule_of(styles(i), symbol)//nl
     end do
-    css = css//'.mech9 .plate.sheet path{fill:'//paper//'}.mech9 .end path{fill:#f2f2f2}'//nl
+    css = css//'.mech9 .plate.sheet path{fill-opacity:.85}.mech9 .end path{fill:#f2f2f2}'//nl
     do i = 1, size(dark_colours)
       css = css//colour_rules('.l'//achar(48 + i), dark_colours(i), light_colours(i))//nl
     end do

@@ -29,6 +29,8 @@ module mech9_projection
   real(wp), parameter :: least_width = 400.0_wp, least_height = 150.0_wp
   !> Pairs of one link are that far apart where symbols have their full size [px].
   real(wp), parameter :: roomy = 55.0_wp
+  !> Room for a mechanism that is turned, as a part of its diagonal: few are that long from every side.
+  real(wp), parameter :: wide = 0.85_wp
   !> Frames of a film that are looked at.
   integer, parameter :: most_looked_at = 60
 
@@ -56,7 +58,7 @@ contains
     extent = box%high(:2) - box%low(:2)
     diagonal = norm2(box%high - box%low)
     if (.not. diagonal > 0.0_wp) diagonal = skeleton%size
-    if (turned) extent = diagonal
+    if (turned) extent = max(extent, wide*diagonal)
     projection%view = view
     projection%centre = middle(1)*view%right + middle(2)*view%up + middle(3)*view%toward
     ! a mechanism that seems to be one point still has a scale

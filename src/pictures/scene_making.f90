@@ -22,6 +22,9 @@ module mech9_scene_making
   real(wp), parameter :: same = 0.004_wp
   !> Links and coordinates are labelled where there are no more than these.
   integer, parameter :: most_labelled = 24
+  !> Lines may leave a curve by so much [px], and of so many points of it.
+  real(wp), parameter :: straight = 0.15_wp
+  integer, parameter :: longest_straight = 40
 
   !> Points that give a link its shape, in the link's system, with the nodes that stand there.
   type :: outline_type
@@ -47,7 +50,7 @@ contains
     integer :: link
 
     call prepare_symbols(film, skeleton, projection, planar, scene, symbols)
-    call add_paths(mechanism, film, scene)
+    call add_paths(mechanism, film, 1.0_wp/projection%scale, scene)
     call add_curves(film, skeleton, scene)
     call add_guides(skeleton, projection, scene, symbols)
     call add_stands(film, skeleton, projection, scene, symbols)
@@ -55,7 +58,12 @@ contains
     scene%first_sorted = scene%n_items + 1
     do link = 2, size(outlines)
       call find_outline(mechanism, skeleton, symbols, link, scene, outlines(link))
-      call add_link(skeleton, symbols, link, scene, outlines(link), shapes(link))
+      call add_shape(skeleton, link, .true., scene, outlines(link), shapes(link))
+    end do
+    ! bars above plates that are as near
+    do link = 2, size(outlines)
+      if (shapes(link) == 0) call add_shape(skeleton, link, .false., scene, outlines(link), shapes(link))
+      call add_reach(skeleton, symbols, link, scene, outlines(link), shapes(link))
     end do
     call add_springs(mechanism, shapes, scene)
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
@@ -65,21 +73,60 @@ contains
   end subroutine make_scene
 
   !> Where the points have been.
-  subroutine add_paths(mechanism, film, scene)
+  subroutine add_paths(mechanism, film, px, scene)
     type(mechanism_type), intent(in) :: mechanism
     type(film_type), intent(in) :: film
+    real(wp), intent(in) :: px                  !< length of 1 px in the mechanism [m]
     type(scene_type), intent(inout) :: scene
-    integer :: nodes(film%n_path_points), i, n
+    integer, allocatable :: chosen(:), nodes(:)
+    integer :: i, n
 
     if (film%n_path_points < 2) return
     do i = 1, size(mechanism%points)
       if (mechanism%points(i)%link == 1) cycle
-      do n = 1, film%n_path_points
-        call scene%add_node(1, film%paths(:, i, n), nodes(n))
+      chosen = bends_of(film%paths(:, i, :film%n_path_points), straight*px)
+      if (allocated(nodes)) deallocate (nodes)
+      allocate (nodes(size(chosen)))
+      do n = 1, size(chosen)
+        call scene%add_node(1, film%paths(:, i, chosen(n)), nodes(n))
       end do
       call scene%add_item(open_path, in_trace, nodes, mechanism%points(i)%link)
     end do
   end subroutine add_paths
+
+  !> Which points of a path have to be kept so that none of the others lies farther than `tolerance` from the line.
+  pure function bends_of(path, tolerance) result(kept)
+    real(wp), intent(in) :: path(:, :)          !< (3,n)
+    real(wp), intent(in) :: tolerance           !< [m]
+    integer, allocatable :: kept(:)
+    logical :: keep(size(path, 2))
+    integer :: from, to, i
+
+    keep = .false.
+    keep([1, size(keep)]) = .true.
+    from = 1
+    do to = 3, size(keep)
+      ! a bound on how many are looked at again and again
+      if (to - from < longest_straight) then
+        if (all([(distance(path(:, i), path(:, from), path(:, to)) <= tolerance, i=from + 1, to - 1)])) cycle
+      end if
+      keep(to - 1) = .true.
+      from = to - 1
+    end do
+    kept = pack([(i, i=1, size(keep))], keep)
+  end function bends_of
+
+  !> Distance of a point from a line between two others [m].
+  pure real(wp) function distance(point, from, to)
+    real(wp), intent(in) :: point(3), from(3), to(3)
+    real(wp) :: along(3), part
+
+    along = to - from
+    part = 0.0_wp
+    if (dot_product(along, along) > 0.0_wp) &
+      part = max(0.0_wp, min(1.0_wp, dot_product(point - from, along)/dot_product(along, along)))
+    distance = norm2(point - from - part*along)
+  end function distance
 
   !> The curves on which users' pairs guide the origins of their moving links.
   subroutine add_curves(film, skeleton, scene)
@@ -176,30 +223,38 @@ contains
     outline%nodes(outline%count) = node
   end subroutine add_to_outline
 
-  !> Bar or plate of a link, and what reaches from it to pairs that move along it.
-  subroutine add_link(skeleton, symbols, link, scene, outline, shape)
+  !> The plate of a link, or its bars.
+  subroutine add_shape(skeleton, link, plates, scene, outline, shape)
+    type(skeleton_type), intent(in) :: skeleton
+    integer, intent(in) :: link
+    logical, intent(in) :: plates               !< only a plate, or only bars
+    type(scene_type), intent(inout) :: scene
+    type(outline_type), intent(inout) :: outline
+    integer, intent(inout) :: shape             !< item of the link, where it gets one
+    integer, allocatable :: chosen(:), order(:)
+    logical :: closed
+
+    if (outline%count == 0) return
+    chosen = distinct_points(outline%points(:, :outline%count), same*skeleton%size)
+    outline%points(:, :size(chosen)) = outline%points(:, chosen)
+    outline%nodes(:size(chosen)) = outline%nodes(chosen)
+    outline%count = size(chosen)
+    call find_shape(outline%points(:, :outline%count), same*skeleton%size, order, closed)
+    if (size(order) == 0 .or. (closed .neqv. plates)) return
+    call scene%add_item(merge(closed_path, segments, closed), in_plate, outline%nodes(order), link)
+    shape = scene%n_items
+  end subroutine add_shape
+
+  !> What reaches from a link to pairs that move along it.
+  subroutine add_reach(skeleton, symbols, link, scene, outline, shape)
     type(skeleton_type), intent(in) :: skeleton
     type(symbols_type), intent(in) :: symbols
     integer, intent(in) :: link
     type(scene_type), intent(inout) :: scene
     type(outline_type), intent(inout) :: outline
-    integer, intent(out) :: shape
-    integer, allocatable :: chosen(:), order(:)
-    logical :: closed
+    integer, intent(inout) :: shape
     integer :: i, k, side
 
-    shape = 0
-    if (outline%count > 0) then
-      chosen = distinct_points(outline%points(:, :outline%count), same*skeleton%size)
-      outline%points(:, :size(chosen)) = outline%points(:, chosen)
-      outline%nodes(:size(chosen)) = outline%nodes(chosen)
-      outline%count = size(chosen)
-      call find_shape(outline%points(:, :outline%count), same*skeleton%size, order, closed)
-      if (size(order) > 0) then
-        call scene%add_item(merge(closed_path, segments, closed), in_plate, outline%nodes(order), link)
-        shape = scene%n_items
-      end if
-    end if
     associate (graph => skeleton%graph)
       do i = graph%first(link), graph%first(link + 1) - 1
         k = graph%pair_at(i)
@@ -219,7 +274,7 @@ contains
         end associate
       end do
     end associate
-  end subroutine add_link
+  end subroutine add_reach
 
   subroutine add_springs(mechanism, shapes, scene)
     type(mechanism_type), intent(in) :: mechanism

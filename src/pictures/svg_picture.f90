@@ -13,7 +13,8 @@ module mech9_svg_picture
   use mech9_page, only: page_type, xml_text, decimal
   implicit none
   private
-  public :: save_sketch, put_picture, put_opening, put_surroundings, opening_of, path_of, place_of, clock_text
+  public :: save_sketch, put_picture, put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of, &
+            clock_text
 
 contains
 
@@ -29,17 +30,18 @@ contains
     type(page_type) :: page
 
     call page%line('<?xml version="1.0" encoding="UTF-8"?>')
-    call put_picture(title, scene, film, projection, frame, page)
+    call put_picture(title, scene, film, projection, frame, .false., page)
     call page%save(path, err)
   end subroutine save_sketch
 
   !> The picture of a frame, into a page.
-  subroutine put_picture(title, scene, film, projection, frame, page)
+  subroutine put_picture(title, scene, film, projection, frame, all_axes, page)
     character(len=*), intent(in) :: title
     type(scene_type), intent(in) :: scene
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
     integer, intent(in) :: frame
+    logical, intent(in) :: all_axes                !< also one that points to the viewer: the picture can be turned
     type(page_type), intent(inout) :: page
     type(drawing_type) :: drawing
     integer, allocatable :: order(:)
@@ -53,7 +55,7 @@ contains
       call put_item(scene%items(order(i)), order(i), drawing, projection%symbol, page)
     end do
     call page%line('</g>')
-    call put_surroundings(title, film%times(frame), film%n_frames > 1, projection, page)
+    call put_surroundings(title, film%times(frame), film%n_frames > 1, projection, all_axes, page)
     call page%line('</svg>')
   end subroutine put_picture
 
@@ -87,8 +89,7 @@ contains
       call page%put(' transform="translate('//place_of(item, drawing)//') scale('//decimal(symbol)//')">'// &
                     mark_svg(item%style, item%shift)//'</g>')
     case (label)
-      call page%put(' transform="translate('//place_of(item, drawing)//')"><text class="'//classes_of(item)//'">'// &
-                    xml_text(item%text)//'</text></g>')
+      call page%put(' transform="translate('//place_of(item, drawing)//')">'//label_svg(item)//'</g>')
     case default
       path = '<path d="'//path_of(item, outline_of(item, drawing, symbol))//'"'
       call page%put('>'//path//'/>')
@@ -108,6 +109,14 @@ contains
     if (item%shape == label) tag = '<g data-i="'//to_text(number)//'"'
     if (allocated(item%text) .and. item%shape /= label) tag = tag//' data-joint="'//item%text//'"'
   end function opening_of
+
+  !> A label as SVG at the place (0, 0).
+  pure function label_svg(item) result(svg)
+    type(item_type), intent(in) :: item
+    character(len=:), allocatable :: svg
+
+    svg = '<text class="'//classes_of(item)//'">'//xml_text(item%text)//'</text>'
+  end function label_svg
 
   pure function classes_of(item) result(classes)
     type(item_type), intent(in) :: item
@@ -158,11 +167,12 @@ contains
   end function path_of
 
   !> Title, time, scale and the directions of the axes.
-  subroutine put_surroundings(title, time, moves, projection, page)
+  subroutine put_surroundings(title, time, moves, projection, all_axes, page)
     character(len=*), intent(in) :: title
     real(wp), intent(in) :: time                 !< [s]
     logical, intent(in) :: moves                 !< there is more than one time
     type(projection_type), intent(in) :: projection
+    logical, intent(in) :: all_axes
     type(page_type), intent(inout) :: page
     real(wp) :: bar, foot
 
@@ -173,7 +183,7 @@ contains
                    projection%scale*bar)//' '//decimal(foot - 5.0_wp)//'v5h'//decimal(projection%scale*bar)//'v-5"/>'// &
                    '<text class="small" x="'//decimal(projection%width - 82.0_wp)//'" y="'//decimal(foot + 2.0_wp)//'">'// &
                    to_text(bar, 3)//' m</text></g>')
-    call put_axes(projection, page)
+    call put_axes(projection, all_axes, page)
     if (moves) call page%line('<text class="small" id="time" x="90" y="'//decimal(foot + 2.0_wp)//'">'// &
                               clock_text(time)//'</text>')
   end subroutine put_surroundings
@@ -201,8 +211,9 @@ contains
   end function round_length
 
   !> The axes of link 1, as they are seen; one that points to the viewer is not drawn.
-  subroutine put_axes(projection, page)
+  subroutine put_axes(projection, all_axes, page)
     type(projection_type), intent(in) :: projection
+    logical, intent(in) :: all_axes
     type(page_type), intent(inout) :: page
     character, parameter :: names(3) = ['x', 'y', 'z']
     real(wp), parameter :: length = 26.0_wp
@@ -212,7 +223,7 @@ contains
     call page%line('<g id="axes" transform="translate(38 '//decimal(projection%height - 36.0_wp)//')">')
     do i = 1, 3
       tip = length*[projection%view%right(i), -projection%view%up(i)]
-      if (norm2(tip) < 2.0_wp) cycle
+      if (norm2(tip) < 2.0_wp .and. .not. all_axes) cycle
       call page%line('<path stroke="#222" stroke-width="1.2" d="M0 0L'//decimal(tip(1))//' '//decimal(tip(2))//'"/>'// &
                      '<text class="small" text-anchor="middle" dominant-baseline="central" x="'//decimal(1.36_wp*tip(1))// &
                      '" y="'//decimal(1.36_wp*tip(2))//'">'//names(i)//'</text>')

@@ -42,8 +42,10 @@ module mech9_options
                 'plot columns, as in q3,P.x or P.x:P.y; TARGET is a picture or term'), &
     option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &
                 'draw the mechanism at the start'), &
+    option_type('animate', needed_argument, 'FILE', any_text, .false., both, &
+                'draw it moving: a page (.html), or a picture (.svg, .gif)'), &
     option_type('view', needed_argument, 'VIEW', any_text, .false., both, &
-                'of the drawing: xy, xz, ... iso, or a direction as 1,-2,1'), &
+                'of both drawings: xy, xz, ... iso, or a direction as 1,-2,1'), &
     option_type('no-write', no_argument, '', any_text, .false., both, &
                 'compute all that is asked for, write no results'), &
     option_type('report', needed_argument, 'FILE', any_text, .false., both, &

@@ -1,8 +1,9 @@
-!> Pictures of the mechanism itself that a run is asked for: a sketch.
-!> Uses error, mechanism, plan, state, the pictures floor, command_line.
+!> Pictures of the mechanism itself that a run is asked for: a sketch, a moving picture.
+!> Uses error, text, mechanism, plan, state, the pictures floor, command_line.
 module mech9_picture_requests
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, exit_usage, exit_data
+  use mech9_error, only: error_type, raise, exit_usage, exit_data
+  use mech9_text, only: lower
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -15,6 +16,9 @@ module mech9_picture_requests
   use mech9_scene, only: scene_type
   use mech9_scene_making, only: make_scene
   use mech9_svg_picture, only: save_sketch
+  use mech9_html_film, only: save_html_film
+  use mech9_svg_film, only: save_svg_film
+  use mech9_gif_film, only: save_gif_film
   use mech9_command_line, only: command_line_type
   implicit none
   private
@@ -23,6 +27,7 @@ module mech9_picture_requests
   !> What is asked for. A path that is empty asks for nothing.
   type :: picture_requests_type
     character(len=:), allocatable :: sketch
+    character(len=:), allocatable :: animation
     type(view_type), allocatable :: view      !< unless the best one is to be found
     logical :: with_masses = .false.          !< bodies count in this program
   contains
@@ -31,6 +36,8 @@ module mech9_picture_requests
     procedure :: save => save_pictures
     procedure :: save_start
   end type picture_requests_type
+
+  character(len=*), parameter :: endings(*) = [character(len=5) :: '.html', '.svg', '.gif']
 
 contains
 
@@ -45,7 +52,14 @@ contains
 
     requests%sketch = mechanism%output%sketch
     if (options%has('sketch')) requests%sketch = options%argument('sketch')
+    requests%animation = mechanism%output%animation
+    if (options%has('animate')) requests%animation = options%argument('animate')
     requests%with_masses = program_name == 'mech9d'
+    if (requests%animation /= '' .and. all(endings /= ending_of(requests%animation))) then
+      call raise(err, merge(exit_usage, exit_data, options%has('animate')), "'"//requests%animation// &
+                 "' is no moving picture; the name must end in .html, .svg or .gif")
+      return
+    end if
     if (options%has('view')) then
       allocate (requests%view)
       call read_view(options%argument('view'), exit_usage, requests%view, err)
@@ -59,7 +73,7 @@ contains
   pure logical function any_wanted(self)
     class(picture_requests_type), intent(in) :: self
 
-    any_wanted = self%sketch /= ''
+    any_wanted = self%sketch /= '' .or. self%animation /= ''
   end function any_wanted
 
   !> An empty film for a run of so many outputs.
@@ -79,22 +93,23 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start
     type(error_type), allocatable, intent(out) :: err
+    type(picture_requests_type) :: sketch_only
     type(film_type) :: film
 
     film = new_film(mechanism, 1)
     call film%take(mechanism, plan, start)
-    call self%save(mechanism, film, err)
+    sketch_only = self
+    sketch_only%animation = ''
+    call sketch_only%save(mechanism, film, err)
   end subroutine save_start
 
-  !> Make the pictures of a film that has a frame at least. Errors are exit_file.
+  !> Make the pictures of a film; of none where it has no frame. Errors are exit_file.
   subroutine save_pictures(self, mechanism, film, err)
     class(picture_requests_type), intent(in) :: self
     type(mechanism_type), intent(in) :: mechanism
     type(film_type), intent(in) :: film
     type(error_type), allocatable, intent(out) :: err
     type(skeleton_type) :: skeleton
-    type(projection_type) :: projection
-    type(scene_type) :: scene
     type(view_type) :: view
     logical :: planar
 
@@ -103,11 +118,53 @@ contains
     call place_slides(mechanism, film, skeleton)
     call choose_view(mechanism, film, skeleton, view, planar)
     if (allocated(self%view)) then
+      ! still along the normal of the plane?
       planar = planar .and. abs(dot_product(self%view%toward, view%toward)) > 1.0_wp - 1.0e-6_wp
       view = self%view
     end if
-    call fit_projection(mechanism, film, skeleton, view, .false., projection)
-    call make_scene(mechanism, film, skeleton, projection, planar, self%with_masses, scene)
-    if (self%sketch /= '') call save_sketch(self%sketch, mechanism%title, scene, film, projection, 1, err)
+    if (self%sketch /= '') call save_one(self, mechanism, film, skeleton, view, planar, self%sketch, .false., err)
+    if (self%animation /= '' .and. .not. allocated(err)) &
+      call save_one(self, mechanism, film, skeleton, view, planar, self%animation, .true., err)
   end subroutine save_pictures
+
+  !> One picture. A page can be turned, unless the mechanism is planar: it has room for that.
+  subroutine save_one(self, mechanism, film, skeleton, view, planar, path, moving, err)
+    class(picture_requests_type), intent(in) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(view_type), intent(in) :: view
+    logical, intent(in) :: planar
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: moving
+    type(error_type), allocatable, intent(out) :: err
+    type(projection_type) :: projection
+    type(scene_type) :: scene
+    logical :: page
+
+    page = moving .and. ending_of(path) == '.html'
+    call fit_projection(mechanism, film, skeleton, view, page .and. .not. planar, projection)
+    call make_scene(mechanism, film, skeleton, projection, planar, self%with_masses, scene)
+    if (.not. moving) then
+      call save_sketch(path, mechanism%title, scene, film, projection, 1, err)
+    else if (page) then
+      call save_html_film(path, mechanism%title, scene, film, projection, err)
+    else if (ending_of(path) == '.gif') then
+      call save_gif_film(path, mechanism%title, scene, film, projection, err)
+    else
+      call save_svg_film(path, mechanism%title, scene, film, projection, err)
+    end if
+  end subroutine save_one
+
+  !> The ending of a file's name in lower case, with its dot; .htm counts as .html.
+  pure function ending_of(path) result(ending)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: ending
+    integer :: dot
+
+    dot = index(path, '.', back=.true.)
+    ending = ''
+    if (dot > index(path, '/', back=.true.)) ending = lower(path(dot:))
+    if (ending == '.htm') ending = '.html'
+  end function ending_of
 end module mech9_picture_requests

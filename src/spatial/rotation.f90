@@ -5,7 +5,7 @@ module mech9_rotation
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, rotation_vector, axial_vector
+  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, rotation_vector, axial_vector, quaternion
 
   !> The rotation that turns nothing.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, &
@@ -148,4 +148,28 @@ contains
     if (dot_product(axis, w) < 0.0_wp) axis = -axis
     phi = angle*axis
   end function rotation_vector
+
+  !> Unit quaternion (w, x, y, z) of a rotation matrix, w >= 0. Its largest part is found first and divides the
+  !> others, so that no digits are lost at any angle.
+  pure function quaternion(r) result(q)
+    real(wp), intent(in) :: r(3, 3)
+    real(wp) :: q(4), squares(4), w(3)
+    integer :: i, j, k
+
+    squares = 0.25_wp*(1.0_wp + [r(1, 1) + r(2, 2) + r(3, 3), r(1, 1) - r(2, 2) - r(3, 3), &
+                                 r(2, 2) - r(1, 1) - r(3, 3), r(3, 3) - r(1, 1) - r(2, 2)])
+    k = maxloc(squares, dim=1)
+    q(k) = sqrt(squares(k))
+    w = axial_vector(r)
+    if (k == 1) then
+      q(2:4) = 0.5_wp*w/q(1)
+    else
+      i = 1 + mod(k - 1, 3)
+      j = 1 + mod(k, 3)
+      q(1) = 0.5_wp*w(k - 1)/q(k)
+      q(1 + i) = 0.25_wp*(r(i, k - 1) + r(k - 1, i))/q(k)
+      q(1 + j) = 0.25_wp*(r(j, k - 1) + r(k - 1, j))/q(k)
+    end if
+    if (q(1) < 0.0_wp) q = -q
+  end function quaternion
 end module mech9_rotation

@@ -1,0 +1,280 @@
+!> A film as an animated GIF, drawn by gnuplot. Uses kinds, error, film, projection, scene, drawing,
+!> picture_style, svg_film, gnuplot, page.
+!>
+!> gnuplot is given polygons only: lines are drawn forth and back, bands and plates as their outlines.
+module mech9_gif_film
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type, raise, add_place, exit_file
+  use mech9_text, only: to_text
+  use mech9_film, only: film_type
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label, in_pin, in_cross, in_pin_end, &
+                         as_stand, as_ring, as_ball, as_dot, as_centre, as_free
+  use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
+  use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, colour_of, ink, edge
+  use mech9_svg_film, only: duration_of
+  use mech9_svg_picture, only: clock_text
+  use mech9_gnuplot, only: quoted, quoted_path, run_gnuplot, gnuplot_package
+  use mech9_page, only: page_type, decimal
+  implicit none
+  private
+  public :: save_gif_film
+
+  !> A GIF of more frames is larger than it is worth.
+  integer, parameter :: most_frames = 120
+  character(len=*), parameter :: grey = '#d0d0d0', white = '#ffffff', none = ''
+  !> Steps of a quarter of a circle.
+  integer, parameter :: quarter = 4
+
+  !> The script being written, and the number of the latest object in it.
+  type :: script_type
+    type(page_type) :: page
+    integer :: objects = 0
+    real(wp) :: symbol = 1.0_wp
+  contains
+    procedure :: polygon
+    procedure :: circle
+    procedure :: polyline
+  end type script_type
+
+contains
+
+  !> Let gnuplot draw the film. Errors are exit_file; one of them is that there is no gnuplot.
+  subroutine save_gif_film(path, title, scene, film, projection, err)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: title          !< any text
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    type(error_type), allocatable, intent(out) :: err
+    type(script_type) :: script
+    character(len=:), allocatable :: size
+    logical :: found
+    integer :: stride, frames, i, delay
+
+    stride = (film%n_frames + most_frames - 1)/most_frames
+    frames = (film%n_frames + stride - 1)/stride
+    delay = max(2, nint(100.0_wp*duration_of(film)/frames))
+    script%symbol = projection%symbol
+    size = to_text(nint(projection%width))//','//to_text(nint(projection%height))
+    call script%page%line('set terminal gif animate delay '//to_text(delay)//' loop 0 size '//size//' noenhanced medium')
+    call script%page%line('set output '//quoted_path(path))
+    call script%page%line('unset border; unset tics; unset key; set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0')
+    call script%page%line('set xrange [0:'//decimal(projection%width)//']; set yrange ['//decimal(projection%height)//':0]')
+    do i = 1, frames
+      call put_frame(title, scene, film, projection, 1 + (i - 1)*stride, script)
+    end do
+    call script%page%line('unset output')
+    call run_gnuplot(script%page%text(), found, err)
+    if (.not. allocated(err) .and. .not. found) &
+      call raise(err, exit_file, 'a GIF is drawn by gnuplot, which is not here; install '//gnuplot_package// &
+                 ', or let the name end in .html or .svg')
+    call add_place(err, 'no moving picture '//path)
+  end subroutine save_gif_film
+
+  subroutine put_frame(title, scene, film, projection, frame, script)
+    character(len=*), intent(in) :: title
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    integer, intent(in) :: frame
+    type(script_type), intent(inout) :: script
+    type(drawing_type) :: drawing
+    integer, allocatable :: order(:)
+    integer :: i
+
+    drawing = draw_frame(scene, film, projection, frame)
+    order = drawing_order(scene, drawing)
+    script%objects = 0
+    call script%page%line('unset object; unset label')
+    call put_text(title, [14.0_wp, 20.0_wp], 'left', ink, script)
+    call put_text(clock_text(film%times(frame)), [14.0_wp, projection%height - 16.0_wp], 'left', ink, script)
+    do i = 1, size(order)
+      associate (item => scene%items(order(i)))
+        select case (item%shape)
+        case (mark)
+          call put_mark(item, drawing%xy(:, item%nodes(1)), script)
+        case (label)
+          call put_label(item, drawing%xy(:, item%nodes(1)) + item%shift, script)
+        case default
+          call put_path(item, outline_of(item, drawing, projection%symbol), script)
+        end select
+      end associate
+    end do
+    call script%page%line('plot NaN notitle')
+  end subroutine put_frame
+
+  !> A polygon; an empty colour fills nothing.
+  subroutine polygon(self, corners, fill, line, width)
+    class(script_type), intent(inout) :: self
+    real(wp), intent(in) :: corners(:, :)          !< (2,n) [px]
+    character(len=*), intent(in) :: fill, line
+    real(wp), intent(in) :: width                  !< of the line [px]
+    integer :: i
+
+    if (size(corners, 2) < 2) return
+    self%objects = self%objects + 1
+    call self%page%put('set object '//to_text(self%objects)//' polygon from ')
+    do i = 1, size(corners, 2)
+      call self%page%put(decimal(corners(1, i))//','//decimal(corners(2, i))//' to ')
+    end do
+    call self%page%put(decimal(corners(1, 1))//','//decimal(corners(2, 1)))
+    if (fill == none) then
+      call self%page%put(' fs empty')
+    else
+      call self%page%put(' fc rgb "'//fill//'" fs solid 1')
+    end if
+    call self%page%line(' border lc rgb "'//line//'" lw '//decimal(width))
+  end subroutine polygon
+
+  !> A line from corner to corner: a polygon that comes back the way it went.
+  subroutine polyline(self, corners, line, width)
+    class(script_type), intent(inout) :: self
+    real(wp), intent(in) :: corners(:, :)
+    character(len=*), intent(in) :: line
+    real(wp), intent(in) :: width
+    integer :: n
+
+    n = size(corners, 2)
+    call self%polygon(corners(:, [integer :: forth_and_back(n)]), none, line, width)
+  end subroutine polyline
+
+  pure function forth_and_back(n) result(numbers)
+    integer, intent(in) :: n
+    integer :: numbers(max(0, 2*n - 1))
+    integer :: i
+
+    numbers = [(i, i=1, n), (i, i=n - 1, 1, -1)]
+  end function forth_and_back
+
+  subroutine circle(self, centre, radius, fill, line, width)
+    class(script_type), intent(inout) :: self
+    real(wp), intent(in) :: centre(2), radius      !< [px]
+    character(len=*), intent(in) :: fill, line
+    real(wp), intent(in) :: width
+
+    self%objects = self%objects + 1
+    call self%page%line('set object '//to_text(self%objects)//' circle at '//decimal(centre(1))//','//decimal(centre(2))// &
+                        ' size '//decimal(radius)//' fc rgb "'//fill//'" fs solid 1 border lc rgb "'//line//'" lw '// &
+                        decimal(width))
+  end subroutine circle
+
+  !> Paths, plates, bands and springs.
+  subroutine put_path(item, corners, script)
+    type(item_type), intent(in) :: item
+    real(wp), intent(in) :: corners(:, :)
+    type(script_type), intent(inout) :: script
+    character(len=7) :: dark, light
+    integer :: i
+
+    dark = styles(item%style)%colour
+    if (dark == '') dark = dark_colours(colour_of(item%link))
+    light = light_colours(colour_of(item%link))
+    if (item%style == in_pin .or. item%style == in_cross) light = grey
+    associate (style => styles(item%style))
+      if (item%shape == facing_path) then
+        call script%polygon(corners, white, dark, style%width)
+      else if (item%shape == closed_path) then
+        call script%polygon(band(corners, 0.5_wp*style%width*script%symbol), light, dark, edge)
+      else if (item%shape == segments .or. style%has_edge) then
+        do i = 1, size(corners, 2) - 1, 2
+          call put_segment(style, corners(:, i:i + 1), light, dark, script)
+        end do
+      else
+        call script%polyline(corners, dark, style%width)
+      end if
+    end associate
+  end subroutine put_path
+
+  subroutine put_segment(style, ends, light, dark, script)
+    type(style_type), intent(in) :: style
+    real(wp), intent(in) :: ends(2, 2)
+    character(len=*), intent(in) :: light, dark
+    type(script_type), intent(inout) :: script
+    real(wp) :: half(2)
+
+    if (.not. style%has_edge) then
+      call script%polyline(ends, dark, style%width)
+    else if (style%butt) then
+      half = ends(:, 2) - ends(:, 1)
+      half = 0.5_wp*style%width*script%symbol*[-half(2), half(1)]/max(norm2(half), 1.0e-6_wp)
+      call script%polygon(reshape([ends(:, 1) + half, ends(:, 2) + half, ends(:, 2) - half, ends(:, 1) - half], [2, 4]), &
+                          light, dark, edge)
+    else
+      call script%polygon(band(ends, 0.5_wp*style%width*script%symbol), light, dark, edge)
+    end if
+  end subroutine put_segment
+
+  !> The outline at a distance around a convex plate, or around a bar with two corners.
+  pure function band(corners, radius) result(around)
+    real(wp), intent(in) :: corners(:, :), radius
+    real(wp), allocatable :: around(:, :)
+    real(wp) :: before(2), after(2), from, sweep, sense
+    integer :: n, i, j
+
+    n = size(corners, 2)
+    allocate (around(2, n*(2*quarter + 1)))
+    sense = sign(1.0_wp, sum([(corners(1, i)*corners(2, 1 + mod(i, n)) - corners(2, i)*corners(1, 1 + mod(i, n)), i=1, n)]))
+    do i = 1, n
+      before = corners(:, i) - corners(:, 1 + mod(i + n - 2, n))
+      after = corners(:, 1 + mod(i, n)) - corners(:, i)
+      ! outside is to the right of the way, or to the left
+      from = atan2(-sense*before(1), sense*before(2))
+      sweep = atan2(-sense*after(1), sense*after(2)) - from
+      sweep = sense*modulo(sense*sweep, 2.0_wp*pi)
+      do j = 0, 2*quarter
+        around(:, (i - 1)*(2*quarter + 1) + j + 1) = corners(:, i) + radius*[cos(from + sweep*j/(2*quarter)), &
+                                                                            sin(from + sweep*j/(2*quarter))]
+      end do
+    end do
+  end function band
+
+  !> The marks of mech9_picture_style, for gnuplot.
+  subroutine put_mark(item, at, script)
+    type(item_type), intent(in) :: item
+    real(wp), intent(in) :: at(2)
+    type(script_type), intent(inout) :: script
+    real(wp) :: s, down
+
+    s = script%symbol
+    select case (item%style)
+    case (as_stand)
+      down = sign(15.0_wp, item%shift(2))*s
+      call script%polygon(reshape([at, at + [-9.0_wp*s, down], at + [9.0_wp*s, down]], [2, 3]), '#e8e8e8', ink, 1.5_wp)
+      call script%polyline(reshape([at + [-14.0_wp*s, down], at + [14.0_wp*s, down]], [2, 2]), ink, 2.0_wp)
+    case (as_ring)
+      call script%circle(at, 5.0_wp*s, white, ink, 1.5_wp)
+    case (as_ball)
+      call script%circle(at, 7.5_wp*s, grey, ink, 1.5_wp)
+    case (as_dot)
+      call script%circle(at, 3.2_wp*s, dark_colours(colour_of(item%link)), ink, 0.5_wp)
+    case (as_centre)
+      call script%circle(at, 4.6_wp*s, white, ink, 1.5_wp)
+      call script%circle(at, 1.5_wp*s, ink, ink, 1.0_wp)
+    case (as_free)
+      call script%polygon(reshape([at(1), at(2) - 7*s, at(1) + 7*s, at(2), at(1), at(2) + 7*s, at(1) - 7*s, at(2)], [2, 4]), &
+                          white, ink, 1.5_wp)
+    end select
+  end subroutine put_mark
+
+  subroutine put_label(item, at, script)
+    type(item_type), intent(in) :: item
+    real(wp), intent(in) :: at(2)
+    type(script_type), intent(inout) :: script
+    character(len=7) :: colour
+
+    colour = ink
+    if (item%link > 0) colour = dark_colours(colour_of(item%link))
+    call put_text(item%text, at, trim(merge('left ', 'right', item%shift(1) >= 0.0_wp)), colour, script)
+  end subroutine put_label
+
+  subroutine put_text(text, at, side, colour, script)
+    character(len=*), intent(in) :: text
+    real(wp), intent(in) :: at(2)
+    character(len=*), intent(in) :: side, colour
+    type(script_type), intent(inout) :: script
+
+    call script%page%line('set label '//quoted(text)//' at '//decimal(at(1))//','//decimal(at(2))//' '//side// &
+                          ' noenhanced front textcolor rgb "'//colour//'"')
+  end subroutine put_text
+end module mech9_gif_film

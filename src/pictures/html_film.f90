@@ -1,0 +1,182 @@
+!> A film as a page that a browser plays, with nothing from elsewhere: the first picture, the places of everything
+!> in every frame, and a script. Uses kinds, error, text, rotation, film, view, projection, scene, svg_picture,
+!> film_script, page.
+module mech9_html_film
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_rotation, only: quaternion
+  use mech9_film, only: film_type
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, item_type, label, in_thread
+  use mech9_svg_picture, only: put_picture
+  use mech9_film_script, only: put_script
+  use mech9_page, only: page_type, xml_text, decimal
+  implicit none
+  private
+  public :: save_html_film
+
+  !> Places are whole numbers of this part of the page's width: far finer than a screen shows.
+  real(wp), parameter :: finest = 1.0e-5_wp
+  !> Parts of quaternions are whole numbers of 1/steps.
+  real(wp), parameter :: steps = 1.0e5_wp
+
+contains
+
+  !> Write the page. Errors are exit_file.
+  subroutine save_html_film(path, title, scene, film, projection, err)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: title          !< any text
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    type(error_type), allocatable, intent(out) :: err
+    type(page_type) :: page
+
+    call page%line('<!DOCTYPE html>')
+    call page%line('<html lang="en"><head><meta charset="utf-8"/>')
+    call page%line('<meta name="viewport" content="width=device-width, initial-scale=1"/>')
+    call page%line('<title>'//xml_text(title)//'</title>')
+    call page%line('<style>body{margin:12px;font:14px "DejaVu Sans",Verdana,sans-serif;background:#fff;color:#222}')
+    call page%line('figure{margin:0 auto;max-width:900px}svg.mech9{width:100%;height:auto;max-height:85vh;cursor:grab;'// &
+                   'touch-action:none;user-select:none}')
+    call page%line('nav{display:flex;gap:10px;align-items:center;flex-wrap:wrap}nav input[type=range]{flex:1;min-width:160px}')
+    call page%line('.bare .name,.bare .number,.bare .coordinate,.bare .input{display:none}</style></head><body><figure>')
+    call put_picture(title, scene, film, projection, 1, .true., page)
+    call page%line('<nav><button id="play" type="button">Play</button>')
+    call page%line('<input id="frame" type="range" min="0" value="0" step="1" aria-label="time"/>')
+    call page%line('<select id="speed" aria-label="speed"><option value="0.25">1/4</option><option value="0.5">1/2</option>'// &
+                   '<option value="1" selected="selected">speed 1</option><option value="2">2</option>'// &
+                   '<option value="4">4</option></select>')
+    call page%line('<label><input id="names" type="checkbox" checked="checked"/> names</label>')
+    call page%line('<button id="home" type="button" title="drag the picture to turn it">view</button></nav></figure>')
+    call page%line('<script>')
+    call put_film(scene, film, projection, page)
+    call put_script(page)
+    call page%line('</script></body></html>')
+    call page%save(path, err)
+  end subroutine save_html_film
+
+  !> What the script has to know, as one constant.
+  subroutine put_film(scene, film, projection, page)
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    type(page_type), intent(inout) :: page
+    integer :: numbers(size(film%p, 2))            !< of the links that have nodes; 0: the others, and link 1
+    real(wp) :: unit
+    integer :: i, count
+
+    unit = finest*projection%width/projection%scale
+    numbers = 0
+    count = 0
+    do i = 1, scene%n_nodes
+      if (scene%node_link(i) == 1 .or. numbers(scene%node_link(i)) > 0) cycle
+      count = count + 1
+      numbers(scene%node_link(i)) = count
+    end do
+    call page%put('const film = {unit: '//to_text(unit, 17)//', scale: '//to_text(projection%scale, 17))
+    call page%put(', symbol: '//decimal(projection%symbol)//', middle: ['//decimal(projection%middle(1))//', '// &
+                  decimal(projection%middle(2))//'], sorted: ['//to_text(scene%first_sorted)//', '// &
+                  to_text(scene%last_sorted)//'],'//new_line('a')//'view: [')
+    do i = 1, 3
+      call page%put(to_text(projection%view%right(i), 9)//',')
+    end do
+    do i = 1, 3
+      call page%put(to_text(projection%view%up(i), 9)//',')
+    end do
+    call page%put(to_text(projection%view%toward(1), 9)//','//to_text(projection%view%toward(2), 9)//','// &
+                  to_text(projection%view%toward(3), 9))
+    call page%line('],')
+    call put_nodes(scene, numbers, projection%centre, unit, page)
+    call put_items(scene, page)
+    call put_frames(film, numbers, count, projection%centre, unit, page)
+    call page%line('};')
+  end subroutine put_film
+
+  !> Nodes: number of the link, and place in it; those of link 1 from the middle of the picture.
+  subroutine put_nodes(scene, numbers, centre, unit, page)
+    type(scene_type), intent(in) :: scene
+    integer, intent(in) :: numbers(:)
+    real(wp), intent(in) :: centre(3), unit
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    call page%put('links: [')
+    do i = 1, scene%n_nodes
+      call page%put(to_text(numbers(scene%node_link(i)))//',')
+    end do
+    call page%put('],'//new_line('a')//'points: [')
+    do i = 1, scene%n_nodes
+      if (scene%node_link(i) == 1) then
+        call put_steps((scene%node_at(:, i) - centre)/unit, page)
+      else
+        call put_steps(scene%node_at(:, i)/unit, page)
+      end if
+    end do
+    call page%line('],')
+  end subroutine put_nodes
+
+  !> Whole numbers, each with a comma behind it.
+  subroutine put_steps(values, page)
+    real(wp), intent(in) :: values(:)
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    do i = 1, size(values)
+      call page%put(to_text(nint(max(-2.0e9_wp, min(2.0e9_wp, values(i)))))//',')
+    end do
+  end subroutine put_steps
+
+  !> Items; the numbers of nodes begin with 0. Items of link 1 alone stand still.
+  subroutine put_items(scene, page)
+    type(scene_type), intent(in) :: scene
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    call page%line('items: [')
+    do i = 1, scene%n_items
+      associate (item => scene%items(i))
+        call page%put('{shape: '//to_text(item%shape)//', nodes: ['//to_text(item%nodes - 1, ',')//'], above: ['// &
+                      to_text(pack(item%above, item%above > 0), ',')//']')
+        if (all(scene%node_link(item%nodes) == 1)) call page%put(', still: true')
+        if (item%style == in_thread) call page%put(', thread: true')
+        if (item%shape == label) then
+          call page%put(', shift: ['//decimal(item%shift(1))//', '//decimal(item%shift(2))//']')
+        else
+          call page%put(', shift: [0, 0]')
+        end if
+        call page%line('},')
+      end associate
+    end do
+    call page%line('],')
+  end subroutine put_items
+
+  !> Times, and for each frame the place and the quaternion of each link.
+  subroutine put_frames(film, numbers, count, centre, unit, page)
+    type(film_type), intent(in) :: film
+    integer, intent(in) :: numbers(:), count
+    real(wp), intent(in) :: centre(3), unit
+    type(page_type), intent(inout) :: page
+    integer :: links(count), frame, i
+
+    do i = 1, size(numbers)
+      if (numbers(i) > 0) links(numbers(i)) = i
+    end do
+    call page%put('times: [')
+    do frame = 1, film%n_frames
+      call page%put(to_text(film%times(frame), 9)//',')
+    end do
+    call page%line('],')
+    call page%line('poses: [')
+    do frame = 1, film%n_frames
+      call page%put('[')
+      do i = 1, count
+        call put_steps((film%p(:, links(i), frame) - centre)/unit, page)
+        call put_steps(steps*quaternion(film%r(:, :, links(i), frame)), page)
+      end do
+      call page%line('],')
+    end do
+    call page%line('],')
+  end subroutine put_frames
+end module mech9_html_film

@@ -1,0 +1,131 @@
+!> A film as one SVG that moves by itself, without a script, so that it also plays where a page shows it as a
+!> picture. Uses kinds, error, text, film, projection, scene, drawing, picture_style, svg_picture, page.
+module mech9_svg_film
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_film, only: film_type
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, item_type, mark, label
+  use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
+  use mech9_picture_style, only: styles, mark_svg
+  use mech9_svg_picture, only: put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of
+  use mech9_page, only: page_type, decimal
+  implicit none
+  private
+  public :: save_svg_film, duration_of
+
+  !> Bounds of the time that a film takes to play [s].
+  real(wp), parameter :: shortest = 3.0_wp, longest = 15.0_wp
+
+contains
+
+  !> Write the picture. Errors are exit_file.
+  subroutine save_svg_film(path, title, scene, film, projection, err)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: title          !< any text
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    type(error_type), allocatable, intent(out) :: err
+    type(page_type) :: page
+    type(drawing_type), allocatable :: drawings(:)
+    integer, allocatable :: order(:)
+    integer :: i
+
+    allocate (drawings(film%n_frames))
+    do i = 1, film%n_frames
+      drawings(i) = draw_frame(scene, film, projection, i)
+    end do
+    call page%line('<?xml version="1.0" encoding="UTF-8"?>')
+    call put_opening(title, projection, page)
+    order = drawing_order(scene, drawings(1))
+    call page%line('<g id="scene">')
+    do i = 1, size(order)
+      associate (item => scene%items(order(i)))
+        if (all(scene%node_link(item%nodes) == 1) .or. film%n_frames < 2) then
+          call put_item(item, order(i), drawings(1), projection%symbol, page)
+        else
+          call put_moving(item, order(i), drawings, projection%symbol, duration_of(film), page)
+        end if
+      end associate
+    end do
+    call page%line('</g>')
+    call put_surroundings(title, film%times(1), .false., projection, .false., page)
+    call page%line('</svg>')
+    call page%save(path, err)
+  end subroutine save_svg_film
+
+  !> How long a film plays: as long as it takes, or less or more where nobody could watch it [s].
+  pure real(wp) function duration_of(film) result(duration)
+    type(film_type), intent(in) :: film
+
+    duration = max(shortest, min(longest, abs(film%times(film%n_frames) - film%times(1))))
+  end function duration_of
+
+  !> An item with what it is in each frame.
+  subroutine put_moving(item, number, drawings, symbol, duration, page)
+    type(item_type), intent(in) :: item
+    integer, intent(in) :: number
+    type(drawing_type), intent(in) :: drawings(:)
+    real(wp), intent(in) :: symbol
+    real(wp), intent(in) :: duration               !< [s]
+    type(page_type), intent(inout) :: page
+
+    call page%put(opening_of(item, number)//'>')
+    select case (item%shape)
+    case (mark, label)
+      call page%put('<animateTransform attributeName="transform" type="translate"'//timing(duration))
+      call put_values(item, drawings, symbol, page)
+      call page%put('"/>')
+      if (item%shape == mark) then
+        call page%put('<g transform="scale('//decimal(symbol)//')">'//mark_svg(item%style, item%shift)//'</g>')
+      else
+        call page%put(label_svg(item))
+      end if
+    case default
+      call put_moving_path(item, drawings, symbol, duration, '', page)
+      if (styles(item%style)%has_edge) call put_moving_path(item, drawings, symbol, duration, ' class="i"', page)
+    end select
+    call page%line('</g>')
+  end subroutine put_moving
+
+  subroutine put_moving_path(item, drawings, symbol, duration, class, page)
+    type(item_type), intent(in) :: item
+    type(drawing_type), intent(in) :: drawings(:)
+    real(wp), intent(in) :: symbol, duration
+    character(len=*), intent(in) :: class
+    type(page_type), intent(inout) :: page
+
+    call page%put('<path'//class//'><animate attributeName="d"'//timing(duration))
+    call put_values(item, drawings, symbol, page)
+    call page%put('"/></path>')
+  end subroutine put_moving_path
+
+  !> The beginning of an animation, up to its values. Frame after frame: there are enough of them.
+  pure function timing(duration) result(text)
+    real(wp), intent(in) :: duration
+    character(len=:), allocatable :: text
+
+    text = ' calcMode="discrete" repeatCount="indefinite" dur="'//decimal(duration)//'s" values="'
+  end function timing
+
+  subroutine put_values(item, drawings, symbol, page)
+    type(item_type), intent(in) :: item
+    type(drawing_type), intent(in) :: drawings(:)
+    real(wp), intent(in) :: symbol
+    type(page_type), intent(inout) :: page
+    character(len=:), allocatable :: path
+    integer :: i
+
+    do i = 1, size(drawings)
+      if (i > 1) call page%put(';')
+      if (item%shape == mark .or. item%shape == label) then
+        call page%put(place_of(item, drawings(i)))
+      else
+        path = path_of(item, outline_of(item, drawings(i), symbol))
+        if (path == '') path = 'M0 0'
+        call page%put(path)
+      end if
+    end do
+  end subroutine put_values
+end module mech9_svg_film

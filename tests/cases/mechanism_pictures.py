@@ -1,0 +1,333 @@
+"""Sketches and films of mechanisms: they are well formed, show what they should where it is, and hold nothing else.
+
+usage: mechanism_pictures.py PROGRAMS_FOLDER
+
+Where joints are is computed here: on Fig. 1 by intersecting circles, on Bricard's loop from the start that its data
+file gives, in all frames of a film from the table of the same run.
+"""
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'scripts'))
+from mech9_cases import TREE, Checks, read_table, run
+
+SVG = '{http://www.w3.org/2000/svg}'
+# pictures give hundredths of a px; a place and the two that fix the scale are rounded
+PX = 0.02
+
+
+def example(name):
+    return os.path.join(TREE, 'examples', name, name + '.nml')
+
+
+def place_in(transform):
+    return np.array([float(word) for word in re.match(r'translate\((\S+) (\S+?)\)', transform).groups()])
+
+
+def corners_of(path):
+    return np.array([[float(word) for word in corner.split()] for corner in re.findall(r'[ML]([^MLZ]+)', path)])
+
+
+def joints_of(svg):
+    """Where each joint is drawn, by the names of its coordinates."""
+    joints = {}
+    for group in svg.iter(SVG + 'g'):
+        for name in group.get('data-joint', '').split():
+            if group.get('transform'):
+                joints[name] = place_in(group.get('transform'))
+            else:
+                joints[name] = corners_of(group.find(SVG + 'path').get('d')).mean(axis=0)
+    return joints
+
+
+def texts_of(svg):
+    return [''.join(text.itertext()) for text in svg.iter(SVG + 'text')]
+
+
+def meeting(a, ra, b, rb, near):
+    """The point at the distance ra from a and rb from b, of two the one nearer to a third."""
+    d = np.hypot(*(b - a))
+    along = (ra ** 2 - rb ** 2 + d ** 2) / (2 * d)
+    across = math.sqrt(ra ** 2 - along ** 2)
+    e = (b - a) / d
+    points = [a + along * e + sign * across * np.array([-e[1], e[0]]) for sign in (1, -1)]
+    return min(points, key=lambda point: np.hypot(*(point - near)))
+
+
+def fig1_joints():
+    """The joints of Fig. 1 at the start, q5 = 0.5, from its dimensions and the guesses of its data file."""
+    crank, rocker, second = np.array([0.0, 0.0]), np.array([4.0, 0.0]), np.array([-1.0, 2.5])
+    a = crank + [math.cos(0.5), math.sin(0.5)]
+    b = meeting(a, 3.2, rocker, 2.6, rocker + 2.6 * np.array([math.cos(1.8), math.sin(1.8)]))
+    e = (b - a) / 3.2
+    c = a + 1.6 * e + 1.2 * np.array([-e[1], e[0]])
+    d = meeting(second, 1.8, c, 2.0, second + 1.8 * np.array([math.cos(-1.0), math.sin(-1.0)]))
+    return {'q5': crank, 'q6': rocker, 'q1': second, 'q4': a, 'q7': b, 'q3': c, 'q2': d}
+
+
+def check_similar(checks, drawn, true, first, second, why):
+    """Places on a page against true ones, to the right and upwards: the first two fix scale and origin."""
+    scale = np.hypot(*(drawn[second] - drawn[first])) / np.hypot(*(true[second] - true[first]))
+    for name, place in true.items():
+        expected = drawn[first] + scale * (place - true[first]) * [1, -1]
+        checks.true(np.abs(drawn[name] - expected).max() < PX * max(1.0, np.abs(place - true[first]).max()
+                    / np.abs(true[second] - true[first]).max()), f'{why}: {name} is drawn where it is',
+                    f'{drawn[name]} instead of {expected}')
+
+
+def check_fig1(checks, programs, folder):
+    path = os.path.join(folder, 'fig1.svg')
+    for why, options in (('Fig. 1 with a run', []), ('Fig. 1 without', ['--check'])):
+        done = run(f'{programs}/mech9k', example('fig1'), '--no-write', '--sketch', path, *options)
+        checks.equal(done.returncode, 0, f'{why}: done')
+        svg = ElementTree.parse(path).getroot()
+        check_similar(checks, joints_of(svg), fig1_joints(), 'q5', 'q6', why)
+        paths = [group for group in svg.iter(SVG + 'g') if (group.get('class') or '').startswith('trace')]
+        checks.equal(len(paths), 0 if options else 2, f'{why}: the paths of its two points, if it moves')
+        texts = texts_of(svg)
+        checks.true({'P', 'Q', '2', '6', 'q5', 'q1'} <= set(texts), f'{why}: points, links and coordinates have names')
+        checks.true(texts.count('Fig. 1: two closed chains, one degree of freedom') == 1, f'{why}: it has its title')
+    classes = [(group.get('class') or '').split()[:2] for group in svg.iter(SVG + 'g')]
+    checks.equal(sum(words == ['plate', 'sheet'] for words in classes), 2, 'links 3 and 5 are plates')
+    checks.equal(sum(words[:1] == ['plate'] for words in classes), 5, 'every link is drawn')
+    checks.equal(sum(words[:1] == ['stand'] for words in classes), 3, 'three joints stand on the frame')
+
+
+def seen(direction, place):
+    """A place seen from a direction, z up: to the right and upwards."""
+    toward = np.array(direction, float) / np.linalg.norm(direction)
+    right = np.cross([0, 0, 1], toward)
+    right /= np.linalg.norm(right)
+    return np.array([right @ place, np.cross(toward, right) @ place])
+
+
+def check_bricard(checks, programs, folder):
+    """Its pairs at the start are those that the data file gives: every coordinate is zero there."""
+    places = {'q1': (0, 0, 0), 'q2': (1, 0, 0), 'q3': (1, -1, 0), 'q4': (1, -1, 1), 'q5': (0, -1, 1), 'q6': (0, 0, 1)}
+    path = os.path.join(folder, 'bricard.svg')
+    axes = {'xy': [[1, 0, 0], [0, 1, 0]], 'zy': [[0, 0, 1], [0, 1, 0]], 'xz': [[1, 0, 0], [0, 0, 1]]}
+    for view in ('1,-2,0.7', '-3,0.5,-1', 'iso', 'xy', 'zy', 'xz'):
+        done = run(f'{programs}/mech9d', example('bricard'), '--check', '--sketch', path, f'--view={view}')
+        checks.equal(done.returncode, 0, f'Bricard from {view}: done')
+        if view in axes:
+            true = {name: np.array(axes[view]) @ place for name, place in places.items()}
+        else:
+            direction = (1, -1, 0.8) if view == 'iso' else [float(word) for word in view.split(',')]
+            true = {name: seen(direction, place) for name, place in places.items()}
+        check_similar(checks, joints_of(ElementTree.parse(path).getroot()), true, 'q1', 'q4', f'Bricard from {view}')
+    svg = ElementTree.parse(path).getroot()
+    centres = sum((group.get('class') or '') == 'centre' for group in svg.iter(SVG + 'g'))
+    checks.equal(centres, 5, 'mech9d marks the centres of its five bodies')
+
+
+def film_of(html):
+    """The constant that the script of a page begins with."""
+    text = re.search(r'const film = (\{.*?\n\});?\n', html, re.S).group(1)
+    text = re.sub(r'(\w+):', r'"\1":', text)
+    return json.loads(re.sub(r',\s*([\]}])', r'\1', text))
+
+
+def turned(q, v):
+    w, u = q[0], np.array(q[1:])
+    t = 2 * np.cross(u, v)
+    return v + w * t + np.cross(u, t)
+
+
+def nodes_of(film, frame):
+    """All nodes in a frame, in m from the middle of the picture."""
+    places = np.array(film['points'], float).reshape(-1, 3)
+    poses = np.array(film['poses'][frame], float).reshape(-1, 7)
+    for i, link in enumerate(film['links']):
+        if link:
+            pose = poses[link - 1]
+            places[i] = turned(pose[3:] / 1e5, places[i]) + pose[:3]
+    return places * film['unit']
+
+
+def check_page(checks, programs, folder, program, name, points):
+    """A page: every frame has the points of the mechanism where the table of the run has them."""
+    path, table = os.path.join(folder, 'film.html'), os.path.join(folder, 'film.dat')
+    done = run(f'{programs}/{program}', example(name), '--table', table, '--animate', path, '--quiet')
+    if not checks.equal(done.returncode, 0, f'{name}: the page is made'):
+        return
+    with open(path, encoding='utf-8') as file:
+        html = file.read()
+    with open(table, encoding='utf-8') as file:
+        rows = read_table(file.read())
+    checks.equal(set(re.findall(r'\w+://[^"\s]*', html)), {'http://www.w3.org/2000/svg'}, f'{name}: nothing from elsewhere')
+    checks.true(not re.search(r'\b(src|href|@import|url)\b', html), f'{name}: no other file')
+    svg = ElementTree.fromstring(re.search(r'<svg.*</svg>', html, re.S).group(0))
+    film = film_of(html)
+    checks.equal(len(film['times']), len(film['poses']), f'{name}: a pose for each time')
+    checks.equal(len(film['poses']), len(rows['t']), f'{name}: a frame for each output')
+    checks.near(film['times'], rows['t'], 1e-8, f'{name}: times to nine digits')
+    elements = [int(group.get('data-i')) for group in svg.find(f"{SVG}g[@id='scene']")]
+    checks.equal(sorted(elements), list(range(1, len(film['items']) + 1)), f'{name}: an element for each item')
+    dots = {}
+    for group in svg.iter(SVG + 'g'):
+        text = group.find(SVG + 'text')
+        if text is not None and (text.get('class') or '').startswith('name'):
+            dots[text.text] = film['items'][int(group.get('data-i')) - 1]['nodes'][0]
+    if not checks.equal(set(dots), set(points), f'{name}: its points'):
+        return
+    # steps of a width of 1e-5, turned by quaternions of 1e-5: some 1e-5 of the size each
+    size = film['unit'] * 1e5
+    worst = 0.0
+    origin = None
+    for frame in range(0, len(film['poses']), 7):
+        nodes = nodes_of(film, frame)
+        for point, node in dots.items():
+            true = np.array([rows[f'{point}.{axis}'][frame] for axis in 'xyz'])
+            origin = nodes[node] - true if origin is None else origin
+            worst = max(worst, np.abs(nodes[node] - true - origin).max() / size)
+    checks.true(worst < 6e-5, f'{name}: points are where the table has them', f'{worst:.1e} of the size away')
+
+
+def check_moving_svg(checks, programs, folder):
+    path = os.path.join(folder, 'film.svg')
+    run(f'{programs}/mech9k', example('slider_crank'), '--no-write', '--quiet', '--animate', path, '--set', 'time.intervals=30')
+    svg = ElementTree.parse(path).getroot()
+    moving = list(svg.iter(SVG + 'animate')) + list(svg.iter(SVG + 'animateTransform'))
+    checks.true(len(moving) > 5, 'things move in a picture')
+    checks.equal({len(one.get('values').split(';')) for one in moving}, {31}, 'each has a value for each frame')
+    checks.equal({(one.get('repeatCount'), one.get('dur')) for one in moving}, {('indefinite', moving[0].get('dur'))},
+                 'and all begin again together')
+
+
+def check_thinning(checks, programs, folder):
+    path = os.path.join(folder, 'long.html')
+    run(f'{programs}/mech9k', example('fig1'), '--no-write', '--quiet', '--animate', path, '--set', 'time.intervals=5000')
+    with open(path, encoding='utf-8') as file:
+        film = film_of(file.read())
+    checks.true(200 < len(film['times']) <= 301, 'of many outputs some hundred frames', len(film['times']))
+    checks.equal((film['times'][0], film['times'][-1]), (0, 1), 'the first and the last among them')
+    checks.true(np.ptp(np.diff(film['times'])[:-1]) < 1e-9, 'evenly in time')
+
+
+def gif_frames(data):
+    """Counts the pictures of a GIF by its blocks."""
+    def skip(at):
+        while data[at]:
+            at += data[at] + 1
+        return at + 1
+    table = 3 * 2 ** ((data[10] & 7) + 1) if data[10] & 128 else 0
+    at, frames = 13 + table, 0
+    while data[at] != 0x3b:
+        if data[at] == 0x21:
+            at = skip(at + 2)
+        elif data[at] == 0x2c:
+            frames += 1
+            at = skip(at + 11 + (3 * 2 ** ((data[at + 9] & 7) + 1) if data[at + 9] & 128 else 0))
+        else:
+            raise ValueError(f'no GIF at byte {at}')
+    return frames
+
+
+def check_gif(checks, programs, folder):
+    path = os.path.join(folder, 'film.gif')
+    words = [f'{programs}/mech9k', example('fig1'), '--no-write', '--animate', path, '--set', 'time.intervals=6']
+    environment = dict(os.environ, PATH=folder)
+    done = subprocess.run(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+    checks.equal(done.returncode, 8, 'without gnuplot there is no GIF')
+    checks.true('gnuplot' in done.stderr and '.html' in done.stderr, 'which is said, with what to do', done.stderr)
+    checks.true(not os.path.exists(path), 'and no file is left')
+    done = run(*words)
+    if done.returncode == 8 and 'which is not here' in done.stderr:
+        print('gnuplot is not installed: GIFs are not tested')
+        return
+    checks.equal(done.returncode, 0, 'a GIF is made')
+    with open(path, 'rb') as file:
+        data = file.read()
+    checks.equal(data[:6], b'GIF89a', 'it begins as one')
+    checks.equal(gif_frames(data), 7, 'it has a frame for each output')
+    checks.true(b'NETSCAPE2.0' in data, 'and repeats')
+
+
+def check_hostile_title(checks, programs, folder):
+    title = """</title></svg><script>alert(1)</script> & "x" ' `rm -r *` $(rm) \\ %s ]]> <!-- \u00e9"""
+    with open(example('fig1'), encoding='utf-8') as file:
+        data = re.sub(r"title = '[^']*'", lambda found: "title = '" + title.replace("'", "''") + "'", file.read())
+    nml = os.path.join(folder, 'hostile.nml')
+    with open(nml, 'w', encoding='utf-8') as file:
+        file.write(data)
+    for ending in ('svg', 'html', 'gif'):
+        path = os.path.join(folder, f"it's $(a) `b`.{ending}")
+        done = run(f'{programs}/mech9k', nml, '--no-write', '--quiet', '--animate', path, '--set', 'time.intervals=3')
+        if ending == 'gif':
+            checks.true(done.returncode == 0 or 'not here' in done.stderr, 'a GIF takes any title and name', done.stderr)
+            continue
+        checks.equal(done.returncode, 0, f'{ending}: any title will do')
+        with open(path, encoding='utf-8') as file:
+            text = file.read()
+        checks.true('<script>alert' not in text, f'{ending}: no part of a title is a script')
+        svg = ElementTree.fromstring(re.search(r'<svg.*</svg>', text, re.S).group(0))
+        checks.true(title in texts_of(svg), f'{ending}: the title stands as it is')
+
+
+def check_refusals(checks, programs, folder):
+    for options, code, words in (
+            (['--sketch', 'a.svg', '--view', 'side'], 2, 'is no view'),
+            (['--sketch', 'a.svg', '--view', '0,0,0'], 2, 'is no view'),
+            (['--sketch', 'a.svg', '--view', 'xx'], 2, 'is no view'),
+            (['--sketch', 'a.svg', '--set', "output.view='1,2'"], 3, 'is no view'),
+            (['--animate', 'a.mp4'], 2, '.html, .svg or .gif'),
+            (['--set', "output.animation='a'"], 3, '.html, .svg or .gif'),
+            (['--sketch', 'nowhere/a.svg'], 8, 'nowhere/a.svg'),
+            (['--animate', 'nowhere/a.html'], 8, 'nowhere/a.html'),
+            (['--animate', 'nowhere/a.svg'], 8, 'nowhere/a.svg')):
+        done = run(f'{programs}/mech9k', example('fig1'), '--no-write', '--quiet', *options, folder=folder)
+        why = ' '.join(options)
+        checks.equal(done.returncode, code, f'{why}: its exit code')
+        checks.true(words in done.stderr, f'{why}: says why', done.stderr)
+        checks.true('Backtrace' not in done.stderr, f'{why}: no backtrace')
+
+
+def check_large(checks, programs, folder):
+    """A mechanism of a thousand links: a file of some megabytes, in seconds."""
+    nml, path = os.path.join(folder, 'large.nml'), os.path.join(folder, 'large.html')
+    links = 1000
+    lines = [f"&mechanism title='chain', links={links}, coordinates={links - 1} /", '&structure cq=1 /'.replace(
+        '1', ','.join(str(k) for k in range(1, links)))]
+    for k in range(1, links):
+        lines.append(f"&pair coordinate={k}, links={k},{k + 1}, kind='revolute', axis=0,0,1, point={int(k > 1)},0,0,"
+                     ' moving_point=0,0,0 /')
+        lines.append(f"&drive coordinate={k}, kind='polynomial', coefficients=0,{0.001 * (-1) ** k} /")
+    lines.append('&time intervals=400 /')
+    with open(nml, 'w', encoding='utf-8') as file:
+        file.write('\n'.join(lines) + '\n')
+    done = run(f'{programs}/mech9k', nml, '--no-write', '--quiet', '--sketch', os.path.join(folder, 'large.svg'),
+               '--animate', path)
+    checks.equal(done.returncode, 0, 'a chain of a thousand links is drawn')
+    checks.true(os.path.getsize(path) < 8e6, 'its page has less than 8 MB', os.path.getsize(path))
+    svg = ElementTree.parse(os.path.join(folder, 'large.svg')).getroot()
+    checks.equal(len(joints_of(svg)), links - 1, 'with every joint')
+
+
+def main():
+    programs = os.path.abspath(sys.argv[1])
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as folder:
+        check_fig1(checks, programs, folder)
+        if os.path.exists(f'{programs}/mech9d'):
+            check_bricard(checks, programs, folder)
+            check_page(checks, programs, folder, 'mech9d', 'double_pendulum', {'A', 'B'})
+        check_page(checks, programs, folder, 'mech9k', 'rsur', {'O', 'A', 'B', 'C'})
+        check_moving_svg(checks, programs, folder)
+        check_thinning(checks, programs, folder)
+        check_gif(checks, programs, folder)
+        check_hostile_title(checks, programs, folder)
+        check_refusals(checks, programs, folder)
+        check_large(checks, programs, folder)
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
