@@ -1,9 +1,10 @@
-!> A view: from where a mechanism is looked at, in parallel projection. Uses kinds, error, text, rotation.
+!> A view: from where a mechanism is looked at, in parallel projection. Uses kinds, error, text, rotation, numeral.
 module mech9_view
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise
   use mech9_text, only: lower
   use mech9_rotation, only: cross, unit
+  use mech9_numeral, only: numeral_type, read_numeral
   implicit none
   private
   public :: view_type, view_from, view_of_axes, read_view
@@ -68,7 +69,8 @@ contains
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: word
     real(wp) :: direction(3)
-    integer :: right, up, status
+    integer :: right, up
+    logical :: known
 
     word = trim(adjustl(lower(text)))
     if (word == 'iso') then
@@ -83,28 +85,35 @@ contains
         return
       end if
     end if
-    ! only what three numbers are made of: list input would take slashes and stars for something else
-    status = 1
-    if (verify(word, '0123456789+-.e, ') == 0 .and. count_of(',', word) == 2) &
-      read (word, *, iostat=status) direction
-    if (status == 0) then
-      if (maxval(abs(direction)) > 0.0_wp .and. maxval(abs(direction)) <= huge(direction)) then
-        view = view_from(direction, [0.0_wp, 0.0_wp, 1.0_wp])
-        return
-      end if
+    call read_direction(word, direction, known)
+    if (known) then
+      view = view_from(direction, [0.0_wp, 0.0_wp, 1.0_wp])
+      return
     end if
     call raise(err, code, "'"//text//"' is no view; give two axes, to the right and up, as in xy or xz, or iso, "// &
                'or the direction towards the viewer, as in 1,-2,0.5')
   end subroutine read_view
 
-  pure integer function count_of(letter, text) result(times)
-    character, intent(in) :: letter
+  !> Three numbers with commas between, not all zero.
+  pure subroutine read_direction(text, direction, known)
     character(len=*), intent(in) :: text
-    integer :: i
+    real(wp), intent(out) :: direction(3)
+    logical, intent(out) :: known
+    type(numeral_type) :: numeral
+    integer :: i, first, last
 
-    times = 0
-    do i = 1, len(text)
-      if (text(i:i) == letter) times = times + 1
+    known = .false.
+    direction = 0.0_wp
+    first = 1
+    do i = 1, 3
+      last = len(text)
+      if (i < 3) last = first + index(text(first:), ',') - 2
+      if (last < first) return
+      call read_numeral(trim(adjustl(text(first:last))), numeral)
+      if (allocated(numeral%problem)) return
+      direction(i) = numeral%number
+      first = min(last + 2, len(text) + 1)
     end do
-  end function count_of
+    known = maxval(abs(direction)) > 0.0_wp
+  end subroutine read_direction
 end module mech9_view

@@ -2,7 +2,7 @@
 program test_rotation
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type
-  use mech9_rotation, only: identity, cross, unit, about_axis, about_z, rotation_vector, axial_vector
+  use mech9_rotation, only: identity, cross, unit, about_axis, about_z, rotation_vector, axial_vector, quaternion
   use mech9_random_geometry, only: random_vector, random_unit, random_rotation, rotation_from_quaternion
   use mech9_testing, only: tester_type
   implicit none
@@ -17,6 +17,7 @@ program test_rotation
   call vector_of_small_rotation(test)
   call half_turns(test)
   call vector_of_any_rotation(test)
+  call quaternion_of_any_rotation(test)
   call test%finish()
 
 contains
@@ -173,6 +174,25 @@ contains
       call test%near(min(norm2(phi - pi*e), norm2(phi + pi*e)), 0.0_wp, 4.0_wp*round_off, 'about its axis')
     end do
   end subroutine half_turns
+
+  !> There and back, for random rotations and for half turns, about axes and diagonals, where w vanishes.
+  subroutine quaternion_of_any_rotation(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: given(4), found(4)
+    integer :: i
+
+    do i = 1, 500
+      given = [random%symmetric(), random_vector(random)]
+      if (i <= 81) given = real([0, mod(i - 1, 3) - 1, mod((i - 1)/3, 3) - 1, mod((i - 1)/9, 3) - 1], wp)
+      if (i > 27 .and. i <= 81) given(1) = real(merge(1, -1, i > 54), wp)
+      if (norm2(given) < 0.1_wp) cycle
+      given = given/norm2(given)
+      found = quaternion(rotation_from_quaternion(given))
+      call test%is_true(found(1) >= 0.0_wp, 'of two opposite quaternions the one with w >= 0')
+      call test%near(min(norm2(found - given), norm2(found + given)), 0.0_wp, 2.0_wp*round_off, 'quaternion of a rotation')
+    end do
+  end subroutine quaternion_of_any_rotation
 
   subroutine vector_of_any_rotation(test)
     type(tester_type), intent(inout) :: test

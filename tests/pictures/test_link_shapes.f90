@@ -1,0 +1,103 @@
+!> Shapes of links: bars, plates around points of a plane, bars between points in space.
+program test_link_shapes
+  use mech9_kinds, only: wp
+  use mech9_random, only: random_type
+  use mech9_rotation, only: cross
+  use mech9_random_geometry, only: random_vector, random_rotation
+  use mech9_link_shapes, only: distinct_points, find_shape
+  use mech9_testing, only: tester_type
+  implicit none
+  real(wp), parameter :: tolerance = 1.0e-6_wp
+  type(tester_type) :: test
+
+  call few_points(test)
+  call plates(test)
+  call points_in_space(test)
+  call same_points(test)
+  call test%finish()
+
+contains
+
+  !> No shape for a point; for points of a line the bar between the outermost.
+  subroutine few_points(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: points(3, 5), from(3), along(3)
+    integer, allocatable :: order(:)
+    logical :: closed
+    integer :: i
+
+    call find_shape(points(:, :0), tolerance, order, closed)
+    call test%is_true(size(order) == 0 .and. .not. closed, 'nothing for no points')
+    from = random_vector(random)
+    along = random_vector(random)
+    points = reshape([(from + real(mod(3*i, 5), wp)*along, i=1, 5)], [3, 5])   ! places 3 1 4 2 0
+    call find_shape(points(:, :1), tolerance, order, closed)
+    call test%is_true(size(order) == 0, 'nothing for one')
+    call find_shape(points, tolerance, order, closed)
+    call test%is_true(.not. closed .and. size(order) == 2, 'a bar for points of a line')
+    if (size(order) == 2) call test%is_true(minval(order) == 3 .and. maxval(order) == 5, 'between the outermost')
+  end subroutine few_points
+
+  !> Corners of a polygon and points within, turned anyhow: around it by turns, all others inside.
+  subroutine plates(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: points(3, 40), r(3, 3), normal(3), side(3)
+    integer, allocatable :: order(:)
+    logical :: closed, convex
+    integer :: trial, n, i, j
+
+    do trial = 1, 40
+      n = 2 + trial - trial/39*2
+      r = random_rotation(random)
+      do i = 1, n
+        points(:, i) = random_vector(random)
+        points(3, i) = 0.0_wp
+        points(:, i) = matmul(r, points(:, i))
+      end do
+      call find_shape(points(:, :n), tolerance, order, closed)
+      call test%is_true(closed .and. size(order) >= 3, 'a plate around points of a plane')
+      if (size(order) < 3) cycle
+      normal = cross(points(:, order(2)) - points(:, order(1)), points(:, order(3)) - points(:, order(2)))
+      convex = .true.
+      do i = 1, size(order)
+        side = points(:, order(1 + mod(i, size(order)))) - points(:, order(i))
+        do j = 1, n
+          convex = convex .and. dot_product(normal, cross(side, points(:, j) - points(:, order(i)))) > -tolerance
+        end do
+      end do
+      call test%is_true(convex, 'no point lies outside')
+    end do
+  end subroutine plates
+
+  !> Bars join all points: as many as points but one, and one can go from each to each.
+  subroutine points_in_space(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp) :: points(3, 12)
+    integer, allocatable :: order(:)
+    logical :: closed
+    integer :: group(12), i
+
+    do i = 1, 12
+      points(:, i) = random_vector(random)
+    end do
+    call find_shape(points, tolerance, order, closed)
+    call test%is_true(.not. closed .and. size(order) == 22, 'eleven bars for twelve points in space')
+    group = [(i, i=1, 12)]
+    do i = 1, size(order) - 1, 2
+      where (group == group(order(i))) group = group(order(i + 1))
+    end do
+    call test%is_true(all(group == group(1)), 'which hold together')
+  end subroutine points_in_space
+
+  subroutine same_points(test)
+    type(tester_type), intent(inout) :: test
+    real(wp) :: points(3, 6)
+
+    points = 0.0_wp
+    points(1, :) = [0.0_wp, 1.0_wp, 1.0e-9_wp, 1.0_wp, 2.0_wp, 0.0_wp]
+    call test%is_true(all([distinct_points(points, tolerance), 0, 0, 0] == [1, 2, 5, 0, 0, 0]), 'each place once')
+  end subroutine same_points
+end program test_link_shapes
