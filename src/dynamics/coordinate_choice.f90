@@ -5,12 +5,11 @@ module mech9_coordinate_choice
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_text, only: to_text
   use mech9_lapack, only: dgeqp3
-  use mech9_rotation, only: cross
   use mech9_transformation, only: transform
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_closure, only: reduced_screw
+  use mech9_closure, only: closure_column
   use mech9_planning, only: make_plan
   implicit none
   private
@@ -50,7 +49,7 @@ contains
     type(state_type), intent(in) :: state
     integer, intent(in) :: c, row
     real(wp), intent(inout) :: a(:, :)
-    real(wp) :: w(3), v(3), arm(3), unit
+    real(wp) :: sign
     integer :: up, down, s, k
 
     associate (closure => plan%closures(c))
@@ -59,17 +58,13 @@ contains
       do while (up /= down)
         s = max(up, down)
         k = plan%steps(s)%coordinate
-        unit = plan%unit_of(k)
+        sign = merge(1.0_wp, -1.0_wp, up > down)
         if (up > down) then
           up = plan%steps(s)%parent
         else
-          unit = -unit
           down = plan%steps(s)%parent
         end if
-        arm = state%p(:, closure%closing) - state%p(:, s)
-        w = unit*state%axis_w(:, s)
-        v = unit*state%axis_v(:, s) + cross(w, arm)
-        call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), a(row + 1:row + closure%rank, k))
+        call closure_column(plan, c, s, sign, state, a(row + 1:row + closure%rank, k))
       end do
     end associate
   end subroutine add_closure

@@ -1,5 +1,5 @@
 !> The plan of dynamics: which links have inertia, and on which independent coordinates each frame
-!> depends. Uses kinds, inertia, mechanism, plan.
+!> depends. Uses kinds, pose, inertia, mechanism, plan, planar_motion, planar_lagrange.
 !>
 !> Columns of Jacobians are kept only where a frame depends on the independent coordinate: frame s has
 !> the entries first(s) .. first(s+1)-1 of one long list. All frames of a closed block share one set of
@@ -10,6 +10,8 @@ module mech9_dynamics_plan
   use mech9_inertia, only: inertia_in_axes
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
+  use mech9_planar_motion, only: to_plane
+  use mech9_planar_lagrange, only: planar_body_type, planar_body
   implicit none
   private
   public :: dynamics_plan_type, frame_body_type, make_dynamics_plan
@@ -25,7 +27,8 @@ module mech9_dynamics_plan
 
   type :: dynamics_plan_type
     type(frame_body_type), allocatable :: bodies(:)    !< none of link 1, none without mass
-    real(wp) :: gravity(3) = 0.0_wp                    !< [m/s^2]
+    type(planar_body_type), allocatable :: planar_bodies(:)   !< the same in planar arithmetic, if it is used
+    real(wp) :: gravity(3) = 0.0_wp                    !< in the axes of frame 0, or of the plane [m/s^2]
     integer, allocatable :: place_of(:)                !< (M) number of a coordinate among the independent ones, 0
     integer, allocatable :: first(:)                   !< (0:M+1) first entry of each frame
     integer, allocatable :: column(:)                  !< (entries) number of the independent coordinate
@@ -45,6 +48,7 @@ contains
     integer :: i
 
     dynamics%gravity = mechanism%gravity
+    if (plan%planar%used) dynamics%gravity = to_plane(plan%planar, mechanism%gravity)
     allocate (dynamics%place_of(plan%n_coordinates), source=0)
     do i = 1, size(plan%independent)
       dynamics%place_of(plan%independent(i)) = i
@@ -66,12 +70,14 @@ contains
     integer :: i, n
 
     allocate (dynamics%bodies(size(mechanism%bodies)))
+    if (plan%planar%used) allocate (dynamics%planar_bodies(size(mechanism%bodies)))
     n = 0
     do i = 1, size(mechanism%bodies)
       associate (body => mechanism%bodies(i))
         ! a link may have inertia about its axis and no mass
         if (body%link == 1 .or. .not. (body%mass > 0.0_wp .or. any(abs(body%inertia) > 0.0_wp))) cycle
         n = n + 1
+        if (plan%planar%used) dynamics%planar_bodies(n) = planar_body(plan, body)
         dynamics%bodies(n)%frame = plan%frame_of(body%link)
         dynamics%bodies(n)%mass = body%mass
         dynamics%bodies(n)%centre = transformed(plan%link_in_frame(body%link), body%centre)
@@ -80,6 +86,7 @@ contains
       end associate
     end do
     dynamics%bodies = dynamics%bodies(:n)
+    if (plan%planar%used) dynamics%planar_bodies = dynamics%planar_bodies(:n)
   end subroutine find_bodies
 
   !> The columns of all frames, block by block.

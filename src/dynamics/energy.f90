@@ -1,4 +1,5 @@
-!> Kinetic (20) and potential energy of a state. Uses kinds, rotation, mechanism, plan, state, dynamics_plan.
+!> Kinetic (20) and potential energy of a state. Uses kinds, rotation, mechanism, plan, state, motion, dynamics_plan,
+!> planar_lagrange.
 module mech9_energy
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back, cross
@@ -6,7 +7,9 @@ module mech9_energy
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_motion, only: link_motion
   use mech9_dynamics_plan, only: dynamics_plan_type
+  use mech9_planar_lagrange, only: planar_kinetic_energy
   implicit none
   private
   public :: kinetic_energy, potential_energy
@@ -20,6 +23,10 @@ contains
     real(wp) :: arm(3), v(3), omega(3)
     integer :: i
 
+    if (allocated(dynamics%planar_bodies)) then
+      energy = planar_kinetic_energy(dynamics%planar_bodies, state%planar)
+      return
+    end if
     energy = 0.0_wp
     do i = 1, size(dynamics%bodies)
       associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
@@ -32,20 +39,20 @@ contains
   end function kinetic_energy
 
   !> Of gravity, zero where all centres are in the origin of link 1, and of the springs [J].
-  pure real(wp) function potential_energy(mechanism, plan, dynamics, state, view) result(energy)
+  pure real(wp) function potential_energy(mechanism, plan, state, view) result(energy)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
-    type(dynamics_plan_type), intent(in) :: dynamics
     type(state_type), intent(in) :: state
     type(motion_view_type), intent(in) :: view      !< of the same state
-    real(wp) :: centre(3)
+    real(wp) :: r(3, 3), p(3), omega(3), v(3)
     integer :: i
 
     energy = 0.0_wp
-    do i = 1, size(dynamics%bodies)
-      associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
-        centre = state%p(:, f) + turn(state%r(:, :, f), body%centre) + plan%origin
-        energy = energy - body%mass*dot_product(dynamics%gravity, centre)
+    do i = 1, size(mechanism%bodies)
+      associate (body => mechanism%bodies(i))
+        if (body%link == 1) cycle
+        call link_motion(plan, state, body%link, r, p, omega, v)
+        energy = energy - body%mass*dot_product(mechanism%gravity, p + turn(r, body%centre))
       end associate
     end do
     do i = 1, size(mechanism%loads)

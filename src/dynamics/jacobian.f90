@@ -1,13 +1,16 @@
 !> Jacobians of frames with respect to the independent coordinates, with the dependent coordinates
-!> eliminated block by block. Uses kinds, rotation, plan, state, solver, dynamics_plan.
+!> eliminated block by block. Uses kinds, rotation, plan, state, closure, planar_closure, solver, dynamics_plan,
+!> planar_lagrange.
 module mech9_jacobian
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_closure, only: reduced_screw
+  use mech9_planar_closure, only: planar_difference
   use mech9_solver, only: block_work_type
   use mech9_dynamics_plan, only: dynamics_plan_type
+  use mech9_planar_lagrange, only: spread_columns
   implicit none
   private
   public :: jacobian_type, new_jacobian, find_jacobian, noise_of_rates
@@ -21,17 +24,23 @@ module mech9_jacobian
   type :: jacobian_type
     real(wp), allocatable :: w(:, :)    !< (3, entries)
     real(wp), allocatable :: v(:, :)    !< (3, entries)
+    real(wp), allocatable :: flat(:, :) !< (3, entries) in planar arithmetic, instead of both
     real(wp), allocatable :: b(:)       !< (entries)
   end type jacobian_type
 
 contains
 
   !> Room for the entries that the dynamics plan lists, all zero.
-  pure function new_jacobian(dynamics) result(jacobian)
+  pure function new_jacobian(plan, dynamics) result(jacobian)
+    type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(in) :: dynamics
     type(jacobian_type) :: jacobian
 
-    allocate (jacobian%w(3, size(dynamics%column)), jacobian%v(3, size(dynamics%column)), source=0.0_wp)
+    if (plan%planar%used) then
+      allocate (jacobian%flat(3, size(dynamics%column)), source=0.0_wp)
+    else
+      allocate (jacobian%w(3, size(dynamics%column)), jacobian%v(3, size(dynamics%column)), source=0.0_wp)
+    end if
     allocate (jacobian%b(size(dynamics%column)), source=0.0_wp)
   end function new_jacobian
 
@@ -75,6 +84,12 @@ contains
     real(wp) :: arm(3)
     integer :: s, e, p
 
+    if (plan%planar%used) then
+      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
+                          dynamics%first, dynamics%parent_entry, dynamics%carries, all_frames, jacobian%b, &
+                          state%planar%pose, state%planar%slide, jacobian%flat)
+      return
+    end if
     do s = block%first_step, block%last_step
       if (.not. (all_frames .or. dynamics%carries(s))) cycle
       arm = state%p(:, s) - state%p(:, plan%steps(s)%parent)
@@ -99,24 +114,14 @@ contains
     integer, intent(in) :: offset
     type(block_work_type), intent(inout) :: work
     type(jacobian_type), intent(inout) :: jacobian
-    real(wp) :: w(3), v(3), arm(3)
-    integer :: c, e, t, row, i, s, k
+    integer :: c, e, row, i, s, k
 
     row = 0
     do c = block%first_closure, block%last_closure
-      associate (closure => plan%closures(c))
-        e = dynamics%first(closure%closing) + offset
-        t = dynamics%target_entry(e)
-        w = jacobian%w(:, e)
-        v = jacobian%v(:, e)
-        if (t > 0) then
-          arm = state%p(:, closure%closing) - state%p(:, closure%target)
-          w = w - jacobian%w(:, t)
-          v = v - jacobian%v(:, t) - cross(jacobian%w(:, t), arm)
-        end if
-        call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), &
-                           work%right(row + 1:row + closure%rank))
-        row = row + closure%rank
+      associate (rank => plan%closures(c)%rank)
+        e = dynamics%first(plan%closures(c)%closing) + offset
+        call closing_column(plan, c, state, jacobian, e, dynamics%target_entry(e), work%right(row + 1:row + rank))
+        row = row + rank
       end associate
     end do
     work%right = -work%right
@@ -128,4 +133,32 @@ contains
       jacobian%b(e) = jacobian%b(e) + work%change(i)*plan%unit_of(plan%steps(s)%coordinate)
     end do
   end subroutine eliminate
+
+  !> By what an entry of a closing frame opens its closure.
+  pure subroutine closing_column(plan, c, state, jacobian, e, t, column)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: c
+    type(state_type), intent(in) :: state
+    type(jacobian_type), intent(in) :: jacobian
+    integer, intent(in) :: e, t              !< entry of the closing frame and the same of its target; 0 for none
+    real(wp), intent(out), contiguous :: column(:)
+    real(wp) :: w(3), v(3), arm(3)
+
+    if (plan%planar%used) then
+      w = 0.0_wp
+      if (t > 0) w = jacobian%flat(:, t)
+      call planar_difference(plan%planar, c, state%planar, jacobian%flat(:, e), w, column)
+      return
+    end if
+    associate (closure => plan%closures(c))
+      w = jacobian%w(:, e)
+      v = jacobian%v(:, e)
+      if (t > 0) then
+        arm = state%p(:, closure%closing) - state%p(:, closure%target)
+        w = w - jacobian%w(:, t)
+        v = v - jacobian%v(:, t) - cross(jacobian%w(:, t), arm)
+      end if
+      call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), column)
+    end associate
+  end subroutine closing_column
 end module mech9_jacobian

@@ -1,6 +1,6 @@
 !> Lagrange's equations in the independent coordinates, (19): coefficients of motion, velocity terms and
 !> generalized forces from the Jacobians of the frames. Uses the kinematics floor, mechanism, loads,
-!> cholesky, dynamics_plan, jacobian.
+!> cholesky, dynamics_plan, jacobian, planar_lagrange.
 !>
 !> (21) and the terms of (19) that are squares of rates are not differentiated: with the Jacobians J_c of
 !> mass centres and J_w of angular velocities,
@@ -12,17 +12,18 @@ module mech9_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular
   use mech9_text, only: to_text
-  use mech9_rotation, only: turn, turn_back, combine, cross
+  use mech9_rotation, only: turn, turn_back, cross
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_mechanism, only: mechanism_type
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, acceleration_known
-  use mech9_motion, only: spread_velocities, spread_accelerations
+  use mech9_motion, only: spread_velocities, spread_accelerations, link_motion
   use mech9_closure, only: closure_rates
   use mech9_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_dynamics_plan, only: dynamics_plan_type, frame_body_type
+  use mech9_planar_lagrange, only: add_inertia, add_link_force
   use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian, noise_of_rates
   implicit none
   private
@@ -62,7 +63,7 @@ contains
     do b = 1, size(plan%blocks)
       work%blocks(b) = new_block_work(plan%blocks(b))
     end do
-    work%jacobian = new_jacobian(dynamics)
+    work%jacobian = new_jacobian(plan, dynamics)
     allocate (work%expected_b(size(dynamics%column)), work%expected_ddq(plan%n_coordinates), source=0.0_wp)
     allocate (work%coefficients(n, n), work%factors(n, n), source=0.0_wp)
     allocate (work%velocity_terms(n), work%forces(n), work%accelerations(n), source=0.0_wp)
@@ -180,7 +181,11 @@ contains
     work%velocity_terms = 0.0_wp
     work%forces = 0.0_wp
     do i = 1, size(dynamics%bodies)
-      call add_body(dynamics, dynamics%bodies(i), state, work)
+      if (allocated(dynamics%planar_bodies)) then
+        call add_planar_body(dynamics, i, state, work)
+      else
+        call add_body(dynamics, dynamics%bodies(i), state, work)
+      end if
     end do
   end subroutine collect_inertia
 
@@ -219,6 +224,22 @@ contains
     end do
   end subroutine add_body
 
+  pure subroutine add_planar_body(dynamics, i, state, work)
+    type(dynamics_plan_type), intent(in) :: dynamics
+    integer, intent(in) :: i
+    type(state_type), intent(in) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    integer :: f, first, last
+
+    f = dynamics%planar_bodies(i)%frame
+    first = dynamics%first(f)
+    last = dynamics%first(f + 1) - 1
+    call add_inertia(dynamics%planar_bodies(i), last - first + 1, size(work%forces), dynamics%column(first:last), &
+                     work%jacobian%flat(:, first:last), state%planar%pose(:, f), state%planar%velocity(:, f), &
+                     state%planar%acceleration(:, f), dynamics%gravity(1:2), work%coefficients, &
+                     work%velocity_terms, work%forces)
+  end subroutine add_planar_body
+
   !> The body's inertia tensor, in fixed axes, times a vector.
   pure function inertia_times(body, r, vector) result(product)
     type(frame_body_type), intent(in) :: body
@@ -237,8 +258,7 @@ contains
     type(state_type), intent(in) :: state
     type(lagrange_work_type), intent(inout) :: work
     type(error_type), allocatable, intent(out) :: err
-    real(wp) :: arm(3), torque(3)
-    integer :: i, f, e, p, s
+    integer :: i, e, p, s
 
     if (size(mechanism%loads) == 0) return
     call show_state(plan, dynamics, state, work%view)
@@ -249,14 +269,7 @@ contains
     end do
     do i = 2, plan%n_links
       if (.not. dynamics%load_links(i)) cycle
-      f = plan%frame_of(i)
-      arm = work%view%links(i)%p - plan%origin - state%p(:, f)
-      torque = work%sum%torque(:, i) + cross(arm, work%sum%force(:, i))
-      do e = dynamics%first(f), dynamics%first(f + 1) - 1
-        p = dynamics%column(e)
-        work%forces(p) = work%forces(p) + dot_product(work%jacobian%v(:, e), work%sum%force(:, i)) &
-                         + dot_product(work%jacobian%w(:, e), torque)
-      end do
+      call add_forces_on_link(plan, dynamics, state, i, work)
     end do
     do i = 1, plan%n_coordinates
       if (.not. abs(work%sum%generalized(i)) > 0.0_wp) cycle
@@ -268,26 +281,47 @@ contains
     end do
   end subroutine collect_forces
 
+  pure subroutine add_forces_on_link(plan, dynamics, state, link, work)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: link
+    type(lagrange_work_type), intent(inout) :: work
+    real(wp) :: arm(3), torque(3)
+    integer :: f, first, last, e, p
+
+    f = plan%frame_of(link)
+    first = dynamics%first(f)
+    last = dynamics%first(f + 1) - 1
+    if (plan%planar%used) then
+      call add_link_force(plan%planar, link, last - first + 1, dynamics%column(first:last), &
+                          work%jacobian%flat(:, first:last), state%planar%pose(:, f), work%sum%force(:, link), &
+                          work%sum%torque(:, link), work%forces)
+      return
+    end if
+    arm = work%view%links(link)%p - plan%origin - state%p(:, f)
+    torque = work%sum%torque(:, link) + cross(arm, work%sum%force(:, link))
+    do e = first, last
+      p = dynamics%column(e)
+      work%forces(p) = work%forces(p) + dot_product(work%jacobian%v(:, e), work%sum%force(:, link)) &
+                       + dot_product(work%jacobian%w(:, e), torque)
+    end do
+  end subroutine add_forces_on_link
+
   !> The state as loads see it: the links' own systems in that of link 1.
   pure subroutine show_state(plan, dynamics, state, view)
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(in) :: dynamics
     type(state_type), intent(in) :: state
     type(motion_view_type), intent(inout) :: view
-    real(wp) :: arm(3)
-    integer :: i, f
+    integer :: i
 
     view%t = state%t
     view%q = state%q
     view%dq = state%dq
     do i = 1, plan%n_links
       if (.not. dynamics%load_links(i)) cycle
-      f = plan%frame_of(i)
-      arm = turn(state%r(:, :, f), plan%link_in_frame(i)%p)
-      view%links(i)%r = combine(state%r(:, :, f), plan%link_in_frame(i)%r)
-      view%links(i)%p = state%p(:, f) + arm + plan%origin
-      view%links(i)%omega = state%omega(:, f)
-      view%links(i)%v = state%v(:, f) + cross(state%omega(:, f), arm)
+      call link_motion(plan, state, i, view%links(i)%r, view%links(i)%p, view%links(i)%omega, view%links(i)%v)
     end do
   end subroutine show_state
 

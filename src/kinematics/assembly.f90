@@ -214,7 +214,7 @@ contains
 
     outcome%gap = 0.0_wp
     do c = block%first_closure, block%last_closure
-      gap = closing_error(plan, plan%closures(c), state)
+      gap = closing_error(plan, c, state)
       if (gap > outcome%gap .or. outcome%worst_closure == 0) then
         outcome%gap = gap
         outcome%worst_closure = c

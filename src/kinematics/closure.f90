@@ -1,5 +1,5 @@
 !> Closures of a block, (12): by how much its chains fail to close, in independent equations, and the
-!> exact Jacobian. Uses kinds, rotation, plan, state.
+!> exact Jacobian. Uses kinds, rotation, plan, state, planar_closure.
 !>
 !> The twelve scalars of (12) hold at most six independent ones. They are replaced by the screw of
 !> the error pose: the rotation vector that turns the target onto the closing frame, and the distance
@@ -11,9 +11,10 @@ module mech9_closure
   use mech9_rotation, only: turn, turn_back, combine, cross, rotation_vector
   use mech9_plan, only: plan_type, closure_type, block_type
   use mech9_state, only: state_type, velocity_known
+  use mech9_planar_closure, only: planar_errors, planar_column, planar_rates, planar_bias_rates, planar_gap
   implicit none
   private
-  public :: closure_errors, closure_jacobian, closure_rates, closing_error, loop_screw, reduced_screw
+  public :: closure_errors, closure_jacobian, closure_column, closure_rates, closing_error, loop_screw, reduced_screw
 
 contains
 
@@ -22,10 +23,14 @@ contains
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     type(state_type), intent(in) :: state
-    real(wp), intent(out) :: errors(:)
+    real(wp), intent(out), contiguous :: errors(:)
     real(wp) :: w(3), v(3), place(3)
     integer :: c, row
 
+    if (plan%planar%used) then
+      call planar_errors(plan%planar, block%first_closure, block%last_closure, state%planar, errors)
+      return
+    end if
     row = 0
     do c = block%first_closure, block%last_closure
       call error_screw(plan%closures(c), state, w, v, place)
@@ -41,30 +46,46 @@ contains
     type(block_type), intent(in) :: block
     type(state_type), intent(in) :: state
     integer, intent(in) :: column_of(:)       !< column of each of the block's steps; 0: not an unknown
-    real(wp), intent(out) :: jacobian(:, :)
-    real(wp) :: place(3), arm(3), w(3), v(3), unit
+    real(wp), intent(out), contiguous :: jacobian(:, :)
     integer :: c, i, s, row, column
 
     jacobian = 0.0_wp
     row = 0
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c))
-        place = state%p(:, closure%closing)
         do i = 1, size(closure%path%steps)
           s = closure%path%steps(i)
           if (s < block%first_step) cycle
           column = column_of(s - block%first_step + 1)
           if (column == 0) cycle
-          unit = closure%path%signs(i)*plan%unit_of(plan%steps(s)%coordinate)
-          w = unit*state%axis_w(:, s)
-          arm = place - state%p(:, s)
-          v = unit*state%axis_v(:, s) + cross(w, arm)
-          call reduced_screw(plan, closure, state, w, v, place, jacobian(row + 1:row + closure%rank, column))
+          call closure_column(plan, c, s, closure%path%signs(i), state, jacobian(row + 1:row + closure%rank, column))
         end do
         row = row + closure%rank
       end associate
     end do
   end subroutine closure_jacobian
+
+  !> Derivatives of a closure's equations with respect to the coordinate of one step, in its unit.
+  pure subroutine closure_column(plan, c, s, sign, state, column)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: c, s
+    real(wp), intent(in) :: sign              !< of the step in the loop, as in its path
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: column(:)
+    real(wp) :: arm(3), w(3), v(3), unit
+
+    unit = sign*plan%unit_of(plan%steps(s)%coordinate)
+    if (plan%planar%used) then
+      call planar_column(plan%planar, c, s, unit, state%planar, column)
+      return
+    end if
+    associate (place => state%p(:, plan%closures(c)%closing))
+      w = unit*state%axis_w(:, s)
+      arm = place - state%p(:, s)
+      v = unit*state%axis_v(:, s) + cross(w, arm)
+      call reduced_screw(plan, plan%closures(c), state, w, v, place, column)
+    end associate
+  end subroutine closure_column
 
   !> How fast the block's closures open: from the velocities in `state`, or from its accelerations.
   pure subroutine closure_rates(plan, block, state, order, rates)
@@ -72,10 +93,18 @@ contains
     type(block_type), intent(in) :: block
     type(state_type), intent(in) :: state
     integer, intent(in) :: order          !< velocity_known or acceleration_known: which of them
-    real(wp), intent(out) :: rates(:)
+    real(wp), intent(out), contiguous :: rates(:)
     real(wp) :: w(3), v(3), arm(3), place(3)
     integer :: c, row
 
+    if (plan%planar%used) then
+      if (order == velocity_known) then
+        call planar_rates(plan%planar, block%first_closure, block%last_closure, state%planar, rates)
+      else
+        call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, rates)
+      end if
+      return
+    end if
     row = 0
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c), f => plan%closures(c)%closing, g => plan%closures(c)%target)
@@ -96,13 +125,17 @@ contains
   end subroutine closure_rates
 
   !> How far a closure is from closed, all six components: a length [m], rotations times the mechanism's size.
-  pure real(wp) function closing_error(plan, closure, state)
+  pure real(wp) function closing_error(plan, c, state)
     type(plan_type), intent(in) :: plan
-    type(closure_type), intent(in) :: closure
+    integer, intent(in) :: c
     type(state_type), intent(in) :: state
     real(wp) :: w(3), v(3), place(3)
 
-    call error_screw(closure, state, w, v, place)
+    if (plan%planar%used) then
+      closing_error = planar_gap(plan%planar, c, state%planar)
+      return
+    end if
+    call error_screw(plan%closures(c), state, w, v, place)
     closing_error = max(norm2(v), plan%length*norm2(w))
   end function closing_error
 

@@ -1,5 +1,5 @@
 !> Composition of poses along the steps of a plan, (10), with the screws of the pairs on the way.
-!> Uses kinds, error, rotation, pose, pair, plan, state.
+!> Uses kinds, error, rotation, pose, pair, plan, state, planar_motion.
 module mech9_composition
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -8,6 +8,7 @@ module mech9_composition
   use mech9_pose, only: inverse
   use mech9_plan, only: plan_type, step_type
   use mech9_state, only: state_type
+  use mech9_planar_motion, only: place_in_plane
   implicit none
   private
   public :: place_frames, reversed_motion
@@ -23,6 +24,10 @@ contains
     type(error_type), allocatable, intent(out) :: err
     integer :: s
 
+    if (plan%planar%used) then
+      call place_in_plane(plan%planar, first, last, state%q, state%planar)
+      return
+    end if
     do s = first, last
       if (plan%steps(s)%is_screw) then
         call place_screw(plan%steps(s), state%q(plan%steps(s)%coordinate), &

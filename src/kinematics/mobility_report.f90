@@ -1,6 +1,6 @@
 !> What is known of the mobility of a mechanism whose plan is made: ranks, redundant equations, which
-!> coordinates could be independent, and which are idle. Uses kinds, screw, random, mechanism, plan,
-!> state, frames, closure, solver, elsewhere.
+!> coordinates could be independent, and which are idle. Uses kinds, rotation, screw, least_squares,
+!> mechanism, plan, state, frames, motion, closure, solver, elsewhere.
 module mech9_mobility_report
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
@@ -9,6 +9,7 @@ module mech9_mobility_report
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
+  use mech9_motion, only: step_screw
   use mech9_frames, only: find_loop
   use mech9_closure, only: closure_jacobian
   use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
@@ -237,15 +238,14 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
     integer, intent(in) :: coordinates(:)
-    real(wp) :: screws(6, size(coordinates)), basis(6, 6)
-    integer :: i, s
+    real(wp) :: screws(6, size(coordinates)), basis(6, 6), v(3), place(3), first_place(3)
+    integer :: i
 
     do i = 1, size(coordinates)
-      s = plan%step_of(coordinates(i))
-      screws(1:3, i) = state%axis_w(:, s)
+      call step_screw(plan, state, plan%step_of(coordinates(i)), screws(1:3, i), v, place)
+      if (i == 1) first_place = place
       ! about the first axis: far from the origin all screws would look alike
-      screws(4:6, i) = (state%axis_v(:, s) + cross(state%p(:, s) - state%p(:, plan%step_of(coordinates(1))), &
-                                                   state%axis_w(:, s)))/plan%length
+      screws(4:6, i) = (v + cross(place - first_place, screws(1:3, i)))/plan%length
       screws(:, i) = screws(:, i)/norm2(screws(:, i))
     end do
     call orthonormal_basis(screws, tolerance, basis, rank)

@@ -1,5 +1,5 @@
 !> The plan: everything about a mechanism that can be decided once, laid out for execution.
-!> Uses kinds, pose, pair.
+!> Uses kinds, pose, pair, planar_plan.
 !>
 !> Each pair is one *step* from a frame to a new frame; frame 0 belongs to link 1, frame s is reached
 !> by step s. A frame sits on the axis of the pair by which it was reached, with that axis as its z,
@@ -11,6 +11,7 @@ module mech9_plan
   use mech9_kinds, only: wp
   use mech9_pose, only: pose_type
   use mech9_pair, only: pair_slot_type
+  use mech9_planar_plan, only: planar_plan_type
   implicit none
   private
   public :: plan_type, step_type, closure_type, path_type, block_type
@@ -76,5 +77,6 @@ module mech9_plan
     real(wp), allocatable :: unit_of(:)             !< what counts as one in each coordinate: 1 rad, or `length`
     integer, allocatable :: independent(:)          !< coordinates, ascending
     type(pair_slot_type), allocatable :: pairs(:)   !< only those without a fixed axis are set
+    type(planar_plan_type) :: planar                !< the same in planar arithmetic, if that can be used
   end type plan_type
 end module mech9_plan

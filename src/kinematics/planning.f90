@@ -12,6 +12,7 @@ module mech9_planning
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, new_state
   use mech9_frames, only: lay_out_frames
+  use mech9_planar_layout, only: lay_out_in_plane
   use mech9_loop_space, only: find_loop_spaces
   use mech9_loop_rank, only: find_offers
   use mech9_blocks, only: make_blocks, count_block
@@ -38,13 +39,15 @@ contains
   !> The plan of a mechanism and its assembled start: positions of all coordinates for the given
   !> independent ones. Fails with exit_structure where the dependent coordinates are not determined
   !> by the independent ones, with exit_assembly where the chains do not close.
-  subroutine make_plan(mechanism, start, plan, state, err)
+  subroutine make_plan(mechanism, start, plan, state, err, in_space)
     type(mechanism_type), intent(in) :: mechanism
     real(wp), intent(in) :: start(:)        !< (M): independent coordinates as given, guesses of the others
     type(plan_type), intent(out) :: plan
     type(state_type), intent(out) :: state  !< assembled
     type(error_type), allocatable, intent(out) :: err
+    logical, intent(in), optional :: in_space   !< no planar arithmetic, even where it could be used
     type(elsewhere_type) :: elsewhere
+    logical :: spatial
 
     call lay_out_frames(mechanism, plan)
     state = new_state(plan)
@@ -54,6 +57,13 @@ contains
     call find_offers(plan, start)
     call propose_blocks(plan, state, err)
     if (allocated(err)) return
+    spatial = .false.
+    if (present(in_space)) spatial = in_space
+    if (.not. spatial) call lay_out_in_plane(plan)
+    if (plan%planar%used) then
+      state = new_state(plan)
+      state%q = start
+    end if
     call settle_blocks(plan, state, elsewhere, err)
     if (allocated(err)) return
     call check_inputs(plan, state, elsewhere, err)

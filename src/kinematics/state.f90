@@ -1,7 +1,8 @@
-!> The state of motion of a mechanism and what is known of it. Uses kinds, plan.
+!> The state of motion of a mechanism and what is known of it. Uses kinds, plan, planar_motion.
 module mech9_state
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type
+  use mech9_planar_motion, only: planar_motion_type, new_planar_motion
   implicit none
   private
   public :: state_type, new_state, nothing_known, position_known, velocity_known, acceleration_known
@@ -13,7 +14,8 @@ module mech9_state
   integer, parameter :: acceleration_known = 3
 
   !> All vectors in the axes of frame 0; positions from its origin. Index: the frame, or the step that
-  !> made it. `known` says which of the quantities below belong to the coordinates.
+  !> made it. `known` says which of the quantities below belong to the coordinates. In planar arithmetic
+  !> the motion of the frames is in `planar` only, and those of space are not allocated.
   type :: state_type
     real(wp) :: t = 0.0_wp                       !< [s]
     integer :: known = nothing_known
@@ -30,6 +32,7 @@ module mech9_state
     real(wp), allocatable :: v(:, :)             !< (3,0:M) velocity of the origin [m/s]
     real(wp), allocatable :: alpha(:, :)         !< (3,0:M) angular acceleration [rad/s^2]
     real(wp), allocatable :: a(:, :)             !< (3,0:M) acceleration of the origin [m/s^2]
+    type(planar_motion_type) :: planar           !< of the frames, where the plan is planar
   end type state_type
 
 contains
@@ -42,6 +45,10 @@ contains
 
     m = plan%n_coordinates
     allocate (state%q(m), state%dq(m), state%ddq(m), source=0.0_wp)
+    if (plan%planar%used) then
+      state%planar = new_planar_motion(m)
+      return
+    end if
     allocate (state%r(3, 3, 0:m), state%p(3, 0:m), source=0.0_wp)
     allocate (state%axis_w(3, m), state%axis_v(3, m), source=0.0_wp)
     allocate (state%axis_w_rate(3, m), state%axis_v_rate(3, m), source=0.0_wp)

@@ -317,7 +317,7 @@ contains
 
     largest = 0.0_wp
     do c = 1, size(plan%closures)
-      largest = max(largest, closing_error(plan, plan%closures(c), state))
+      largest = max(largest, closing_error(plan, c, state))
     end do
   end function largest_closure
 

@@ -1,11 +1,12 @@
 !> Least squares by QR with column pivoting: factorized once, solved for several right-hand sides.
-!> Uses kinds, lapack.
+!> Uses kinds, lapack, householder.
 !>
-!> Small matrices, the rule in mechanisms, are factorized by a plain Householder loop of our own,
-!> which beats the call into LAPACK there; larger ones by LAPACK. Nothing is allocated after `create`.
+!> Small matrices, the rule in mechanisms, are factorized by Householder loops of our own,
+!> which beat the call into LAPACK there; larger ones by LAPACK. Nothing is allocated after `create`.
 module mech9_least_squares
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgeqp3, dormqr
+  use mech9_householder, only: householder, reflect, back_substitute
   implicit none
   private
   public :: least_squares_type
@@ -22,6 +23,8 @@ module mech9_least_squares
     integer, allocatable :: pivot(:)            !< column of the matrix at each place
     integer, allocatable, private :: order(:)
     real(wp), allocatable, private :: tau(:)
+    real(wp), allocatable, private :: reciprocal(:)   !< of the pivots that are not lost in round-off
+    integer, private :: safe_rank = 0           !< columns that are independent beyond round-off
     real(wp), allocatable, private :: norms(:)
     real(wp), allocatable, private :: work(:)
   contains
@@ -43,8 +46,8 @@ contains
 
     self%m = m
     self%n = n
-    if (allocated(self%a)) deallocate (self%a, self%pivot, self%order, self%tau, self%norms, self%work)
-    allocate (self%a(m, n), self%tau(n), self%norms(n), source=0.0_wp)
+    if (allocated(self%a)) deallocate (self%a, self%pivot, self%order, self%tau, self%reciprocal, self%norms, self%work)
+    allocate (self%a(m, n), self%tau(n), self%reciprocal(n), self%norms(n), source=0.0_wp)
     allocate (self%pivot(n), self%order(n), source=0)
     allocate (self%work(max(m, 2*n + (n + 1)*32, 32*32)), source=0.0_wp)
   end subroutine create
@@ -52,7 +55,7 @@ contains
   !> Factorize the matrix that stands in `a`.
   subroutine factorize(self)
     class(least_squares_type), intent(inout) :: self
-    integer :: info
+    integer :: info, j
 
     if (self%n < lapack_from) then
       call householder(self%m, self%n, self%a, self%pivot, self%tau, self%norms)
@@ -60,55 +63,63 @@ contains
       self%pivot = 0
       call dgeqp3(self%m, self%n, self%a, self%m, self%pivot, self%tau, self%work, size(self%work), info)
     end if
+    self%safe_rank = self%rank(16.0_wp*epsilon(1.0_wp)*max(self%m, self%n))
+    do j = 1, self%safe_rank
+      self%reciprocal(j) = 1.0_wp/self%a(j, j)
+    end do
   end subroutine factorize
 
   !> x with |a x - b| least, and the length of what remains; columns at and beyond the numerical rank
   !> are not used.
   subroutine solve(self, b, x, remainder, tolerance, noise)
     class(least_squares_type), intent(inout) :: self
-    real(wp), intent(inout) :: b(:)              !< (m); overwritten
+    real(wp), intent(inout), contiguous :: b(:)  !< (m); overwritten
     real(wp), intent(out) :: x(:)                !< (n)
     real(wp), intent(out), optional :: remainder
     real(wp), intent(in), optional :: tolerance   !< of the rank; round-off unless given
     !> What of x is noise in a well determined column; in a nearly dependent one it is more, by the square
     !> of how much smaller the pivot is, and all that does not exceed it is left at zero.
     real(wp), intent(in), optional :: noise
-    integer :: i, j, k, info, rank
-    real(wp) :: s
+    integer :: j, k, info, rank
 
     k = min(self%m, self%n)
     if (self%n < lapack_from) then
-      do j = 1, k
-        s = b(j)
-        do i = j + 1, self%m
-          s = s + self%a(i, j)*b(i)
-        end do
-        s = s*self%tau(j)
-        b(j) = b(j) - s
-        do i = j + 1, self%m
-          b(i) = b(i) - s*self%a(i, j)
-        end do
-      end do
+      call reflect(self%m, k, self%a, self%tau, b)
     else
       call dormqr('L', 'T', self%m, 1, k, self%a, self%m, self%tau, b, self%m, self%work, size(self%work), info)
     end if
-    rank = self%rank(tolerance)
+    rank = self%safe_rank
+    if (present(tolerance)) rank = min(rank, self%rank(tolerance))
     if (present(remainder)) remainder = norm2(b(rank + 1:self%m))
-    do j = rank, 1, -1
-      b(j) = b(j)/self%a(j, j)
-      if (present(noise)) then
-        s = abs(self%a(j, j)/self%a(1, 1))
-        if (s < nearly_dependent .and. abs(b(j))*s**2 <= noise) b(j) = 0.0_wp
-      end if
-      do i = 1, j - 1
-        b(i) = b(i) - self%a(i, j)*b(j)
-      end do
-    end do
-    x = 0.0_wp
+    if (present(noise) .and. self%conditioning() < nearly_dependent) then
+      call substitute_above_noise(self, rank, noise, b)
+    else
+      call back_substitute(self%m, rank, self%a, self%reciprocal, b)
+    end if
+    if (rank < self%n) x = 0.0_wp
     do j = 1, rank
       x(self%pivot(j)) = b(j)
     end do
   end subroutine solve
+
+  !> R^-1 b in the first `rank` columns, without what is noise.
+  pure subroutine substitute_above_noise(self, rank, noise, b)
+    class(least_squares_type), intent(in) :: self
+    integer, intent(in) :: rank
+    real(wp), intent(in) :: noise
+    real(wp), intent(inout) :: b(:)
+    real(wp) :: s
+    integer :: i, j
+
+    do j = rank, 1, -1
+      b(j) = b(j)*self%reciprocal(j)
+      s = abs(self%a(j, j)/self%a(1, 1))
+      if (s < nearly_dependent .and. abs(b(j))*s**2 <= noise) b(j) = 0.0_wp
+      do i = 1, j - 1
+        b(i) = b(i) - self%a(i, j)*b(j)
+      end do
+    end do
+  end subroutine substitute_above_noise
 
   !> Number of columns that are independent beyond round-off.
   pure integer function rank(self, tolerance)
@@ -116,8 +127,9 @@ contains
     real(wp), intent(in), optional :: tolerance   !< against the largest; round-off unless given
     real(wp) :: least
 
-    least = 16.0_wp*epsilon(least)*max(self%m, self%n)
-    if (present(tolerance)) least = tolerance
+    rank = self%safe_rank
+    if (.not. present(tolerance)) return
+    least = tolerance
     if (min(self%m, self%n) > 0) least = least*abs(self%a(1, 1))
     do rank = 0, min(self%m, self%n) - 1
       if (.not. abs(self%a(rank + 1, rank + 1)) > least) return
@@ -222,77 +234,4 @@ contains
       end do
     end do
   end function determinant_sign
-
-  !> QR by Householder reflections with column pivoting; the layout of the factors is LAPACK's.
-  pure subroutine householder(m, n, a, pivot, tau, norms)
-    integer, intent(in) :: m, n
-    real(wp), intent(inout) :: a(m, n)
-    integer, intent(out) :: pivot(n)
-    real(wp), intent(out) :: tau(n)
-    real(wp), intent(out) :: norms(n)      !< squares of the lengths of what remains of each column
-    integer :: i, j, k, best
-    real(wp) :: s, beta, swap
-
-    do j = 1, n
-      pivot(j) = j
-      s = 0.0_wp
-      do i = 1, m
-        s = s + a(i, j)**2
-      end do
-      norms(j) = s
-    end do
-    tau = 0.0_wp
-    do k = 1, min(m, n)
-      best = k
-      do j = k + 1, n
-        if (norms(j) > norms(best)) best = j
-      end do
-      if (best /= k) then
-        do i = 1, m
-          swap = a(i, k)
-          a(i, k) = a(i, best)
-          a(i, best) = swap
-        end do
-        i = pivot(k)
-        pivot(k) = pivot(best)
-        pivot(best) = i
-        norms(best) = norms(k)
-      end if
-      s = 0.0_wp
-      do i = k + 1, m
-        s = s + a(i, k)**2
-      end do
-      if (.not. s > 0.0_wp) then
-        ! nothing to reflect away, but row k no longer counts in what remains of the others
-        do j = k + 1, n
-          norms(j) = 0.0_wp
-          do i = k + 1, m
-            norms(j) = norms(j) + a(i, j)**2
-          end do
-        end do
-        cycle
-      end if
-      beta = -sign(sqrt(a(k, k)**2 + s), a(k, k))
-      tau(k) = (beta - a(k, k))/beta
-      s = 1.0_wp/(a(k, k) - beta)
-      do i = k + 1, m
-        a(i, k) = a(i, k)*s
-      end do
-      a(k, k) = beta
-      do j = k + 1, n
-        s = a(k, j)
-        do i = k + 1, m
-          s = s + a(i, k)*a(i, j)
-        end do
-        s = s*tau(k)
-        a(k, j) = a(k, j) - s
-        ! the columns are short: their remaining lengths are summed anew, free of cancellation
-        norms(j) = 0.0_wp
-        do i = k + 1, m
-          a(i, j) = a(i, j) - s*a(i, k)
-          norms(j) = norms(j) + a(i, j)**2
-        end do
-      end do
-    end do
-  end subroutine householder
 end module mech9_least_squares

@@ -126,7 +126,7 @@ contains
     associate (system => self%system)
       call self%columns%fill(system%mechanism, system%plan, system%state, row, used)
       kinetic = kinetic_energy(system%dynamics, system%state)
-      potential = potential_energy(system%mechanism, system%plan, system%dynamics, system%state, system%work%view)
+      potential = potential_energy(system%mechanism, system%plan, system%state, system%work%view)
       row(used + 1:used + 3) = [kinetic, potential, kinetic + potential]
       row(used + 4) = largest_closure(system%plan, system%state)
       if (allocated(self%film)) call self%film%take(system%mechanism, system%plan, system%state)

@@ -8,7 +8,7 @@ module mech9_literal_lagrange
   use mech9_error, only: error_type, raise, exit_assembly
   use mech9_differentiation, only: half_width, derivatives_from_stencil
   use mech9_rotation, only: cross
-  use mech9_pose, only: pose_type, compose, transformed
+  use mech9_pose, only: pose_type, transformed
   use mech9_inertia, only: second_moments
   use mech9_mechanism, only: mechanism_type
   use mech9_load, only: load_type
@@ -18,6 +18,7 @@ module mech9_literal_lagrange
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_closure, only: closure_errors
+  use mech9_motion, only: link_motion
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, factorize_block, apply_change
   implicit none
   private
@@ -207,10 +208,9 @@ contains
     type(state_type), intent(in) :: state
     integer, intent(in) :: link
     type(pose_type) :: pose
+    real(wp) :: omega(3), v(3)
 
-    associate (f => plan%frame_of(link))
-      pose = compose(pose_type(r=state%r(:, :, f), p=state%p(:, f) + plan%origin), plan%link_in_frame(link))
-    end associate
+    call link_motion(plan, state, link, pose%r, pose%p, omega, v)
   end function link_pose
 
   !> (21): sum of m du/dq_p . du/dq_r + sum_jkl dA_jk/dq_p dA_jl/dq_r J'_kl.

@@ -50,8 +50,14 @@ contains
     ! frames that nothing depends on must not be read
     do i = 1, plan%n_coordinates
       if (dynamics%carries(i)) cycle
-      work%jacobian%w(:, dynamics%first(i):dynamics%first(i + 1) - 1) = huge(1.0_wp)
-      work%jacobian%v(:, dynamics%first(i):dynamics%first(i + 1) - 1) = huge(1.0_wp)
+      associate (first => dynamics%first(i), last => dynamics%first(i + 1) - 1)
+        if (plan%planar%used) then
+          work%jacobian%flat(:, first:last) = huge(1.0_wp)
+        else
+          work%jacobian%w(:, first:last) = huge(1.0_wp)
+          work%jacobian%v(:, first:last) = huge(1.0_wp)
+        end if
+      end associate
     end do
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, size(plan%independent))]
     call find_motion(mechanism, plan, dynamics, state, work, err)

@@ -171,7 +171,7 @@ contains
           if (.not. allocated(err)) call find_motion(mechanism, plan, dynamics, state, elsewhere, err)
           call test%no_error(err, why//': a position nearby')
           if (allocated(err)) return
-          energy(i) = potential_energy(mechanism, plan, dynamics, state, elsewhere%view)
+          energy(i) = potential_energy(mechanism, plan, state, elsewhere%view)
         end do
       end do
       call derivatives_from_stencil(energy, h, slope, unused, error)

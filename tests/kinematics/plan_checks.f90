@@ -61,14 +61,20 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
     character(len=*), intent(in) :: why
-    real(wp) :: largest
+    real(wp) :: largest, reach
     integer :: c
 
+    reach = plan%length
+    if (plan%planar%used) then
+      reach = max(reach, maxval(abs(state%planar%pose(3:4, :))))
+    else
+      reach = max(reach, maxval(abs(state%p)))
+    end if
     largest = 0.0_wp
     do c = 1, size(plan%closures)
-      largest = max(largest, closing_error(plan, plan%closures(c), state))
+      largest = max(largest, closing_error(plan, c, state))
     end do
-    call test%near(largest/max(plan%length, maxval(abs(state%p))), 0.0_wp, 1.0e-13_wp, why//': closed to round-off')
+    call test%near(largest/reach, 0.0_wp, 1.0e-13_wp, why//': closed to round-off')
   end subroutine check_closed
 
   !> No block could be divided: the loops of any part of its chains, and the frames they stand on, leave more

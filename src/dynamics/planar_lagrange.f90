@@ -1,0 +1,148 @@
+!> Lagrange's equations in planar arithmetic: columns of frames, inertia of links and forces on them, in the
+!> plane. Uses kinds, body, mechanism, the plan and the motion in the plane.
+!>
+!> A column is (angular velocity, velocity of the frame's origin) per unit rate of an independent coordinate.
+module mech9_planar_lagrange
+  use mech9_kinds, only: wp
+  use mech9_pose, only: transformed
+  use mech9_inertia, only: inertia_in_axes
+  use mech9_body, only: body_type
+  use mech9_plan, only: plan_type
+  use mech9_planar_plan, only: planar_plan_type, planar_step_type
+  use mech9_planar_motion, only: planar_motion_type, to_plane
+  implicit none
+  private
+  public :: planar_body_type, planar_body, spread_columns, add_inertia, add_link_force, planar_kinetic_energy
+
+  !> A link with mass, in its frame in the plane.
+  type :: planar_body_type
+    integer :: frame = 0
+    real(wp) :: mass = 0.0_wp             !< [kg]
+    real(wp) :: centre(2) = 0.0_wp        !< [m]
+    real(wp) :: inertia = 0.0_wp          !< about the normal through the centre [kg m^2]
+  end type planar_body_type
+
+contains
+
+  !> The part of a body that counts in the plane.
+  pure function planar_body(plan, body) result(flat)
+    type(plan_type), intent(in) :: plan
+    type(body_type), intent(in) :: body
+    type(planar_body_type) :: flat
+    real(wp) :: centre(3), inertia(3, 3)
+
+    associate (in_frame => plan%planar%link_in_frame(body%link))
+      centre = transformed(in_frame, body%centre)
+      inertia = inertia_in_axes(in_frame%r, body%inertia)
+    end associate
+    flat = planar_body_type(plan%frame_of(body%link), body%mass, centre(1:2), inertia(3, 3))
+  end function planar_body
+
+  !> Outward recursion of the columns of frames first .. last.
+  pure subroutine spread_columns(m, n, steps, first, last, entries, parent_entry, carries, all_frames, b, f, slide, columns)
+    integer, intent(in) :: m, n                   !< steps, entries
+    type(planar_step_type), intent(in) :: steps(m)
+    integer, intent(in) :: first, last
+    integer, intent(in) :: entries(0:m + 1), parent_entry(n)   !< as in the dynamics plan
+    logical, intent(in) :: carries(0:m)
+    logical, intent(in) :: all_frames             !< also those that carry nothing
+    real(wp), intent(in) :: b(n)                  !< rate of each step's coordinate
+    real(wp), intent(in) :: f(4, 0:m), slide(2, m)
+    real(wp), intent(inout) :: columns(3, n)
+    real(wp) :: x, y, w
+    integer :: s, e, p
+
+    do s = first, last
+      if (.not. (all_frames .or. carries(s))) cycle
+      x = f(3, s) - f(3, steps(s)%parent)
+      y = f(4, s) - f(4, steps(s)%parent)
+      do e = entries(s), entries(s + 1) - 1
+        columns(1, e) = b(e)*steps(s)%turn
+        columns(2, e) = 0.0_wp
+        columns(3, e) = 0.0_wp
+        if (.not. steps(s)%turns) columns(2:3, e) = b(e)*slide(:, s)
+        p = parent_entry(e)
+        if (p == 0) cycle
+        w = columns(1, p)
+        columns(1, e) = columns(1, e) + w
+        columns(2, e) = columns(2, e) + columns(2, p) - w*y
+        columns(3, e) = columns(3, e) + columns(3, p) + w*x
+      end do
+    end do
+  end subroutine spread_columns
+
+  !> Add a body's coefficients of motion, velocity terms, and weights.
+  pure subroutine add_inertia(body, k, n, numbers, columns, f, v, a, gravity, coefficients, velocity_terms, forces)
+    type(planar_body_type), intent(in) :: body
+    integer, intent(in) :: k                      !< columns of its frame
+    integer, intent(in) :: n                      !< independent coordinates
+    integer, intent(in) :: numbers(k)             !< of the columns' coordinates among them
+    real(wp), intent(in) :: columns(3, k)
+    real(wp), intent(in) :: f(4), v(3), a(3)      !< pose, velocity and acceleration of the frame
+    real(wp), intent(in) :: gravity(2)
+    real(wp), intent(inout) :: coefficients(n, n), velocity_terms(n), forces(n)
+    real(wp) :: x, y, force_x, force_y, torque, c_x, c_y, spin
+    integer :: p, r
+
+    x = f(1)*body%centre(1) - f(2)*body%centre(2)
+    y = f(2)*body%centre(1) + f(1)*body%centre(2)
+    force_x = body%mass*(a(2) - a(1)*y - v(1)**2*x)
+    force_y = body%mass*(a(3) + a(1)*x - v(1)**2*y)
+    torque = body%inertia*a(1)
+    do p = 1, k
+      c_x = columns(2, p) - columns(1, p)*y
+      c_y = columns(3, p) + columns(1, p)*x
+      velocity_terms(numbers(p)) = velocity_terms(numbers(p)) + c_x*force_x + c_y*force_y + columns(1, p)*torque
+      c_x = body%mass*c_x
+      c_y = body%mass*c_y
+      forces(numbers(p)) = forces(numbers(p)) + c_x*gravity(1) + c_y*gravity(2)
+      spin = x*c_y - y*c_x + body%inertia*columns(1, p)
+      do r = p, k
+        coefficients(numbers(r), numbers(p)) = coefficients(numbers(r), numbers(p)) &
+          + columns(1, r)*spin + columns(2, r)*c_x + columns(3, r)*c_y
+      end do
+    end do
+  end subroutine add_inertia
+
+  !> Add the generalized forces of a force and a torque about the origin of a link.
+  pure subroutine add_link_force(planar, link, k, numbers, columns, f, force, torque, forces)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: link
+    integer, intent(in) :: k
+    integer, intent(in) :: numbers(k)
+    real(wp), intent(in) :: columns(3, k)
+    real(wp), intent(in) :: f(4)                  !< pose of the link's frame
+    real(wp), intent(in) :: force(3), torque(3)   !< fixed axes [N, N m]
+    real(wp), intent(inout) :: forces(:)
+    real(wp) :: pull(3), spin(3), x, y
+    integer :: p
+
+    pull = to_plane(planar, force)
+    spin = to_plane(planar, torque)
+    associate (arm => planar%link_in_frame(link)%p)
+      x = f(1)*arm(1) - f(2)*arm(2)
+      y = f(2)*arm(1) + f(1)*arm(2)
+    end associate
+    spin(3) = spin(3) + x*pull(2) - y*pull(1)
+    do p = 1, k
+      forces(numbers(p)) = forces(numbers(p)) + columns(1, p)*spin(3) + columns(2, p)*pull(1) + columns(3, p)*pull(2)
+    end do
+  end subroutine add_link_force
+
+  !> Of all bodies [J].
+  pure real(wp) function planar_kinetic_energy(bodies, motion) result(energy)
+    type(planar_body_type), intent(in) :: bodies(:)
+    type(planar_motion_type), intent(in) :: motion
+    real(wp) :: x, y
+    integer :: i
+
+    energy = 0.0_wp
+    do i = 1, size(bodies)
+      associate (body => bodies(i), f => motion%pose(:, bodies(i)%frame), v => motion%velocity(:, bodies(i)%frame))
+        x = f(1)*body%centre(1) - f(2)*body%centre(2)
+        y = f(2)*body%centre(1) + f(1)*body%centre(2)
+        energy = energy + 0.5_wp*(body%mass*((v(2) - v(1)*y)**2 + (v(3) + v(1)*x)**2) + body%inertia*v(1)**2)
+      end associate
+    end do
+  end function planar_kinetic_energy
+end module mech9_planar_lagrange

@@ -1,0 +1,168 @@
+!> Planar arithmetic: poses, velocities and accelerations of frames that keep one normal, and how these
+!> look in space. Uses kinds, pose, planar_plan.
+!>
+!> A pose is (cosine, sine, x, y) in frame 0 of the plane; a velocity is the angular velocity about the
+!> normal and the velocity of the frame's origin, an acceleration likewise.
+module mech9_planar_motion
+  use mech9_kinds, only: wp
+  use mech9_planar_plan, only: planar_plan_type, planar_step_type
+  implicit none
+  private
+  public :: planar_motion_type, new_planar_motion, place_in_plane, planar_velocities, planar_accelerations, &
+    to_space, to_plane
+
+  type :: planar_motion_type
+    real(wp), allocatable :: pose(:, :)           !< (4,0:M) cosine, sine, x, y [m]
+    real(wp), allocatable :: slide(:, :)          !< (2,M) velocity of the new origin per unit rate
+    real(wp), allocatable :: velocity(:, :)       !< (3,0:M) [rad/s, m/s]
+    real(wp), allocatable :: acceleration(:, :)   !< (3,0:M) [rad/s^2, m/s^2]
+  end type planar_motion_type
+
+contains
+
+  !> Room for frames 0 .. m, all at rest and in place of frame 0.
+  pure function new_planar_motion(m) result(motion)
+    integer, intent(in) :: m
+    type(planar_motion_type) :: motion
+
+    allocate (motion%pose(4, 0:m), motion%slide(2, m), source=0.0_wp)
+    allocate (motion%velocity(3, 0:m), motion%acceleration(3, 0:m), source=0.0_wp)
+    motion%pose(1, :) = 1.0_wp
+  end function new_planar_motion
+
+  !> Poses of the frames first .. last.
+  pure subroutine place_in_plane(planar, first, last, q, motion)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: first, last
+    real(wp), intent(in), contiguous :: q(:)      !< (M)
+    type(planar_motion_type), intent(inout) :: motion
+
+    call place(size(q), planar%steps, first, last, q, motion%pose, motion%slide)
+  end subroutine place_in_plane
+
+  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+
+  pure subroutine place(m, steps, first, last, q, f, slide)
+    integer, intent(in) :: m, first, last
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(in) :: q(m)
+    real(wp), intent(inout) :: f(4, 0:m), slide(2, m)
+    real(wp) :: x, y, c, s, cp, sp, angle
+    integer :: i, p
+
+    do i = first, last
+      p = steps(i)%parent
+      cp = f(1, p)
+      sp = f(2, p)
+      x = steps(i)%place(1)
+      y = steps(i)%place(2)
+      if (steps(i)%turns) then
+        angle = steps(i)%turn*q(steps(i)%coordinate) + steps(i)%angle
+        c = cos(angle)
+        s = sin(angle)
+        f(1, i) = cp*c - sp*s
+        f(2, i) = sp*c + cp*s
+      else
+        x = x + q(steps(i)%coordinate)*steps(i)%slide(1)
+        y = y + q(steps(i)%coordinate)*steps(i)%slide(2)
+        slide(1, i) = cp*steps(i)%slide(1) - sp*steps(i)%slide(2)
+        slide(2, i) = sp*steps(i)%slide(1) + cp*steps(i)%slide(2)
+        f(1, i) = cp
+        f(2, i) = sp
+      end if
+      f(3, i) = f(3, p) + cp*x - sp*y
+      f(4, i) = f(4, p) + sp*x + cp*y
+    end do
+  end subroutine place
+
+  !> Velocities of the frames first .. last.
+  pure subroutine planar_velocities(planar, first, last, dq, motion)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: first, last
+    real(wp), intent(in), contiguous :: dq(:)     !< (M)
+    type(planar_motion_type), intent(inout) :: motion
+
+    call find_velocities(size(dq), planar%steps, first, last, dq, motion%pose, motion%slide, motion%velocity)
+  end subroutine planar_velocities
+
+  pure subroutine find_velocities(m, steps, first, last, dq, f, slide, v)
+    integer, intent(in) :: m, first, last
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(in) :: dq(m), f(4, 0:m), slide(2, m)
+    real(wp), intent(inout) :: v(3, 0:m)
+    real(wp) :: w, rate
+    integer :: i, p
+
+    do i = first, last
+      p = steps(i)%parent
+      rate = dq(steps(i)%coordinate)
+      w = v(1, p)
+      v(1, i) = w + steps(i)%turn*rate
+      v(2, i) = v(2, p) - w*(f(4, i) - f(4, p))
+      v(3, i) = v(3, p) + w*(f(3, i) - f(3, p))
+      if (steps(i)%turns) cycle
+      v(2, i) = v(2, i) + rate*slide(1, i)
+      v(3, i) = v(3, i) + rate*slide(2, i)
+    end do
+  end subroutine find_velocities
+
+  !> Accelerations of the frames first .. last.
+  pure subroutine planar_accelerations(planar, first, last, dq, ddq, motion)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: first, last
+    real(wp), intent(in), contiguous :: dq(:), ddq(:)   !< (M)
+    type(planar_motion_type), intent(inout) :: motion
+
+    call find_accelerations(size(dq), planar%steps, first, last, dq, ddq, motion%pose, motion%slide, &
+                            motion%velocity, motion%acceleration)
+  end subroutine planar_accelerations
+
+  pure subroutine find_accelerations(m, steps, first, last, dq, ddq, f, slide, v, a)
+    integer, intent(in) :: m, first, last
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(in) :: dq(m), ddq(m), f(4, 0:m), slide(2, m), v(3, 0:m)
+    real(wp), intent(inout) :: a(3, 0:m)
+    real(wp) :: x, y, w, alpha, coriolis
+    integer :: i, p
+
+    do i = first, last
+      p = steps(i)%parent
+      x = f(3, i) - f(3, p)
+      y = f(4, i) - f(4, p)
+      w = v(1, p)
+      alpha = a(1, p)
+      a(1, i) = alpha + steps(i)%turn*ddq(steps(i)%coordinate)
+      a(2, i) = a(2, p) - alpha*y - w**2*x
+      a(3, i) = a(3, p) + alpha*x - w**2*y
+      if (steps(i)%turns) cycle
+      coriolis = 2.0_wp*w*dq(steps(i)%coordinate)
+      a(2, i) = a(2, i) + ddq(steps(i)%coordinate)*slide(1, i) - coriolis*slide(2, i)
+      a(3, i) = a(3, i) + ddq(steps(i)%coordinate)*slide(2, i) + coriolis*slide(1, i)
+    end do
+  end subroutine find_accelerations
+
+  !> A vector in the plane's axes, given by its part in the plane and that along the normal, in the axes of frame 0.
+  pure function to_space(planar, x, y, z) result(vector)
+    type(planar_plan_type), intent(in) :: planar
+    real(wp), intent(in) :: x, y, z
+    real(wp) :: vector(3)
+
+    if (planar%upright) then
+      vector(1) = x
+      vector(2) = y
+      vector(3) = z
+    else
+      vector = planar%axes(:, 1)*x + planar%axes(:, 2)*y + planar%axes(:, 3)*z
+    end if
+  end function to_space
+
+  !> A vector in the axes of frame 0, in those of the plane.
+  pure function to_plane(planar, vector) result(seen)
+    type(planar_plan_type), intent(in) :: planar
+    real(wp), intent(in) :: vector(3)
+    real(wp) :: seen(3)
+
+    seen = vector
+    if (.not. planar%upright) seen = matmul(vector, planar%axes)
+  end function to_plane
+end module mech9_planar_motion

@@ -1,0 +1,106 @@
+!> QR of small matrices by Householder reflections. Uses kinds only.
+!>
+!> The loops stand in files of their own and are compiled three times: for any size, and with the size known
+!> to the compiler for those that are met most, three equations of a planar or spherical chain and six of a
+!> spatial one. That unrolls them and takes half the time.
+module mech9_householder
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: householder, reflect, back_substitute
+
+contains
+
+  !> QR with column pivoting of any small matrix.
+  pure subroutine householder(m, n, a, pivot, tau, norms)
+    integer, intent(in) :: m, n
+    real(wp), intent(inout) :: a(m, n)     !< the factors afterwards
+    integer, intent(out) :: pivot(n)       !< column of the matrix at each place
+    real(wp), intent(out) :: tau(n)        !< of the reflections
+    real(wp), intent(out) :: norms(n)      !< scratch
+
+    if (m == 3 .and. n == 3) then
+      call factorize_3(a, pivot, tau, norms)
+    else if (m == 6 .and. n == 6) then
+      call factorize_6(a, pivot, tau, norms)
+    else
+      call factorize(m, n, a, pivot, tau, norms)
+    end if
+  end subroutine householder
+
+  !> b becomes Q^T b, with the first n reflections.
+  pure subroutine reflect(m, n, a, tau, b)
+    integer, intent(in) :: m, n
+    real(wp), intent(in) :: a(m, n), tau(n)
+    real(wp), intent(inout) :: b(m)
+
+    if (m == 3 .and. n == 3) then
+      call reflect_3(a, tau, b)
+    else if (m == 6 .and. n == 6) then
+      call reflect_6(a, tau, b)
+    else
+      call reflect_any(m, n, a, tau, b)
+    end if
+  end subroutine reflect
+
+  !> The first n numbers of b become R^-1 b.
+  pure subroutine back_substitute(m, n, a, reciprocal, b)
+    integer, intent(in) :: m, n
+    real(wp), intent(in) :: a(m, n)
+    real(wp), intent(in) :: reciprocal(n)   !< of the diagonal of R
+    real(wp), intent(inout) :: b(n)
+
+    if (m == 3 .and. n == 3) then
+      call substitute_3(a, reciprocal, b)
+    else if (m == 6 .and. n == 6) then
+      call substitute_6(a, reciprocal, b)
+    else
+      call substitute(m, n, a, reciprocal, b)
+    end if
+  end subroutine back_substitute
+
+  pure subroutine factorize(m, n, a, pivot, tau, norms)
+    integer, intent(in) :: m, n
+    include 'factorization.inc'
+  end subroutine factorize
+
+  pure subroutine factorize_3(a, pivot, tau, norms)
+    integer, parameter :: m = 3, n = 3
+    include 'factorization.inc'
+  end subroutine factorize_3
+
+  pure subroutine factorize_6(a, pivot, tau, norms)
+    integer, parameter :: m = 6, n = 6
+    include 'factorization.inc'
+  end subroutine factorize_6
+
+  pure subroutine reflect_any(m, n, a, tau, b)
+    integer, intent(in) :: m, n
+    include 'reflection.inc'
+  end subroutine reflect_any
+
+  pure subroutine reflect_3(a, tau, b)
+    integer, parameter :: m = 3, n = 3
+    include 'reflection.inc'
+  end subroutine reflect_3
+
+  pure subroutine reflect_6(a, tau, b)
+    integer, parameter :: m = 6, n = 6
+    include 'reflection.inc'
+  end subroutine reflect_6
+
+  pure subroutine substitute(m, n, a, reciprocal, b)
+    integer, intent(in) :: m, n
+    include 'substitution.inc'
+  end subroutine substitute
+
+  pure subroutine substitute_3(a, reciprocal, b)
+    integer, parameter :: m = 3, n = 3
+    include 'substitution.inc'
+  end subroutine substitute_3
+
+  pure subroutine substitute_6(a, reciprocal, b)
+    integer, parameter :: m = 6, n = 6
+    include 'substitution.inc'
+  end subroutine substitute_6
+end module mech9_householder
