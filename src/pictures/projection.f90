@@ -1,10 +1,11 @@
 !> The projection of a mechanism onto a page: view, scale and margins, so that the whole motion is seen.
-!> Uses kinds, mechanism, spring_load, film, skeleton, view.
+!> Uses kinds, mechanism, spring_load, film, pair_axes, skeleton, view.
 module mech9_projection
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
   use mech9_spring_load, only: spring_load_type
   use mech9_film, only: film_type
+  use mech9_pair_axes, only: free
   use mech9_skeleton, only: skeleton_type, place_type
   use mech9_view, only: view_type
   implicit none
@@ -84,6 +85,7 @@ contains
         associate (place => skeleton%places(k))
           side = place%carrier
           call enclose(view, film%position(frame, place%links(side), place%points(:, side)), box)
+          if (place%kind == free) call enclose_curve(film, place%links, frame, view, box)
           if (place%telescopic) cycle
           ! where a block can be, it is guided
           side = 3 - side
@@ -113,6 +115,19 @@ contains
       end do
     end do
   end subroutine enclose_motion
+
+  !> The curve on which a user's pair moves its second link, as it stands in a frame.
+  pure subroutine enclose_curve(film, links, frame, view, box)
+    type(film_type), intent(in) :: film
+    integer, intent(in) :: links(2), frame
+    type(view_type), intent(in) :: view
+    type(box_type), intent(inout) :: box
+    integer :: i
+
+    do i = 1, film%n_frames
+      call enclose(view, film%position(frame, links(1), film%local(i, links(1), film%p(:, links(2), i))), box)
+    end do
+  end subroutine enclose_curve
 
   pure subroutine enclose(view, place, box)
     type(view_type), intent(in) :: view

@@ -100,6 +100,16 @@ def check_options(checks, example, program):
             checks.true(done.returncode in (0, 4, 5, 6, 7), f'{text}: ends with {done.returncode}', done.stderr)
 
 
+def check_page(checks, root, path):
+    """Links, paths and guides lie within the page. Symbols, which are moved as wholes, are small."""
+    width, height = (float(number) for number in root.get('viewBox').split()[2:])
+    lines = [part.get('d') for group in root.iter() if group.get('data-i') and not group.get('transform')
+             for part in group if part.get('d')]
+    places = np.array([[float(x), float(y)] for line in lines for x, y in re.findall(r'[ML](\S+) ([^MLZ\s]+)', line)])
+    checks.true(len(places) > 1 and np.all(places >= 0) and np.all(places <= [width, height]),
+                f'{path}: nothing lies outside of the page', f'{places.min(0)} {places.max(0)} of {width} {height}')
+
+
 def check_picture(checks, example, program):
     """The picture beside the README, and one drawn now: drawings that a browser can read, of this mechanism."""
     with tempfile.TemporaryDirectory() as folder:
@@ -110,6 +120,7 @@ def check_picture(checks, example, program):
         for path in (drawn, os.path.join(os.path.dirname(example.data), example.name + '.svg')):
             root = xml.etree.ElementTree.parse(path).getroot()
             checks.true(root.tag.endswith('}svg') and len(list(root.iter())) > 20, f'{path} is a drawing')
+            check_page(checks, root, path)
             titles.append([text.text for text in root.iter() if text.tag.endswith('}title')][:1])
         checks.equal(titles[1], titles[0], 'the picture beside the README has the title of the data file')
 
