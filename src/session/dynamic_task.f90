@@ -52,7 +52,7 @@ contains
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      call print_check(options, mechanism, plan, start)
+      call print_check(options, mechanism, plan, start, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
       if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
       if (allocated(err)) call diagnostics%add_error(err)

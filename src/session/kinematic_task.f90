@@ -54,7 +54,7 @@ contains
       return
     end if
     if (answers_only(options)) then
-      call print_check(options, mechanism, plan, start)
+      call print_check(options, mechanism, plan, start, diagnostics)
       if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
       if (allocated(err)) call diagnostics%add_error(err)
       return

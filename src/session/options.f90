@@ -32,6 +32,8 @@ module mech9_options
                 'print what will be computed, in which order, and what is skipped'), &
     option_type('branches', no_argument, '', any_text, .false., both, &
                 'list the assemblies found for the start from many random guesses'), &
+    option_type('graph', needed_argument, 'FILE', any_text, .false., both, &
+                'draw links, pairs and blocks as a graph: .dot, .svg, .png or .pdf'), &
     option_type('starts', needed_argument, 'N', whole_number, .false., both, &
                 'how many guesses --branches tries; 100 unless given'), &
     option_type('range', no_argument, '', any_text, .false., 'mech9k', &

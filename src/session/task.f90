@@ -1,9 +1,10 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
 !> Uses command_line, mechanism, plan, state, mobility_report,
-!> assemblies_text, plan_text, diagnostics, kept_rows.
+!> assemblies_text, plan_text, structure_graph, diagnostics, kept_rows.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
+  use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_kept_rows, only: kept_rows_type
@@ -12,6 +13,7 @@ module mech9_task
   use mech9_state, only: state_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_assemblies_text, only: print_assemblies
+  use mech9_structure_graph, only: save_structure_graph
   use mech9_plan_text, only: print_structure, print_mobility, print_mobility_report, print_plan
   implicit none
   private
@@ -42,15 +44,17 @@ contains
   pure logical function answers_only(options)
     type(command_line_type), intent(in) :: options
 
-    answers_only = options%has('check') .or. options%has('plan') .or. options%has('branches')
+    answers_only = options%has('check') .or. options%has('plan') .or. options%has('branches') &
+                   .or. options%has('graph')
   end function answers_only
 
-  !> Answer --check, --plan and --branches.
-  subroutine print_check(options, mechanism, plan, start)
+  !> Answer --check, --plan, --branches and --graph.
+  subroutine print_check(options, mechanism, plan, start, diagnostics)
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start      !< assembled
+    type(diagnostics_type), intent(inout) :: diagnostics
     type(mobility_report_type) :: report
     character(len=16) :: name
     integer :: k
@@ -63,6 +67,7 @@ contains
     end if
     if (options%has('plan')) call print_plan(output_unit, mechanism, plan)
     if (options%has('branches')) call print_assemblies(output_unit, mechanism, plan, start, options%number('starts', 100))
+    if (options%has('graph')) call draw_graph(options, mechanism, plan, diagnostics)
     if (.not. options%has('check')) return
     write (output_unit, '(a)') 'assembled at the start:'
     do k = 1, size(mechanism%pairs)
@@ -71,6 +76,23 @@ contains
         start%q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular)
     end do
   end subroutine print_check
+
+  !> Answer --graph.
+  subroutine draw_graph(options, mechanism, plan, diagnostics)
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: said
+
+    call save_structure_graph(options%argument('graph'), mechanism, plan, said, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+    else if (.not. options%has('quiet')) then
+      write (error_unit, '(a)') said
+    end if
+  end subroutine draw_graph
 
   !> Before a run: the title, and with --verbose the structure and the plan.
   subroutine announce(options, mechanism, plan)
