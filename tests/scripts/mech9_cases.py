@@ -94,6 +94,17 @@ def table_and_report(program, data, *options):
             return table, json.load(file)
 
 
+def report_of(program, data, *options):
+    """The report of a run that writes no results; fails loudly where the run fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = os.path.join(folder, 'report.json')
+        done = run(program, os.path.abspath(data), '--no-write', '--report', report, *options, folder=folder)
+        if done.returncode != 0:
+            raise RuntimeError(f'{program} {data} ended with {done.returncode}:\n{done.stderr}')
+        with open(report, encoding='utf-8') as file:
+            return json.load(file)
+
+
 def read_csv(path):
     """Columns by name of a file of reference values: lines of '#', a line of names, rows of numbers."""
     with open(path, encoding='utf-8') as file:

@@ -1,0 +1,61 @@
+"""Chains stay closed however long a run is: mech9k over many positions, mech9d over a long time.
+
+usage: long_runs.py MECH9K MECH9D POSITIONS SECONDS
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import REFERENCE, TREE, Checks, report_of, table_of
+
+EPSILON = np.finfo(float).eps
+FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
+N_FOUR_BAR = os.path.join(TREE, 'examples', 'n_four_bar', 'n_four_bar_2.nml')
+A_TURN = 1000          # positions
+SIZE = 4.0             # longer than any side of Fig. 1 [m]
+
+
+def many_positions(checks, mech9k, positions):
+    """Fig. 1 turns and turns. Its coordinates grow with the turns, and no chain can be closed better than the last
+    digit of its coordinates allows: an error of half a digit in each of the five of the longer chain."""
+    turns = positions // A_TURN
+    end = turns * 2 * np.pi / 6.0
+    report = report_of(mech9k, FIG1, '--set', f'time.end={end!r}', '--set', f'time.intervals={positions}')
+    angle = 0.5 + 6.0 * end
+    checks.equal(report['positions'], positions + 1, 'all positions are found')
+    checks.true(report['largest_closure'] <= 5 * EPSILON / 2 * angle * SIZE,
+                f'{positions} positions stay closed', report['largest_closure'])
+
+
+def same_after_turns(checks, mech9k, turns):
+    """After whole turns everything is where it was, but for the digits that the coordinates have lost."""
+    first = table_of(mech9k, FIG1, '--set', 'time.end=0', '--set', 'time.intervals=0')
+    end = turns * 2 * np.pi / 6.0
+    last = table_of(mech9k, FIG1, '--set', f'time.end={end!r}', '--set', f'time.intervals={turns * 10}')
+    for k in range(1, 8):
+        before, after = first[f'q{k}'][0], last[f'q{k}'][-1]
+        difference = (after - before + np.pi) % (2 * np.pi) - np.pi
+        # the driven coordinate itself has lost them; 8: how much faster than it another one moves at most
+        checks.true(abs(difference) <= 8 * EPSILON * (0.5 + 6.0 * end), f'q{k} after {turns} turns', difference)
+
+
+def long_time(checks, mech9d, seconds):
+    """Coordinates that swing do not grow, and closures have no part of the integrator's error."""
+    report = report_of(mech9d, N_FOUR_BAR, '--set', f'time.end={seconds}', '--set', 'time.intervals=50')
+    # three coordinates in each chain, links of 1 m, angles below a turn
+    checks.true(report['largest_closure'] <= 3 * EPSILON * 2 * np.pi, f'{seconds} s stay closed',
+                report['largest_closure'])
+
+
+def main():
+    mech9k, mech9d, positions, seconds = *sys.argv[1:3], int(sys.argv[3]), int(sys.argv[4])
+    checks = Checks()
+    many_positions(checks, mech9k, positions)
+    same_after_turns(checks, mech9k, positions // A_TURN)
+    long_time(checks, mech9d, seconds)
+    checks.finish()
+
+
+main()
