@@ -33,6 +33,8 @@ module mech9_diagnostics
     procedure :: code
     procedure :: place
     procedure :: text_of
+    procedure :: known
+    procedure :: get
     procedure :: render
     procedure :: report
   end type diagnostics_type
@@ -166,6 +168,24 @@ contains
     if (span%source == 0) return
     text = printable(self%sources(span%source)%text(span%first:span%last), longest_quote)
   end function text_of
+
+  !> How many errors can be asked for.
+  pure integer function known(self)
+    class(diagnostics_type), intent(in) :: self
+
+    known = self%kept_count
+  end function known
+
+  !> Error number i in the order in which they were found: its message alone, and its place.
+  pure subroutine get(self, i, message, span)
+    class(diagnostics_type), intent(in) :: self
+    integer, intent(in) :: i                  !< 1 to known()
+    character(len=:), allocatable, intent(out) :: message
+    type(span_type), intent(out) :: span      !< source 0: no place
+
+    message = self%kept(i)%message
+    span = self%kept(i)%span
+  end subroutine get
 
   !> Error number i in the order of the places, as it is shown: message, line, carets.
   pure subroutine render(self, i, text)

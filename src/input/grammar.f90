@@ -34,6 +34,7 @@ module mech9_grammar
     character(len=40) :: kinds     !< the kinds of the group it belongs to; empty: all
     character(len=120) :: help
     character(len=44) :: example   !< a value as it would be written
+    logical :: seldom = .false.    !< the conversation asks for it only when told so
   end type item_row_type
 
   integer, parameter :: unlimited = huge(1)
@@ -95,18 +96,18 @@ module mech9_grammar
                   'direction of the axis, in the reference link; of any length', '0, 0, 1'), &
     item_row_type('pair', 'zero', 'real', 3, 3, '', optional, '(x, y or z axis)', '', '', screws, &
                   'direction from which q is counted, in the reference link; by default the first axis at 45 degrees or more', &
-                  '1, 0, 0'), &
+                  '1, 0, 0', seldom=.true.), &
     item_row_type('pair', 'moving_point', 'real', 3, 3, 'm', optional, '(as point)', '', '', screws, &
-                  'the same point in the moving link', '-1.2, 0, 0'), &
+                  'the same point in the moving link', '-1.2, 0, 0', seldom=.true.), &
     item_row_type('pair', 'moving_axis', 'real', 3, 3, '', optional, '(as axis)', '', '', screws, &
-                  'the same axis in the moving link', '0, 0, 1'), &
+                  'the same axis in the moving link', '0, 0, 1', seldom=.true.), &
     item_row_type('pair', 'moving_zero', 'real', 3, 3, '', optional, '(as zero)', '', '', screws, &
-                  'direction in the moving link that stands at zero when q = 0', '1, 0, 0'), &
+                  'direction in the moving link that stands at zero when q = 0', '1, 0, 0', seldom=.true.), &
     item_row_type('pair', 'pitch', 'real', 1, 1, 'm', needed, '', '', '', 'helical', &
                   'advance per turn', '0.005'), &
     item_row_type('pair', 'dh', 'real', 4, 4, 'm, angle', optional, '(point, axis, ...)', '', '', screws, &
                   'Denavit-Hartenberg a, alpha, d, theta instead of point, axis and so on; q adds to theta or d', &
-                  '0.3, 1.57, 0, 0')]
+                  '0.3, 1.57, 0, 0', seldom=.true.)]
 
   type(item_row_type), parameter :: motion_items(*) = [ &
     item_row_type('initial', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
@@ -188,11 +189,11 @@ module mech9_grammar
                   'prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
                   'the integrator; bdf for stiff motions', '''adams'''), &
     item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0', '', '', &
-                  'error allowed in a step, relative to the coordinates and their rates', '1e-8'), &
+                  'error allowed in a step, relative to the coordinates and their rates', '1e-8', seldom=.true.), &
     item_row_type('solver', 'absolute_tolerance', 'real', 1, 1, '', optional, '1e-10', '>0', '', '', &
-                  'error allowed in a step, in rad, m and their rates', '1e-10'), &
+                  'error allowed in a step, in rad, m and their rates', '1e-10', seldom=.true.), &
     item_row_type('solver', 'maximum_steps', 'integer', 1, 1, '', optional, '1000000', '>=1', '', '', &
-                  'most steps between two results', '10000'), &
+                  'most steps between two results', '10000', seldom=.true.), &
     item_row_type('output', 'table', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'file for the table of results', '''fig1.dat'''), &
     item_row_type('output', 'hdf5', 'text', 1, 1, '', optional, '''''', '', '', '', &
@@ -207,7 +208,7 @@ module mech9_grammar
                   '''xz'''), &
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'mech9k: a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &
-                  '.true.'), &
+                  '.true.', seldom=.true.), &
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]
 

@@ -24,6 +24,7 @@ module mech9_command_line
     procedure :: argument
     procedure :: arguments
     procedure :: number
+    procedure :: converses
   end type command_line_type
 
 contains
@@ -275,9 +276,33 @@ contains
       call raise(err, exit_usage, '--no-write and --table contradict each other')
     else if (options%has('no-write') .and. options%has('plot')) then
       call raise(err, exit_usage, '--no-write and --plot contradict each other')
-    else if (options%file == '') then
-      call raise(err, exit_usage, 'no data file is given; '//program_name//' FILE runs one, ' &
-                 //program_name//' --help tells more')
+    else if (options%converses()) then
+      call judge_conversation(program_name, options, err)
     end if
   end subroutine judge
+
+  !> Whether a conversation is asked for, instead of work on a data file as it is.
+  pure logical function converses(self)
+    class(command_line_type), intent(in) :: self
+
+    converses = self%file == '' .or. self%has('dialogue') .or. self%has('edit') .or. self%has('resume')
+  end function converses
+
+  !> A conversation is about one file or none, and ends with a run, not with an answer.
+  pure subroutine judge_conversation(program_name, options, err)
+    character(len=*), intent(in) :: program_name
+    type(command_line_type), intent(in) :: options
+    type(error_type), allocatable, intent(out) :: err
+    character(len=9), parameter :: elsewhere(6) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'set']
+    integer :: i
+
+    do i = 1, size(elsewhere)
+      if (.not. options%has(trim(elsewhere(i)))) cycle
+      call raise(err, exit_usage, 'no data file is given; --'//trim(elsewhere(i))//' is for one: '//program_name//' FILE --' &
+                 //trim(elsewhere(i)))
+      return
+    end do
+    if (count([options%file /= '', options%has('edit'), options%has('resume')]) > 1) &
+      call raise(err, exit_usage, 'more than one data file is given; a conversation takes one')
+  end subroutine judge_conversation
 end module mech9_command_line

@@ -20,6 +20,7 @@ module mech9_dynamic_task
 
   type, extends(task_type) :: dynamic_task_type
   contains
+    procedure :: assemble
     procedure :: work
   end type dynamic_task_type
 
@@ -32,6 +33,17 @@ contains
     task%program_name = 'mech9d'
     task%needs_drives = .false.
   end function dynamic_task
+
+  !> Plan, and put the mechanism together at the start.
+  subroutine assemble(self, mechanism, plan, state, err)
+    class(dynamic_task_type), intent(in) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(out) :: plan
+    type(state_type), intent(out) :: state
+    type(error_type), allocatable, intent(out) :: err
+
+    call assemble_initial_state(mechanism, plan, state, err)
+  end subroutine assemble
 
   !> Plan, assemble, work out the start, and run unless only a check is asked for.
   subroutine work(self, options, mechanism, diagnostics, kept)

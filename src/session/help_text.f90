@@ -49,7 +49,9 @@ contains
     integer :: i
 
     text = 'usage: '//program_name//' FILE [options]'//eol// &
-           '       runs the mechanism that the data file FILE describes'//eol//eol// &
+           '       runs the mechanism that the data file FILE describes'//eol// &
+           '       '//program_name//' [options]'//eol// &
+           '       asks for the mechanism in a conversation, saves it as a data file and runs it'//eol//eol// &
            'options:'
     do i = 1, size(options_table)
       if (index(options_table(i)%programs, program_name) == 0) cycle

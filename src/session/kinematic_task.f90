@@ -21,6 +21,7 @@ module mech9_kinematic_task
 
   type, extends(task_type) :: kinematic_task_type
   contains
+    procedure :: assemble
     procedure :: work
   end type kinematic_task_type
 
@@ -33,6 +34,17 @@ contains
     task%program_name = 'mech9k'
     task%needs_drives = .true.
   end function kinematic_task
+
+  !> Plan, and put the mechanism together at the start.
+  subroutine assemble(self, mechanism, plan, state, err)
+    class(kinematic_task_type), intent(in) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(out) :: plan
+    type(state_type), intent(out) :: state
+    type(error_type), allocatable, intent(out) :: err
+
+    call assemble_start(mechanism, plan, state, err)
+  end subroutine assemble
 
   !> Plan, assemble, and run unless only a check is asked for.
   subroutine work(self, options, mechanism, diagnostics, kept)

@@ -54,6 +54,12 @@ module mech9_options
                 'write the report of the run as JSON'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
+    option_type('dialogue', no_argument, '', any_text, .false., both, &
+                'ask for the data in a conversation; so does no FILE at all'), &
+    option_type('edit', needed_argument, 'FILE', any_text, .false., both, &
+                'open a data file in the conversation'), &
+    option_type('resume', needed_argument, 'FILE', any_text, .false., both, &
+                'go on with a conversation that was left or interrupted'), &
     option_type('quiet', no_argument, '', any_text, .false., both, &
                 'say nothing but errors'), &
     option_type('verbose', no_argument, '', any_text, .false., both, &

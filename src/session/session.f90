@@ -1,13 +1,13 @@
-!> A program from the words of its command line to its exit code, the same for all tasks.
+!> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
 !> Uses command_line, system, the input floor, plan_text, task, version.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type, exit_done
   use mech9_text, only: string_type
-  use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
+  use mech9_command_line, only: command_line_type
   use mech9_help_text, only: help_text
   use mech9_version, only: version_text
-  use mech9_system, only: catch_interrupts, exit_program
+  use mech9_system, only: catch_interrupts
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
@@ -21,43 +21,17 @@ module mech9_session
   use mech9_task, only: task_type
   implicit none
   private
-  public :: run_program, run_words
+  public :: carry_out, run_file, asks_for_text
 
 contains
 
-  !> The whole program. It does not come back.
-  subroutine run_program(task)
+  !> Do what a command line asks for that is about a data file, or about the program itself; `code` is what the
+  !> program answers to the shell.
+  subroutine carry_out(task, options, code)
     class(task_type), intent(in) :: task
-    integer :: code
-
-    call run_command_line(task, code)
-    call exit_program(code)
-  end subroutine run_program
-
-  !> The words are gone again before the program ends.
-  subroutine run_command_line(task, code)
-    class(task_type), intent(in) :: task
+    type(command_line_type), intent(in) :: options
     integer, intent(out) :: code
-    type(string_type), allocatable :: words(:)
 
-    call get_command_words(words)
-    call run_words(task, words, code)
-  end subroutine run_command_line
-
-  !> Do what the words of a command line ask for; `code` is what the program answers to the shell.
-  subroutine run_words(task, words, code)
-    class(task_type), intent(in) :: task
-    type(string_type), intent(in) :: words(:)   !< without the program's name
-    integer, intent(out) :: code
-    type(command_line_type) :: options
-    type(error_type), allocatable :: err
-
-    call parse_command_line(words, task%program_name, options, err)
-    if (allocated(err)) then
-      write (error_unit, '(3a)') task%program_name, ': ', err%message
-      code = err%code
-      return
-    end if
     code = exit_done
     if (options%has('help')) then
       write (output_unit, '(a)') help_text(task%program_name)
@@ -66,10 +40,16 @@ contains
     else if (options%has('help-data')) then
       call show_data_help(task, options%argument('help-data'), code)
     else
-      call catch_interrupts()
-      call work_on_file(task, options, code)
+      call run_file(task, options, options%file, code)
     end if
-  end subroutine run_words
+  end subroutine carry_out
+
+  !> Whether the options ask for a text about the program, whatever else they say.
+  pure logical function asks_for_text(options)
+    type(command_line_type), intent(in) :: options
+
+    asks_for_text = options%has('help') .or. options%has('version') .or. options%has('help-data')
+  end function asks_for_text
 
   subroutine show_data_help(task, group, code)
     class(task_type), intent(in) :: task
@@ -84,10 +64,11 @@ contains
     code = err%code
   end subroutine show_data_help
 
-  !> Read the data file and do what is asked for.
-  subroutine work_on_file(task, options, code)
+  !> Read a data file and do what is asked for.
+  subroutine run_file(task, options, path, code)
     class(task_type), intent(in) :: task
     type(command_line_type), intent(in) :: options
+    character(len=*), intent(in) :: path
     integer, intent(out) :: code
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
@@ -97,7 +78,8 @@ contains
     type(string_type), allocatable :: settings(:)
     integer :: i
 
-    call read_document(options%file, document, diagnostics)
+    call catch_interrupts()
+    call read_document(path, document, diagnostics)
     call options%arguments('set', settings)
     do i = 1, size(settings)
       call apply_setting(document, settings(i)%text, diagnostics)
@@ -111,5 +93,5 @@ contains
     end if
     call diagnostics%report(error_unit)
     code = diagnostics%code()
-  end subroutine work_on_file
+  end subroutine run_file
 end module mech9_session

@@ -23,10 +23,21 @@ module mech9_task
     character(len=6) :: program_name = ''
     logical :: needs_drives = .false.      !< every independent coordinate must be driven
   contains
+    procedure(assemble_interface), deferred :: assemble
     procedure(work_interface), deferred :: work
   end type task_type
 
   abstract interface
+    !> Plan, and put the mechanism together at the start.
+    subroutine assemble_interface(self, mechanism, plan, state, err)
+      import :: task_type, mechanism_type, plan_type, state_type, error_type
+      class(task_type), intent(in) :: self
+      type(mechanism_type), intent(in) :: mechanism
+      type(plan_type), intent(out) :: plan
+      type(state_type), intent(out) :: state
+      type(error_type), allocatable, intent(out) :: err
+    end subroutine assemble_interface
+
     !> Do what the options ask for. Errors go to `diagnostics`, which knows the places in the data file.
     subroutine work_interface(self, options, mechanism, diagnostics, kept)
       import :: task_type, command_line_type, mechanism_type, diagnostics_type, kept_rows_type

@@ -11,7 +11,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from mech9_cases import TREE, Checks
 
 FLOORS = ['base', 'numerics', 'spatial', 'structure', 'model', 'user', 'kinematics', 'dynamics',
-          'input', 'output', 'pictures', 'terminal', 'session', 'programs']
+          'input', 'output', 'pictures', 'terminal', 'session', 'dialogue', 'programs']
 MODULE = re.compile(r'^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*$', re.I | re.M)
 USE = re.compile(r'^\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*([\w@]+)\s*(,\s*only\s*:)?', re.I | re.M)
 PARENT = re.compile(r'^\s*submodule\s*\(\s*(\w+)', re.I | re.M)

@@ -95,7 +95,11 @@ contains
       else if (options_table(i)%takes == needed_argument) then
         word = trim(word)//'='//argument
       end if
-      call parse('a.nml|'//trim(word), options, err)
+      if (name == 'edit' .or. name == 'resume') then
+        call parse(trim(word), options, err)       ! they name the file themselves
+      else
+        call parse('a.nml|'//trim(word), options, err)
+      end if
       call tester%no_error(err, trim(word))
       call options%arguments(name, given)
       call tester%is_true(options%has(name) .and. size(given) == 1, trim(word)//' is taken')
@@ -111,7 +115,9 @@ contains
   subroutine test_bad_lines(tester)
     type(tester_type), intent(inout) :: tester
 
-    call refuse(tester, '', 'no data file')
+    call refuse(tester, '--edit|a.nml|b.nml', 'more than one data file')
+    call refuse(tester, '--edit|a.nml|--resume|b.nml', 'more than one data file')
+    call refuse(tester, '--dialogue|a.nml|--set|time.end=2', 'no data file is given; --set is for one')
     call refuse(tester, '--check', 'no data file')
     call refuse(tester, 'a.nml|b.nml', "two data files are given, 'a.nml' and 'b.nml'")
     call refuse(tester, 'a.nml||', 'the name of the data file is empty')

@@ -1,0 +1,292 @@
+!> One question: put in words, its answer heard, held against the checks of the data file, and kept. Uses text,
+!> grammar, topics, answer, draft, draft_check, questions, question_words, conversation.
+module mech9_asking
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_text, only: string_type, to_text, lower, nearest_name
+  use mech9_grammar, only: group_table, item_table, rows_of_group, words_of
+  use mech9_diagnostics, only: printable
+  use mech9_paragraph, only: print_paragraph
+  use mech9_topics, only: topics
+  use mech9_answer, only: read_answer, yes_or_no
+  use mech9_draft, only: draft_type, integer_of
+  use mech9_draft_check, only: problem_with
+  use mech9_outline, only: drop_empty_guesses
+  use mech9_interview, only: most_parts
+  use mech9_questions, only: question_type, entry_name, is_seldom, label_of, ask_item, ask_seldom, ask_way
+  use mech9_question_words, only: default_type, default_of, prompt_of, heading_of, gist_of, help_of, words_for, &
+                                  seldom_names
+  use mech9_conversation, only: conversation_type, going
+  implicit none
+  private
+  public :: ask, announce_topic
+
+contains
+
+  !> Put the question that is due, and take its answer.
+  subroutine ask(conversation)
+    class(conversation_type), intent(inout) :: conversation
+    type(question_type) :: question
+    type(default_type) :: default
+    type(string_type), allocatable :: words(:)
+    character(len=:), allocatable :: line, prompt
+    logical :: done
+
+    question = conversation%interview%due()
+    call announce_topic(conversation, question)
+    call introduce(conversation, question, default, prompt)
+    call words_for(question, conversation%interview%outline, words)
+    call conversation%listen(prompt, words, line)
+    if (conversation%state /= going) return
+    select case (lower(line(:min(len(line), 8))))
+    case ('?', 'help')
+      call conversation%say(help_of(question, conversation%interview%draft, conversation%interview%outline))
+      return
+    case ('back')
+      call conversation%interview%back(done)
+      conversation%heading = ''
+      if (.not. done) call conversation%say('This is the first question.')
+      return
+    end select
+    select case (question%kind)
+    case (ask_item)
+      call take_item(conversation, question, default, line)
+    case (ask_seldom)
+      call take_seldom(conversation, question, line)
+    case (ask_way)
+      call take_way(conversation, line)
+    case default
+      call take_guesses(conversation, line)
+    end select
+  end subroutine ask
+
+  !> The title of a topic where it begins.
+  subroutine announce_topic(conversation, question)
+    class(conversation_type), intent(inout) :: conversation
+    type(question_type), intent(in) :: question
+
+    if (question%topic == conversation%topic) return
+    conversation%topic = question%topic
+    conversation%heading = ''
+    write (error_unit, '(/,a)') '-- '//trim(topics(question%topic)%title)//' --'
+    if (topics(question%topic)%opening /= '') call conversation%say(trim(topics(question%topic)%opening))
+  end subroutine announce_topic
+
+  !> What stands above the prompt, and the prompt.
+  subroutine introduce(conversation, question, default, prompt)
+    class(conversation_type), intent(inout) :: conversation
+    type(question_type), intent(in) :: question
+    type(default_type), intent(out) :: default
+    character(len=:), allocatable, intent(out) :: prompt
+    character(len=:), allocatable :: heading
+
+    associate (draft => conversation%interview%draft, outline => conversation%interview%outline)
+      select case (question%kind)
+      case (ask_item)
+        heading = heading_of(question, draft)
+        if (heading /= '' .and. heading /= conversation%heading) call conversation%say(heading)
+        if (heading /= '') conversation%heading = heading
+        if (.not. conversation%told(question%row)) call print_paragraph(error_unit, gist_of(question), 4)
+        conversation%told(question%row) = .true.
+        default = default_of(question, draft, outline, conversation%stem//'.dat')
+        prompt = prompt_of(question, draft, default)
+      case (ask_seldom)
+        prompt = '  asked for only if you want it: '//seldom_names(question, outline)//' [no]: '
+        if (len(prompt) > 79) then
+          call conversation%say('Asked for only if you want it: '//seldom_names(question, outline))
+          prompt = '  which of them [no]: '
+        end if
+      case (ask_way)
+        prompt = '  structure by pairs, matrix or vectors ['//trim(outline%way)//']: '
+      case default
+        prompt = '  guesses of the dependent coordinates, to choose an assembly [no]: '
+        if (outline%guesses) prompt = prompt(:index(prompt, '[', back=.true.))//'yes]: '
+      end select
+    end associate
+  end subroutine introduce
+
+  !> The answer about a name.
+  subroutine take_item(conversation, question, default, line)
+    class(conversation_type), intent(inout) :: conversation
+    type(question_type), intent(in) :: question
+    type(default_type), intent(in) :: default
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: text, problem
+
+    if (line == '') then
+      if (default%noted) then
+        call keep_answer(conversation, default%text)
+      else if (default%shown == '') then
+        call conversation%say('This must be given; ? explains it.')
+      else
+        call move_on(conversation)
+      end if
+    else if (lower(line(:min(len(line), 8))) == 'default') then
+      call conversation%interview%unnote()
+      call conversation%keep()
+    else
+      call read_answer(item_table(question%row), line, text, problem)
+      if (problem == '') call hold_against_rest(conversation, question, text, problem)
+      if (problem == '') then
+        call keep_answer(conversation, text)
+      else
+        call conversation%say(problem)
+      end if
+    end if
+  end subroutine take_item
+
+  !> Note an answer and go on.
+  subroutine keep_answer(conversation, text)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: text
+
+    call conversation%interview%note(text)
+    if (conversation%interview%dropped /= '') &
+      call conversation%say('(dropped, as it has no meaning any more: '//conversation%interview%dropped//')')
+    call move_on(conversation)
+  end subroutine keep_answer
+
+  !> The next question; what was typed is kept.
+  subroutine move_on(conversation)
+    class(conversation_type), intent(inout) :: conversation
+
+    call conversation%interview%step()
+    call conversation%keep()
+  end subroutine move_on
+
+  !> Whether an answer fits what is known already, as the reader of data files would judge it. Structural
+  !> data that go together are judged together, when the structure is complete.
+  subroutine hold_against_rest(conversation, question, text, problem)
+    class(conversation_type), intent(in) :: conversation
+    type(question_type), intent(in) :: question
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable, intent(out) :: problem
+    type(draft_type) :: trial
+    character(len=:), allocatable :: group, name
+
+    problem = ''
+    group = trim(group_table(question%group_row)%name)
+    name = entry_name(question)
+    associate (interview => conversation%interview)
+      if (group == 'mechanism') then
+        if (item_table(question%row)%type == 'integer' .and. integer_of(text) > most_parts) &
+          problem = 'more than '//to_text(most_parts)//' are too many to speak of one by one; write a data file'
+        return
+      end if
+      if (group == 'structure') then
+        if (interview%outline%way == 'vectors') return
+        if (question%line > 0 .and. interview%draft%has(group, question%place, name)) return
+      end if
+      trial = interview%draft
+      call trial%give(group, question%place, name, text)
+      call problem_with(trial, interview%outline, conversation%draft_path, group, question%place, name, problem)
+    end associate
+  end subroutine hold_against_rest
+
+  !> Which seldom names of a group are asked for.
+  subroutine take_seldom(conversation, question, line)
+    class(conversation_type), intent(inout) :: conversation
+    type(question_type), intent(in) :: question
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: problem
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    rows = rows_of_group(group_table(question%group_row)%name)
+    associate (interview => conversation%interview)
+      rows = pack(rows, [(is_seldom(interview%outline, item_table(rows(i))), i=1, size(rows))])
+      problem = ''
+      if (yes_or_no(line) == 'yes') then
+        interview%outline%asked(rows) = .true.
+      else if (line /= '' .and. yes_or_no(line) /= 'no') then
+        call take_names(line, rows, interview%outline%asked, problem)
+      end if
+      if (problem /= '') then
+        call conversation%say(problem)
+        return
+      end if
+      call interview%refresh(label_of(question))
+    end associate
+    call move_on(conversation)
+  end subroutine take_seldom
+
+  !> Names separated by blanks or commas.
+  pure subroutine take_names(line, rows, asked, problem)
+    character(len=*), intent(in) :: line
+    integer, intent(in) :: rows(:)                !< of the names that can be meant
+    logical, intent(inout) :: asked(:)
+    character(len=:), allocatable, intent(out) :: problem
+    character(len=:), allocatable :: plain, hint
+    integer, parameter :: longest_list = 200
+    integer :: i, k
+
+    problem = 'answer yes, no, or some of the names'
+    if (len(line) > longest_list) return
+    plain = lower(line)
+    do i = 1, len(plain)
+      if (plain(i:i) == ',') plain(i:i) = ' '
+    end do
+    associate (words => words_of(plain))
+      do i = 1, size(words)
+        k = findloc([(item_table(rows(k))%name == words(i), k=1, size(rows))], .true., dim=1)
+        if (k > 0) then
+          asked(rows(k)) = .true.
+          cycle
+        end if
+        hint = nearest_name(trim(words(i)), item_table(rows)%name)
+        if (hint /= '') hint = '; did you mean '//hint//'?'
+        problem = ''''//printable(trim(words(i)), 40)//''' is none of these names'//hint
+        return
+      end do
+    end associate
+    problem = ''
+  end subroutine take_names
+
+  !> How the structure is given. What was given in another way is forgotten.
+  subroutine take_way(conversation, line)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: way
+    character(len=7), parameter :: ways(3) = [character(len=7) :: 'pairs', 'matrix', 'vectors']
+
+    way = lower(line(:min(len(line), 20)))
+    if (way == '') way = trim(conversation%interview%outline%way)
+    if (.not. any(ways == way)) then
+      way = nearest_name(way, ways)
+      if (way /= '') way = '; did you mean '//way//'?'
+      call conversation%say('Answer pairs, matrix or vectors'//way)
+      return
+    end if
+    associate (interview => conversation%interview)
+      if (way /= interview%outline%way) then
+        call interview%draft%remove('structure', 1)
+        interview%outline%way = way
+        interview%outline%structure_known = .false.
+        call interview%refresh('way of structure')
+      end if
+    end associate
+    call move_on(conversation)
+  end subroutine take_way
+
+  !> Whether dependent coordinates at the start are asked for.
+  subroutine take_guesses(conversation, line)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: line
+
+    associate (interview => conversation%interview)
+      select case (yes_or_no(line))
+      case ('yes')
+        interview%outline%guesses = .true.
+      case ('no')
+        interview%outline%guesses = .false.
+        call drop_empty_guesses(interview%draft)
+      case default
+        if (line /= '') then
+          call conversation%say('Answer yes or no.')
+          return
+        end if
+      end select
+      call interview%refresh('guesses')
+    end associate
+    call move_on(conversation)
+  end subroutine take_guesses
+end module mech9_asking

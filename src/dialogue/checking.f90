@@ -1,0 +1,110 @@
+!> The checks between the questions: of the structure as soon as it is complete, of the geometry by putting the
+!> mechanism together. Uses error, the model, the kinematics, task, plan_text, draft_check, conversation, correcting.
+module mech9_checking
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_structure
+  use mech9_text, only: to_text
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_mobility_report, only: mobility_report_type, report_mobility
+  use mech9_task, only: task_type
+  use mech9_plan_text, only: print_mobility_report
+  use mech9_draft_text, only: draft_text_type
+  use mech9_draft_check, only: fault_type, read_draft, faults_of
+  use mech9_questions, only: check_structure, question_type
+  use mech9_structure_sketch, only: print_sketch
+  use mech9_conversation, only: conversation_type
+  use mech9_correcting, only: show_faults, offer_correction
+  implicit none
+  private
+  public :: check
+
+contains
+
+  !> Carry out the check that is due, and go on where all is well; else offer a correction.
+  subroutine check(conversation, task)
+    class(conversation_type), intent(inout) :: conversation
+    class(task_type), intent(in) :: task
+    type(question_type) :: question
+
+    question = conversation%interview%due()
+    if (question%kind == check_structure) then
+      call judge_structure(conversation)
+    else
+      call judge_start(conversation, task)
+    end if
+  end subroutine check
+
+  !> Show the structure, or what is wrong with it.
+  subroutine judge_structure(conversation)
+    class(conversation_type), intent(inout) :: conversation
+
+    associate (interview => conversation%interview)
+      if (interview%outline%structure_known) then
+        call print_sketch(error_unit, interview%structure, interview%vectors)
+        call interview%step()
+      else
+        call conversation%say('The structure is not complete or not right yet:')
+        call show_faults(conversation, interview%faults)
+        call offer_correction(conversation, interview%faults, 'structure(1).cq')
+      end if
+    end associate
+  end subroutine judge_structure
+
+  !> Put the mechanism together at the start and tell how it went.
+  subroutine judge_start(conversation, task)
+    class(conversation_type), intent(inout) :: conversation
+    class(task_type), intent(in) :: task
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(draft_text_type) :: written
+    type(diagnostics_type) :: diagnostics
+    type(fault_type), allocatable :: faults(:)
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: otherwise
+
+    call read_draft(conversation%interview%draft, conversation%draft_path, task%needs_drives, mechanism, written, diagnostics)
+    otherwise = 'guesses'
+    if (.not. diagnostics%failed()) then
+      call task%assemble(mechanism, plan, start, err)
+      if (.not. allocated(err)) then
+        call tell_start(conversation, mechanism, plan, start)
+        call conversation%interview%step()
+        return
+      end if
+      if (err%code == exit_structure) otherwise = 'structure(1).cq'
+      call diagnostics%add_error(err)
+    end if
+    call faults_of(diagnostics, written, faults)
+    call conversation%say('The mechanism is not put together yet:')
+    call show_faults(conversation, faults)
+    call offer_correction(conversation, faults, otherwise)
+  end subroutine judge_start
+
+  !> Positions of all coordinates, and what the geometry says of the mobility.
+  subroutine tell_start(conversation, mechanism, plan, start)
+    class(conversation_type), intent(in) :: conversation
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    type(mobility_report_type) :: report
+    character(len=:), allocatable :: text
+    real(wp) :: unit
+    integer :: k
+
+    text = 'Put together at the start with'
+    do k = 1, size(mechanism%pairs)
+      unit = 1.0_wp
+      if (mechanism%pairs(k)%pair%angular) unit = mechanism%angle_unit
+      text = text//' q'//to_text(k)//' = '//to_text(start%q(k)/unit)
+      if (k < size(mechanism%pairs)) text = text//','
+    end do
+    call conversation%say(text//'. (Another assembly? Go back and give guesses.)')
+    call report_mobility(mechanism, plan, start, report)
+    call print_mobility_report(error_unit, plan, report)
+  end subroutine tell_start
+end module mech9_checking

@@ -1,0 +1,177 @@
+!> The end of a conversation: the summary, in which any answer can be changed, and then saving and running.
+!> Uses error, text, draft_check, draft_file, conversation, correcting, summary.
+module mech9_closing
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type, lower
+  use mech9_diagnostics, only: diagnostics_type, printable
+  use mech9_mechanism, only: mechanism_type
+  use mech9_answer, only: yes_or_no
+  use mech9_draft, only: draft_type
+  use mech9_draft_text, only: draft_text_type
+  use mech9_draft_check, only: fault_type, read_draft, faults_of
+  use mech9_draft_file, only: save_draft, delete_file, file_exists
+  use mech9_outline, only: drop_empty_guesses
+  use mech9_summary, only: print_summary
+  use mech9_conversation, only: conversation_type, going, finished
+  use mech9_correcting, only: show_faults, change, correction_help
+  implicit none
+  private
+  public :: close_conversation
+
+  character(len=7), parameter :: ends(4) = [character(len=7) :: 'both', 'save', 'run', 'neither']
+
+contains
+
+  !> Show all answers and what is still wrong, and hear what to change; once all is right, what to do.
+  !> `run_path` is the data file to be run then; empty: none.
+  subroutine close_conversation(conversation, needs_drives, run_path)
+    class(conversation_type), intent(inout) :: conversation
+    logical, intent(in) :: needs_drives
+    character(len=:), allocatable, intent(inout) :: run_path
+    type(string_type) :: words(5)
+    character(len=:), allocatable :: line
+    logical :: done
+
+    call show_all(conversation, needs_drives)
+    words(1)%text = 'add'
+    words(2)%text = 'remove'
+    words(3)%text = 'list'
+    words(4)%text = 'back'
+    words(5)%text = 'quit'
+    call conversation%listen('  number of an answer to change, Enter if all is right: ', words, line)
+    if (conversation%state /= going) return
+    select case (lower(line(:min(len(line), 8))))
+    case ('')
+      call finish(conversation, run_path)
+    case ('?', 'help')
+      call conversation%say(correction_help)
+    case ('back')
+      conversation%topic = 0
+      call conversation%interview%back(done)
+    case default
+      call change(conversation, line)
+    end select
+  end subroutine close_conversation
+
+  !> All answers where the end is reached the first time, and what is wrong with them.
+  subroutine show_all(conversation, needs_drives)
+    class(conversation_type), intent(inout) :: conversation
+    logical, intent(in) :: needs_drives
+    type(mechanism_type) :: mechanism
+    type(draft_text_type) :: written
+    type(diagnostics_type) :: diagnostics
+    type(fault_type), allocatable :: faults(:)
+
+    associate (draft => conversation%interview%draft)
+      if (conversation%topic /= huge(1)) then
+        write (error_unit, '(/,a)') '-- Summary --'
+        call print_summary(error_unit, draft)
+      end if
+      conversation%topic = huge(1)
+      call read_draft(draft, conversation%draft_path, needs_drives, mechanism, written, diagnostics)
+    end associate
+    call faults_of(diagnostics, written, faults)
+    if (size(faults) == 0) return
+    call conversation%say('Not right yet:')
+    call show_faults(conversation, faults)
+  end subroutine show_all
+
+  !> Save, run, both or neither.
+  subroutine finish(conversation, run_path)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=:), allocatable, intent(inout) :: run_path
+    type(string_type) :: words(6)
+    character(len=:), allocatable :: line
+    integer :: i
+    logical :: saved
+
+    do i = 1, size(ends)
+      words(i)%text = trim(ends(i))
+    end do
+    words(5)%text = 'back'
+    words(6)%text = 'quit'
+    do
+      call conversation%listen('  save, run, both or neither [both]: ', words, line)
+      if (conversation%state /= going) return
+      line = lower(line(:min(len(line), 20)))
+      if (line == '') line = 'both'
+      if (line == 'back') return
+      if (any(ends == line)) exit
+      call conversation%say('Answer save, run, both or neither; back returns to the summary.')
+    end do
+    saved = .false.
+    if (line == 'both' .or. line == 'save') then
+      call save(conversation, saved)
+      if (.not. saved) return
+    else
+      call conversation%keep()
+      if (conversation%draft_path /= '') &
+        call conversation%say('What was typed is kept in '//conversation%draft_path//'.')
+    end if
+    conversation%state = finished
+    run_path = ''
+    if (line == 'both') run_path = conversation%data_path
+    if (line == 'run') run_path = conversation%draft_path
+  end subroutine finish
+
+  !> Write the data file under a name that is asked for. `saved` is false where the user went back or left.
+  subroutine save(conversation, saved)
+    class(conversation_type), intent(inout) :: conversation
+    logical, intent(out) :: saved
+    type(draft_type) :: draft
+    type(error_type), allocatable :: err
+    type(string_type) :: words(2)
+    character(len=:), allocatable :: path
+    logical :: agreed
+
+    saved = .false.
+    words(1)%text = 'back'
+    words(2)%text = 'quit'
+    draft = conversation%interview%draft
+    call drop_empty_guesses(draft)
+    if (draft%head == '') draft%head = '! A data file of '//conversation%program_name//', from a conversation.'//achar(10)
+    call conversation%name_files()
+    do
+      call conversation%listen('  data file ['//conversation%data_path//']: ', words, path)
+      if (conversation%state /= going .or. path == 'back') return
+      if (path == '?') then
+        call conversation%say('The name of the file that will hold these data; '//conversation%program_name// &
+                              ' FILE runs it again.')
+        cycle
+      end if
+      if (path == '') path = conversation%data_path
+      if (path /= printable(path)) then
+        call conversation%say('This is not the name of a file.')
+        cycle
+      end if
+      call agree_to_overwrite(conversation, path, agreed)
+      if (conversation%state /= going) return
+      if (.not. agreed) cycle
+      call save_draft(draft, path, '', conversation%program_name, err)
+      if (.not. allocated(err)) exit
+      call conversation%say(err%message)
+    end do
+    saved = .true.
+    conversation%data_path = path
+    if (conversation%draft_path /= '' .and. conversation%draft_path /= path) call delete_file(conversation%draft_path)
+    call conversation%say('Saved in '//path//'; '//conversation%program_name//' '//path//' runs it again.')
+  end subroutine save
+
+  !> A file that is there and is not the one being edited is overwritten only where the user says so.
+  subroutine agree_to_overwrite(conversation, path, agreed)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: path
+    logical, intent(out) :: agreed
+    type(string_type) :: words(2)
+    character(len=:), allocatable :: line
+
+    agreed = .not. file_exists(path) .or. path == conversation%draft_path .or. &
+             (conversation%may_overwrite .and. path == conversation%data_path)
+    if (agreed) return
+    words(1)%text = 'yes'
+    words(2)%text = 'no'
+    call conversation%listen('  '//path//' exists; overwrite it [no]: ', words, line)
+    if (conversation%state == going) agreed = yes_or_no(line) == 'yes'
+  end subroutine agree_to_overwrite
+end module mech9_closing

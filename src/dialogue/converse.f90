@@ -1,0 +1,141 @@
+!> A whole conversation, from its first question to a run: begun anew, resumed, or about an existing data file.
+!> Uses error, command_line, task, session, the interview and its parts.
+module mech9_converse
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: exit_done, exit_usage, exit_interrupted
+  use mech9_command_line, only: command_line_type
+  use mech9_system, only: is_terminal, standard_input
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_task, only: task_type
+  use mech9_session, only: run_file
+  use mech9_draft, only: draft_type
+  use mech9_draft_file, only: load_draft, path_without_draft, stem_of_path
+  use mech9_interview, only: most_parts
+  use mech9_questions, only: check_structure, check_start, check_all
+  use mech9_conversation, only: conversation_type, going, left, finished
+  use mech9_asking, only: ask, announce_topic
+  use mech9_checking, only: check
+  use mech9_closing, only: close_conversation
+  implicit none
+  private
+  public :: converse
+
+contains
+
+  !> Lead a conversation and do what it ends with. `code` is what the program answers to the shell.
+  subroutine converse(task, options, code)
+    class(task_type), intent(in) :: task
+    type(command_line_type), intent(in) :: options
+    integer, intent(out) :: code
+    type(conversation_type) :: conversation
+    character(len=:), allocatable :: run_path
+
+    call begin(conversation, task, options, code)
+    if (code /= exit_done) return
+    call conversation%input%open(task%program_name)
+    run_path = ''
+    call lead(conversation, task, run_path)
+    call conversation%input%close()
+    call take_leave(conversation, code)
+    if (run_path /= '') call run_file(task, options, run_path, code)
+  end subroutine converse
+
+  !> The first words, and what is known already.
+  subroutine begin(conversation, task, options, code)
+    type(conversation_type), intent(inout) :: conversation
+    class(task_type), intent(in) :: task
+    type(command_line_type), intent(in) :: options
+    integer, intent(out) :: code
+    character(len=:), allocatable :: path, label
+    type(draft_type) :: draft
+    type(diagnostics_type) :: diagnostics
+
+    code = exit_done
+    conversation%program_name = task%program_name
+    conversation%draft_path = ''
+    conversation%stem = ''
+    conversation%data_path = ''
+    conversation%heading = ''
+    call draft%clear()
+    label = ''
+    path = options%argument('resume')
+    if (path == '') path = options%argument('edit')
+    if (path == '') path = options%file
+    if (path /= '') then
+      call load_draft(path, most_parts, draft, label, diagnostics)
+      if (diagnostics%failed()) then
+        call diagnostics%report(error_unit)
+        code = diagnostics%code()
+        return
+      end if
+      conversation%stem = stem_of_path(path)
+      conversation%data_path = path_without_draft(path)
+      conversation%may_overwrite = path == conversation%data_path
+      ! a data file stays as it is until the end; what was interrupted goes on in its own file
+      if (label /= '') conversation%draft_path = path
+    end if
+    call greet(conversation, task%program_name, path)
+    call conversation%interview%start(task%program_name, draft)
+    if (path /= '') then
+      conversation%interview%at = size(conversation%interview%questions)
+      call conversation%interview%go_to(label)
+    end if
+  end subroutine begin
+
+  subroutine greet(conversation, program_name, path)
+    type(conversation_type), intent(in) :: conversation
+    character(len=*), intent(in) :: program_name, path
+    character(len=*), parameter :: how = 'Enter takes what stands in brackets, ? explains, back returns, list shows all '// &
+                                         'answers, quit leaves; what is typed is kept.'
+
+    if (path /= '') then
+      write (error_unit, '(a)') program_name//': '//path//' in a conversation.'
+    else if (program_name == 'mech9k') then
+      write (error_unit, '(a)') program_name//': kinematics of a mechanism, from your answers.'
+    else
+      write (error_unit, '(a)') program_name//': dynamics of a mechanism, from your answers.'
+    end if
+    call conversation%say(how)
+  end subroutine greet
+
+  !> One question, or check, after the other.
+  subroutine lead(conversation, task, run_path)
+    type(conversation_type), intent(inout) :: conversation
+    class(task_type), intent(in) :: task
+    character(len=:), allocatable, intent(inout) :: run_path
+
+    do while (conversation%state == going)
+      associate (question => conversation%interview%due())
+        select case (question%kind)
+        case (check_structure, check_start)
+          call announce_topic(conversation, question)
+          call check(conversation, task)
+        case (check_all)
+          call close_conversation(conversation, task%needs_drives, run_path)
+        case default
+          call ask(conversation)
+        end select
+      end associate
+    end do
+  end subroutine lead
+
+  !> The last words, and the exit code of a conversation that does not end with a run.
+  subroutine take_leave(conversation, code)
+    type(conversation_type), intent(inout) :: conversation
+    integer, intent(out) :: code
+
+    code = exit_done
+    if (conversation%state == finished) return
+    if (conversation%state /= left) code = exit_interrupted
+    if (conversation%draft_path /= '') then
+      call conversation%keep()
+      call conversation%say('What was typed is kept in '//conversation%draft_path//'; '//conversation%program_name// &
+                            ' --resume '//conversation%draft_path//' goes on.')
+    else if (code == exit_interrupted) then
+      if (is_terminal(standard_input)) return
+      write (error_unit, '(a)') conversation%program_name//': no data file is given and nothing was answered; '// &
+        conversation%program_name//' FILE runs one, '//conversation%program_name//' --help tells more'
+      code = exit_usage
+    end if
+  end subroutine take_leave
+end module mech9_converse

@@ -1,0 +1,232 @@
+!> How answers are corrected. What is wrong is shown with the numbers of the answers, and any answer can be changed, taken
+!> away or added. Uses text, grammar, draft, draft_check, questions, question_words, summary, conversation.
+module mech9_correcting
+  use mech9_text, only: string_type, to_text, lower
+  use mech9_grammar, only: group_table, find_group_row
+  use mech9_draft, only: integer_of
+  use mech9_draft_check, only: fault_type
+  use mech9_questions, only: label_of
+  use mech9_question_words, only: is_lacking
+  use mech9_summary, only: entry_with_number, number_of_entry, named_entry, title_of
+  use mech9_conversation, only: conversation_type, going
+  implicit none
+  private
+  public :: show_faults, offer_correction, change, correction_help
+
+  integer, parameter :: most_shown = 5
+  character(len=*), parameter :: correction_help = &
+    'Give the number of an answer (list shows them), or its name as in "pair 3 zero" or "time end". "add load" begins '// &
+    'another load; "remove 12" takes an answer away, "remove load 2" a whole group. back goes to the question before, '// &
+    'quit leaves (what was typed is kept).'
+
+contains
+
+  !> Show what is wrong, each with the answer it is about.
+  subroutine show_faults(conversation, faults)
+    class(conversation_type), intent(in) :: conversation
+    type(fault_type), intent(in) :: faults(:)
+    character(len=:), allocatable :: text
+    integer :: i
+
+    associate (draft => conversation%interview%draft)
+      do i = 1, min(size(faults), most_shown)
+        text = '- '
+        if (faults(i)%group > 0) text = text//title_of(draft, faults(i)%group)
+        if (faults(i)%entry > 0) text = text//', '//draft%groups(faults(i)%group)%entries(faults(i)%entry)%name
+        if (faults(i)%group > 0) text = text//': '
+        call conversation%say(text//faults(i)%message)
+      end do
+    end associate
+    if (size(faults) > most_shown) call conversation%say('and '//to_text(size(faults) - most_shown)//' more')
+  end subroutine show_faults
+
+  !> Ask which answer to change after a check that failed. Enter takes the first that is wrong or
+  !> lacking; where there is none, the question with the label `otherwise`.
+  subroutine offer_correction(conversation, faults, otherwise)
+    class(conversation_type), intent(inout) :: conversation
+    type(fault_type), intent(in) :: faults(:)
+    character(len=*), intent(in) :: otherwise
+    type(string_type) :: words(6)
+    character(len=:), allocatable :: line, proposal
+    integer :: first, missing
+    logical :: done
+
+    words = correction_words()
+    call find_first(conversation, faults, first, missing)
+    proposal = otherwise
+    if (missing > 0) proposal = label_of(conversation%interview%questions(missing))
+    if (first > 0) proposal = to_text(first)
+    call conversation%listen('  number to change, or go (on as it is) ['//proposal//']: ', words, line)
+    if (conversation%state /= going) return
+    select case (lower(line(:min(len(line), 8))))
+    case ('?', 'help')
+      call conversation%say(correction_help)
+    case ('go')
+      conversation%interview%return_to = ''
+      call conversation%interview%step()
+    case ('back')
+      call conversation%interview%back(done)
+    case ('')
+      if (first > 0) then
+        call change(conversation, to_text(first))
+      else if (missing > 0) then
+        call begin_correction(conversation, missing)
+      else
+        call conversation%interview%go_to(otherwise)
+      end if
+    case default
+      call change(conversation, line)
+    end select
+  end subroutine offer_correction
+
+  function correction_words() result(words)
+    type(string_type) :: words(6)
+
+    words(1)%text = 'go'
+    words(2)%text = 'add'
+    words(3)%text = 'remove'
+    words(4)%text = 'list'
+    words(5)%text = 'back'
+    words(6)%text = 'quit'
+  end function correction_words
+
+  !> The number of the first answer that is wrong, and that of the first question whose answer is lacking;
+  !> 0 where there is none.
+  pure subroutine find_first(conversation, faults, first, missing)
+    class(conversation_type), intent(in) :: conversation
+    type(fault_type), intent(in) :: faults(:)
+    integer, intent(out) :: first, missing
+    integer :: i
+
+    first = 0
+    missing = 0
+    associate (interview => conversation%interview)
+      do i = 1, size(faults)
+        first = number_of_entry(interview%draft, faults(i)%group, faults(i)%entry)
+        if (first > 0) exit
+      end do
+      do missing = 1, interview%at - 1
+        if (is_lacking(interview%questions(missing), interview%draft, interview%outline)) return
+      end do
+    end associate
+    missing = 0
+  end subroutine find_first
+
+  !> Make a question due, and return to the present one after it.
+  subroutine begin_correction(conversation, number)
+    class(conversation_type), intent(inout) :: conversation
+    integer, intent(in) :: number
+
+    associate (interview => conversation%interview)
+      if (interview%return_to == '') interview%return_to = label_of(interview%due())
+      interview%at = number
+    end associate
+    conversation%heading = ''
+  end subroutine begin_correction
+
+  !> Do what a line asks for: change an answer by its number or its name, add a group, remove something.
+  subroutine change(conversation, line)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: group, name, word
+    integer :: index_of_group, entry, place
+    logical :: found
+
+    word = lower(line(:scan(line//' ', ' ') - 1))
+    if (word == 'add') then
+      call add_group(conversation, trim(adjustl(line(len(word) + 1:))))
+      return
+    else if (word == 'remove') then
+      call remove(conversation, trim(adjustl(line(len(word) + 1:))))
+      return
+    end if
+    associate (interview => conversation%interview)
+      found = .false.
+      if (integer_of(line) > 0) then
+        call entry_with_number(interview%draft, integer_of(line), index_of_group, entry)
+        if (index_of_group > 0) then
+          group = interview%draft%groups(index_of_group)%name
+          call interview%correct(group, interview%draft%place_of(index_of_group), &
+                                 interview%draft%groups(index_of_group)%entries(entry)%name, found)
+          if (.not. found) call conversation%say('This program does not ask for that; "remove '//line//'" takes it away.')
+          conversation%heading = ''
+          return
+        end if
+      end if
+      call named_entry(interview%draft, line, group, place, name)
+      if (group /= '' .and. name /= '') call interview%correct(group, place, name, found)
+    end associate
+    conversation%heading = ''
+    if (.not. found) call conversation%say('That is no answer that can be changed; list shows their numbers, ? tells more.')
+  end subroutine change
+
+  !> Ask for one group more.
+  subroutine add_group(conversation, group)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: group
+    integer :: i, row
+
+    row = find_group_row(group(:min(len(group), 20)))
+    associate (interview => conversation%interview)
+      if (row > 0) then
+        do i = 1, size(interview%questions)
+          if (interview%questions(i)%group_row /= row .or. .not. interview%questions(i)%is_new) cycle
+          call begin_correction(conversation, i)
+          interview%adding = .true.
+          return
+        end do
+      end if
+    end associate
+    call conversation%say('What can be added: '//addable(conversation)//'; for example: add point')
+  end subroutine add_group
+
+  !> The groups of which there can be any number.
+  function addable(conversation) result(list)
+    class(conversation_type), intent(in) :: conversation
+    character(len=:), allocatable :: list
+    integer :: i
+
+    list = ''
+    do i = 1, size(conversation%interview%questions)
+      associate (question => conversation%interview%questions(i))
+        if (.not. question%is_new) cycle
+        if (list /= '') list = list//', '
+        list = list//trim(group_table(question%group_row)%name)
+      end associate
+    end do
+  end function addable
+
+  !> Take an answer away, or a group.
+  subroutine remove(conversation, what)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: what
+    character(len=:), allocatable :: group, name, here
+    integer :: index_of_group, entry, place
+
+    associate (interview => conversation%interview)
+      here = label_of(interview%due())
+      index_of_group = 0
+      if (integer_of(what) > 0) call entry_with_number(interview%draft, integer_of(what), index_of_group, entry)
+      if (index_of_group > 0) then
+        group = interview%draft%groups(index_of_group)%name
+        place = interview%draft%place_of(index_of_group)
+        name = interview%draft%groups(index_of_group)%entries(entry)%name
+      else
+        call named_entry(interview%draft, what, group, place, name)
+      end if
+      if (group == '') then
+        call conversation%say('That is nothing that can be removed; list shows the numbers of the answers.')
+        return
+      end if
+      if (name == '') then
+        call interview%draft%remove(group, place)
+      else
+        call interview%draft%take_away(group, place, name)
+      end if
+      if (interview%draft%count_of('mechanism') == 0) call interview%draft%add('mechanism')
+      call interview%refresh(here)
+    end associate
+    call conversation%keep()
+    call conversation%say('Removed.')
+  end subroutine remove
+end module mech9_correcting

@@ -1,0 +1,144 @@
+!> A draft from an existing data file: what it says and the comments above its groups. Uses text, source,
+!> document, checker, lookup, matrix_items, draft, diagnostics.
+module mech9_draft_source
+  use mech9_text, only: to_text, join, string_type
+  use mech9_source, only: source_type
+  use mech9_document, only: document_type, group_type, item_type, value_type, value_bad
+  use mech9_checker, only: check_document
+  use mech9_matrix_items, only: matrix_type, read_matrix
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_draft, only: draft_type
+  implicit none
+  private
+  public :: draft_from_document, values_text
+
+  character(len=*), parameter :: line_end = achar(10)
+
+contains
+
+  !> Take over what a document says: one entry for each name, the coincidence matrix by rows. Values
+  !> that cannot be read are left out; they have been reported when the document was read.
+  pure subroutine draft_from_document(document, draft)
+    type(document_type), intent(in) :: document
+    type(draft_type), intent(out) :: draft
+    type(document_type) :: checked
+    type(diagnostics_type) :: ignored
+    integer :: i, number
+
+    call draft%clear()
+    checked = document
+    ! its errors are found again when the draft is checked, with places in the draft
+    call ignored%add_source(document%source, number)
+    call check_document(checked, ignored)
+    do i = 1, size(checked%groups)
+      call take_group(checked, checked%groups(i), draft)
+    end do
+    if (size(checked%groups) > 0) draft%head = comment_above(document%source, checked%groups(1)%span%first, .true.)
+  end subroutine draft_from_document
+
+  pure subroutine take_group(document, group, draft)
+    type(document_type), intent(in) :: document
+    type(group_type), intent(in) :: group
+    type(draft_type), intent(inout) :: draft
+    integer :: i, place
+
+    call draft%add(group%name)
+    place = draft%count_of(group%name)
+    draft%groups(draft%find(group%name, place))%comment = comment_above(document%source, group%span%first, .false.)
+    if (group%name == 'structure') call take_matrix(document, group, draft)
+    do i = 1, size(group%items)
+      associate (item => group%items(i))
+        if (any(item%values%kind == value_bad) .or. (group%name == 'structure' .and. item%name == 'c')) cycle
+        call draft%give(group%name, place, item%name, values_text(document%source%text, item%values))
+      end associate
+    end do
+  end subroutine take_group
+
+  !> The coincidence matrix, however it is given, as rows.
+  pure subroutine take_matrix(document, group, draft)
+    type(document_type), intent(in) :: document
+    type(group_type), intent(in) :: group
+    type(draft_type), intent(inout) :: draft
+    type(matrix_type) :: matrix
+    type(diagnostics_type) :: ignored
+    integer :: i, number
+    logical :: ok
+
+    if (.not. any([(group%items(i)%name == 'c', i=1, size(group%items))])) return
+    call ignored%add_source(document%source, number)
+    call read_matrix(group, 0, matrix, ok, ignored)
+    if (.not. ok) return
+    do i = 1, size(matrix%c, 1)
+      call draft%give('structure', 1, 'c('//to_text(i)//',:)', to_text(matrix%c(i, :)))
+    end do
+  end subroutine take_matrix
+
+  !> Values as they are written, with commas between.
+  pure function values_text(source_text, values) result(text)
+    character(len=*), intent(in) :: source_text
+    type(value_type), intent(in) :: values(:)
+    character(len=:), allocatable :: text
+    type(string_type) :: words(size(values))
+    integer :: i
+
+    do i = 1, size(values)
+      words(i)%text = source_text(values(i)%span%first:values(i)%span%last)
+      if (values(i)%times > 1) words(i)%text = to_text(values(i)%times)//'*'//words(i)%text
+    end do
+    text = join(words, ', ')
+  end function values_text
+
+  !> The comment lines right above a byte; with `to_the_top` those above a blank line over them.
+  pure function comment_above(source, byte, to_the_top) result(comment)
+    type(source_type), intent(in) :: source
+    integer, intent(in) :: byte
+    logical, intent(in) :: to_the_top
+    character(len=:), allocatable :: comment
+    integer :: line, first, last, top
+
+    comment = ''
+    associate (position => source%place(byte))
+      top = position%line
+    end associate
+    do line = top - 1, 1, -1
+      call source%line_bounds(line, first, last)
+      if (.not. is_comment(source%text(first:last))) exit
+      top = line
+    end do
+    if (to_the_top) then
+      if (line < 1) return
+      top = 1
+      last = line
+    else
+      associate (position => source%place(byte))
+        last = position%line - 1
+      end associate
+    end if
+    comment = lines_of(source, top, last)
+  end function comment_above
+
+  !> Comment lines and blank ones; none where something else stands among them.
+  pure function lines_of(source, from, to) result(text)
+    type(source_type), intent(in) :: source
+    integer, intent(in) :: from, to
+    character(len=:), allocatable :: text
+    integer :: line, first, last
+
+    text = ''
+    do line = from, to
+      call source%line_bounds(line, first, last)
+      if (source%text(first:last) /= '' .and. .not. is_comment(source%text(first:last))) then
+        text = ''
+        return
+      end if
+      if (line == to .and. source%text(first:last) == '') exit
+      text = text//source%text(first:last)//line_end
+    end do
+  end function lines_of
+
+  pure logical function is_comment(line)
+    character(len=*), intent(in) :: line
+
+    is_comment = index(adjustl(line), '!') == 1
+  end function is_comment
+end module mech9_draft_source

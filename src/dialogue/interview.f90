@@ -1,0 +1,210 @@
+!> A conversation without its words: the draft, the questions, which one is due, and where to go from it.
+!> Uses text, grammar, structure, draft, draft_check, outline, questions, question_words.
+module mech9_interview
+  use mech9_text, only: to_text
+  use mech9_grammar, only: group_table, find_item_rows
+  use mech9_structure, only: structure_type
+  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_draft, only: draft_type, plain_name
+  use mech9_draft_check, only: fault_type, read_draft_structure
+  use mech9_outline, only: outline_type, new_outline, make_groups, drop_foreign
+  use mech9_questions, only: question_type, make_questions, label_of, find_question, entry_name, &
+                             ask_item, check_structure, check_start, check_all
+  use mech9_question_words, only: is_lacking
+  implicit none
+  private
+  public :: interview_type, most_parts
+
+  !> Links or coordinates that can be spoken of one by one.
+  integer, parameter :: most_parts = 1000
+
+  type :: interview_type
+    type(draft_type) :: draft
+    type(outline_type) :: outline
+    type(question_type), allocatable :: questions(:)
+    integer :: at = 1                              !< number of the question that is due
+    !> Where to go back to after a correction: the label of a question; empty: one question follows the other.
+    character(len=:), allocatable :: return_to
+    logical :: adding = .false.                    !< until there: all questions of one group
+    type(structure_type) :: structure              !< where outline%structure_known
+    type(structural_vectors_type) :: vectors
+    type(fault_type), allocatable :: faults(:)     !< of the structure
+    character(len=:), allocatable :: dropped       !< what the last answer made meaningless; empty: nothing
+  contains
+    procedure :: start
+    procedure :: due
+    procedure :: refresh
+    procedure :: step
+    procedure :: back
+    procedure :: go_to
+    procedure :: correct
+    procedure :: note
+    procedure :: unnote
+  end type interview_type
+
+contains
+
+  !> Begin with a draft: an empty one, or what a file says.
+  pure subroutine start(self, program_name, draft)
+    class(interview_type), intent(inout) :: self
+    character(len=*), intent(in) :: program_name
+    type(draft_type), intent(in) :: draft
+
+    self%draft = draft
+    if (self%draft%count_of('mechanism') == 0) call self%draft%add('mechanism')
+    self%outline = new_outline(program_name, self%draft)
+    self%return_to = ''
+    self%at = 1
+    call self%refresh('')
+    if (.not. self%outline%structure_known) return
+    ! counts that the file leaves to be counted
+    if (self%draft%has('mechanism', 1, 'links') .and. self%draft%has('mechanism', 1, 'coordinates')) return
+    call self%draft%give('mechanism', 1, 'links', to_text(self%structure%n_links))
+    call self%draft%give('mechanism', 1, 'coordinates', to_text(self%structure%n_coordinates))
+    call self%refresh('')
+  end subroutine start
+
+  !> The question that is due.
+  pure type(question_type) function due(self)
+    class(interview_type), intent(in) :: self
+
+    due = self%questions(self%at)
+  end function due
+
+  !> Work out what follows from the draft: the structure, groups, questions. The question with this label is
+  !> due then; the same number as before where there is none.
+  pure subroutine refresh(self, label)
+    class(interview_type), intent(inout) :: self
+    character(len=*), intent(in) :: label
+    integer :: found
+
+    call read_draft_structure(self%draft, self%outline, self%structure, self%vectors, self%faults)
+    self%outline%structure_known = size(self%faults) == 0 .and. counts_agree(self)
+    if (self%outline%structure_known) then
+      self%outline%independent = self%structure%independent
+      self%outline%links = self%structure%links
+    end if
+    call drop_foreign(self%draft, self%outline, self%dropped)
+    call make_groups(self%draft, self%outline)
+    call make_questions(self%draft, self%outline, self%questions)
+    found = 0
+    if (label /= '') found = find_question(self%questions, label)
+    if (found > 0) self%at = found
+    self%at = max(1, min(self%at, size(self%questions)))
+  end subroutine refresh
+
+  !> A structure of more parts than can be spoken of is as good as none.
+  pure logical function counts_agree(self)
+    type(interview_type), intent(in) :: self
+
+    counts_agree = .false.
+    if (allocated(self%structure%links)) counts_agree = size(self%structure%links, 2) <= most_parts
+  end function counts_agree
+
+  !> Go on from the question that is due: to the next one; while correcting, to what is lacking now, and
+  !> then back to where the correction began.
+  pure subroutine step(self)
+    class(interview_type), intent(inout) :: self
+    integer :: i, goal
+
+    if (self%return_to == '') then
+      self%at = min(self%at + 1, size(self%questions))
+      return
+    end if
+    goal = find_question(self%questions, self%return_to)
+    if (goal == 0) goal = size(self%questions)
+    if (self%adding .and. self%at < size(self%questions)) then
+      if (same_group(self%questions(self%at), self%questions(self%at + 1))) then
+        self%at = self%at + 1
+        return
+      end if
+    end if
+    self%adding = .false.
+    do i = 1, goal - 1
+      if (.not. is_lacking(self%questions(i), self%draft, self%outline)) cycle
+      self%at = i
+      return
+    end do
+    self%at = goal
+    self%return_to = ''
+  end subroutine step
+
+  pure logical function same_group(one, other)
+    type(question_type), intent(in) :: one, other
+
+    same_group = one%kind == ask_item .and. other%kind == ask_item .and. one%group_row == other%group_row .and. &
+                 one%place == other%place .and. .not. other%is_new
+  end function same_group
+
+  !> Go to the question before; checks are no questions. `done` is false at the first one.
+  pure subroutine back(self, done)
+    class(interview_type), intent(inout) :: self
+    logical, intent(out) :: done
+    integer :: i
+
+    done = .false.
+    do i = self%at - 1, 1, -1
+      if (any(self%questions(i)%kind == [check_structure, check_start, check_all])) cycle
+      self%at = i
+      done = .true.
+      return
+    end do
+  end subroutine back
+
+  !> Make the question with a label due; the one that is due stays so where there is none.
+  pure subroutine go_to(self, label)
+    class(interview_type), intent(inout) :: self
+    character(len=*), intent(in) :: label
+    integer :: found
+
+    found = find_question(self%questions, label)
+    if (found > 0) self%at = found
+  end subroutine go_to
+
+  !> Ask for an entry of the draft, then return to the question that is due now. `found` is false where
+  !> this program has no question about it.
+  pure subroutine correct(self, group, place, name, found)
+    class(interview_type), intent(inout) :: self
+    character(len=*), intent(in) :: group, name
+    integer, intent(in) :: place
+    logical, intent(out) :: found
+    character(len=:), allocatable :: here
+    integer, allocatable :: rows(:)
+    integer :: number
+
+    here = label_of(self%questions(self%at))
+    rows = find_item_rows(group, plain_name(name))
+    found = size(rows) > 0
+    if (.not. found) return
+    ! it must be asked for, even if it is one of the seldom names
+    self%outline%asked(rows) = .true.
+    if (group == 'initial') self%outline%guesses = .true.
+    call self%refresh(here)
+    number = find_question(self%questions, group//'('//to_text(place)//').'//name)
+    found = number > 0
+    if (.not. found) return
+    self%at = number
+    if (self%return_to == '') self%return_to = here
+  end subroutine correct
+
+  !> Keep an answer to the question that is due, which then may have others after it.
+  pure subroutine note(self, text)
+    class(interview_type), intent(inout) :: self
+    character(len=*), intent(in) :: text        !< as a data file writes it
+    type(question_type) :: question
+
+    question = self%due()
+    call self%draft%give(trim(group_table(question%group_row)%name), question%place, entry_name(question), text)
+    call self%refresh(label_of(question))
+  end subroutine note
+
+  !> Take the answer to the question that is due back.
+  pure subroutine unnote(self)
+    class(interview_type), intent(inout) :: self
+    type(question_type) :: question
+
+    question = self%due()
+    call self%draft%take_away(trim(group_table(question%group_row)%name), question%place, entry_name(question))
+    call self%refresh(label_of(question))
+  end subroutine unnote
+end module mech9_interview

@@ -1,0 +1,55 @@
+!> A program from the words of its command line to its exit code: a run of a data file, or a conversation.
+!> Uses error, command_line, system, session, task, converse.
+module mech9_program
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type
+  use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
+  use mech9_system, only: exit_program
+  use mech9_session, only: carry_out, asks_for_text
+  use mech9_task, only: task_type
+  use mech9_converse, only: converse
+  implicit none
+  private
+  public :: run_program, run_words
+
+contains
+
+  !> The whole program. It does not come back.
+  subroutine run_program(task)
+    class(task_type), intent(in) :: task
+    integer :: code
+
+    call run_command_line(task, code)
+    call exit_program(code)
+  end subroutine run_program
+
+  !> The words are gone again before the program ends.
+  subroutine run_command_line(task, code)
+    class(task_type), intent(in) :: task
+    integer, intent(out) :: code
+    type(string_type), allocatable :: words(:)
+
+    call get_command_words(words)
+    call run_words(task, words, code)
+  end subroutine run_command_line
+
+  !> Do what the words of a command line ask for; `code` is what the program answers to the shell.
+  subroutine run_words(task, words, code)
+    class(task_type), intent(in) :: task
+    type(string_type), intent(in) :: words(:)   !< without the program's name
+    integer, intent(out) :: code
+    type(command_line_type) :: options
+    type(error_type), allocatable :: err
+
+    call parse_command_line(words, task%program_name, options, err)
+    if (allocated(err)) then
+      write (error_unit, '(3a)') task%program_name, ': ', err%message
+      code = err%code
+    else if (options%converses() .and. .not. asks_for_text(options)) then
+      call converse(task, options, code)
+    else
+      call carry_out(task, options, code)
+    end if
+  end subroutine run_words
+end module mech9_program

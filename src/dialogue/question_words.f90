@@ -1,0 +1,353 @@
+!> Questions in words: headings, prompts, what Enter answers, and the help on each; all from the table of
+!> names. Uses text, grammar, data_help, draft, outline, questions.
+module mech9_question_words
+  use mech9_text, only: to_text, string_type
+  use mech9_grammar, only: group_table, item_table, rows_of_group, words_of
+  use mech9_data_help, only: values_text, default_text
+  use mech9_draft, only: draft_type, unquoted
+  use mech9_outline, only: outline_type, kind_in
+  use mech9_questions, only: question_type, entry_name, is_seldom, ask_item, ask_seldom, ask_way, &
+                             ask_guesses
+  implicit none
+  private
+  public :: default_type, default_of, prompt_of, heading_of, gist_of, help_of, words_for, is_lacking, seldom_names
+
+  !> What Enter answers.
+  type :: default_type
+    character(len=:), allocatable :: text       !< in the form of a data file; empty: nothing can be noted
+    character(len=:), allocatable :: shown      !< in the brackets of the prompt; empty: no brackets
+    logical :: noted = .false.                  !< it is noted in the data file like an answer that was typed
+  end type default_type
+
+contains
+
+  !> What Enter answers to a question about a name: what was answered before, what the group before
+  !> says where something must be said, or the default of the table.
+  pure function default_of(question, draft, outline, table_file) result(default)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    character(len=*), intent(in) :: table_file      !< a name for the table of results
+    type(default_type) :: default
+    character(len=:), allocatable :: group, name
+
+    default%text = ''
+    default%shown = ''
+    group = trim(group_table(question%group_row)%name)
+    name = entry_name(question)
+    associate (row => item_table(question%row))
+      if (question%is_new) then
+        default%shown = 'no more'
+        if (question%place == 1) default%shown = 'none'
+      else if (draft%has(group, question%place, name)) then
+        default%text = draft%value(group, question%place, name)
+      else if (group == 'output' .and. name == 'table') then
+        default%text = ''''//table_file//''''
+      else if (is_needed(question, draft, outline)) then
+        default%text = likely_value(question, draft)
+      else if (index(row%default, '(') /= 1 .and. row%default /= '''''') then
+        default%shown = unquoted(trim(row%default))
+      else if (.not. row%needed) then
+        default%shown = default_text(row)
+      else
+        default%shown = 'none'
+      end if
+      default%noted = default%text /= '' .and. .not. draft%has(group, question%place, name)
+      if (default%text /= '') default%shown = unquoted(default%text)
+      if (row%type == 'logical') default%shown = switch_word(default%shown)
+    end associate
+  end function default_of
+
+  pure function switch_word(text) result(word)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: word
+
+    word = text
+    if (text == '.true.') word = 'yes'
+    if (text == '.false.') word = 'no'
+  end function switch_word
+
+  !> A value for what must be given: that of the group before, the first of the words allowed, or zero at
+  !> the start; empty where nothing is likely.
+  pure function likely_value(question, draft) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: group
+
+    text = ''
+    group = trim(group_table(question%group_row)%name)
+    associate (row => item_table(question%row))
+      if (group == 'initial') then
+        text = trim(row%default)
+      else if (group_table(question%group_row)%repeats .and. row%type /= 'integer') then
+        if (question%place > 1) text = draft%value(group, question%place - 1, trim(row%name))
+        if (text == '' .and. row%words /= '') text = ''''//row%words(:index(row%words, ' ') - 1)//''''
+      end if
+    end associate
+  end function likely_value
+
+  !> Whether a question about a name must be answered, and is not.
+  pure logical function is_lacking(question, draft, outline)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+
+    is_lacking = .false.
+    if (question%kind /= ask_item .or. question%is_new) return
+    is_lacking = is_needed(question, draft, outline) .and. .not. &
+                 draft%has(trim(group_table(question%group_row)%name), question%place, entry_name(question))
+  end function is_lacking
+
+  !> Whether a name must be given. Counts and structural data must here, though a data file can leave
+  !> some of them to be counted; a group that is not repeated may be left out as a whole.
+  pure logical function is_needed(question, draft, outline)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+
+    associate (row => item_table(question%row))
+      is_needed = row%needed .or. index(row%default, '(needed') == 1
+      if (row%name == 'axis' .and. row%group == 'pair') is_needed = .not. draft%has('pair', question%place, 'dh')
+      if (row%needed .and. .not. group_table(question%group_row)%repeats) &
+        is_needed = draft%count_of(trim(row%group)) > 0
+      select case (row%group)
+      case ('mechanism')
+        is_needed = is_needed .or. row%name == 'links' .or. row%name == 'coordinates'
+      case ('structure')
+        select case (row%name)
+        case ('cq', 'c')
+          is_needed = outline%way /= 'vectors'
+        case ('nrg', 'nws', 'rdw')
+          is_needed = outline%way == 'vectors'
+        end select
+      case ('initial')
+        if (row%name /= 'coordinate' .and. outline%structure_known) &
+          is_needed = is_independent(outline, draft%number('initial', question%place, 'coordinate'))
+      end select
+    end associate
+  end function is_needed
+
+  pure logical function is_independent(outline, coordinate)
+    type(outline_type), intent(in) :: outline
+    integer, intent(in) :: coordinate
+
+    is_independent = .false.
+    if (coordinate >= 1 .and. coordinate <= size(outline%independent)) is_independent = outline%independent(coordinate)
+  end function is_independent
+
+  !> The line above the questions of one group: "Pair 5, from link 1 to link 2"; empty where there is but one.
+  pure function heading_of(question, draft) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: group, links
+    integer :: comma
+
+    text = ''
+    if (question%kind /= ask_item .or. question%is_new) return
+    if (.not. group_table(question%group_row)%repeats) return
+    group = trim(group_table(question%group_row)%name)
+    select case (group)
+    case ('pair')
+      if (item_table(question%row)%name == 'links') return
+      links = draft%value(group, question%place, 'links')
+      comma = index(links, ',')
+      text = 'Pair '//draft%value(group, question%place, 'coordinate')
+      if (comma > 0) text = text//', from link '//links(:comma - 1)//' (reference) to link '// &
+                            trim(adjustl(links(comma + 1:)))//' (moving)'
+    case ('drive')
+      text = 'Drive of coordinate '//draft%value(group, question%place, 'coordinate')
+    case ('initial')
+      text = 'Coordinate '//draft%value(group, question%place, 'coordinate')//' at the start'
+    case default
+      text = achar(iachar(group(1:1)) - 32)//group(2:)//' '//to_text(question%place)
+    end select
+  end function heading_of
+
+  !> The prompt: name, unit, what Enter answers.
+  pure function prompt_of(question, draft, default) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(default_type), intent(in) :: default
+    character(len=:), allocatable :: text, unit
+
+    associate (row => item_table(question%row))
+      text = '  '//trim(row%name)
+      if (question%line > 0) text = '  row '//to_text(question%line)//' of c'
+      if (row%group == 'pair' .and. row%name == 'links') &
+        text = '  links of pair '//draft%value('pair', question%place, 'coordinate')
+      if (question%is_new) text = '  '//trim(row%group)//' '//to_text(question%place)//', '//trim(row%name)
+      unit = unit_here(question, draft)
+      if (unit /= '') text = text//' ('//unit//')'
+    end associate
+    if (default%shown /= '') text = text//' ['//default%shown//']'
+    text = text//': '
+  end function prompt_of
+
+  !> The unit of a name in this data file: angles in rad or degrees, coordinates as their pair moves.
+  pure function unit_here(question, draft) result(unit)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: unit
+    character(len=:), allocatable :: angle, q
+    integer :: place
+
+    angle = 'rad'
+    if (unquoted(draft%value('mechanism', 1, 'angle_unit')) == 'deg') angle = 'deg'
+    q = angle
+    place = draft%with_number('pair', 'coordinate', draft%number(trim(group_table(question%group_row)%name), &
+                                                                 question%place, 'coordinate'))
+    if (place > 0) then
+      if (kind_in(draft, draft%find('pair', place)) == 'prismatic') q = 'm'
+      if (kind_in(draft, draft%find('pair', place)) == 'user') q = ''
+    end if
+    unit = trim(item_table(question%row)%unit)
+    call replace('angle', angle, unit)
+    if (q == '' .and. has_word(unit, 'q')) unit = ''
+    call replace('q', q, unit)
+    call replace('q', q, unit)
+  end function unit_here
+
+  !> Put a word in the place of another, once.
+  pure subroutine replace(word, by, text)
+    character(len=*), intent(in) :: word, by
+    character(len=:), allocatable, intent(inout) :: text
+    integer :: at
+
+    at = word_place(text, word)
+    if (at > 0) text = text(:at - 1)//by//text(at + len(word):)
+  end subroutine replace
+
+  pure logical function has_word(text, word)
+    character(len=*), intent(in) :: text, word
+
+    has_word = word_place(text, word) > 0
+  end function has_word
+
+  !> Where a word stands in a text that is made of words, blanks, commas and slashes; 0: nowhere.
+  pure integer function word_place(text, word) result(at)
+    character(len=*), intent(in) :: text, word
+
+    do at = 1, len(text) - len(word) + 1
+      if (text(at:at + len(word) - 1) /= word) cycle
+      if (at > 1) then
+        if (scan(text(at - 1:at - 1), ' ,/') == 0) cycle
+      end if
+      if (at + len(word) > len(text)) return
+      if (scan(text(at + len(word):at + len(word)), ' ,/') > 0) return
+    end do
+    at = 0
+  end function word_place
+
+  !> One line on what a question means, with the words it takes.
+  pure function gist_of(question) result(text)
+    type(question_type), intent(in) :: question
+    character(len=:), allocatable :: text
+    integer :: colon
+
+    associate (row => item_table(question%row))
+      text = trim(row%name)//': '//trim(row%help)
+      if (row%words == '') return
+      colon = index(values_text(row), ': ')
+      text = text//' ('//trim(adjustl(tail(values_text(row), colon + 1)))//')'
+    end associate
+  end function gist_of
+
+  pure function tail(text, first) result(rest)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: first
+    character(len=:), allocatable :: rest
+
+    rest = text(first:)
+  end function tail
+
+  !> The answer to `?`.
+  pure function help_of(question, draft, outline) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    character(len=:), allocatable :: text, unit
+    character, parameter :: line_end = achar(10)
+
+    select case (question%kind)
+    case (ask_way)
+      text = 'pairs: for each coordinate the two links that its pair joins, as in "1 2";'//line_end// &
+             'matrix: the rows of the coincidence matrix C;'//line_end// &
+             'vectors: the second set, nrg, nws, rdw and nrw.'
+    case (ask_seldom)
+      text = 'These names have defaults that mostly serve: '//seldom_names(question, outline)//'. Answer yes to be asked '// &
+             'for all of them, or name those that you want to give, for example: '// &
+             first_word(seldom_names(question, outline))
+    case (ask_guesses)
+      text = 'The same links can be put together in several ways. Rough values of the dependent coordinates choose '// &
+             'one; without them the search starts from zeros. Answer yes to be asked for them.'
+    case default
+      associate (row => item_table(question%row))
+        unit = unit_here(question, draft)
+        if (unit /= '') unit = ' ('//unit//')'
+        text = 'if not given: '//default_text(row)
+        if (is_needed(question, draft, outline)) text = 'must be given'
+        text = gist_of(question)//line_end//'Takes '//values_text(row)//unit//'; '//text//'.'//line_end// &
+               'For example: '//unquoted(trim(row%example))
+      end associate
+    end select
+    text = text//line_end//'Enter takes what stands in brackets. Also: back (to the question before), list (what is '// &
+           'known), default (as if never answered), quit (what was typed is kept).'
+  end function help_of
+
+  pure function first_word(list) result(word)
+    character(len=*), intent(in) :: list
+    character(len=:), allocatable :: word
+
+    word = list(:index(list//',', ',') - 1)
+  end function first_word
+
+  !> The names of a group that are asked for only when told so: "zero, moving_point".
+  pure function seldom_names(question, outline) result(text)
+    type(question_type), intent(in) :: question
+    type(outline_type), intent(in) :: outline
+    character(len=:), allocatable :: text
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    text = ''
+    rows = rows_of_group(group_table(question%group_row)%name)
+    do i = 1, size(rows)
+      if (.not. is_seldom(outline, item_table(rows(i)))) cycle
+      if (text /= '') text = text//', '
+      text = text//trim(item_table(rows(i))%name)
+    end do
+  end function seldom_names
+
+  !> What can be completed at a question: its words and the commands.
+  pure subroutine words_for(question, outline, words)
+    type(question_type), intent(in) :: question
+    type(outline_type), intent(in) :: outline
+    type(string_type), allocatable, intent(out) :: words(:)
+    character(len=:), allocatable :: list
+    integer :: i
+
+    select case (question%kind)
+    case (ask_way)
+      list = 'pairs matrix vectors '
+    case (ask_seldom)
+      list = seldom_names(question, outline)
+      do i = 1, len(list)
+        if (list(i:i) == ',') list(i:i) = ' '
+      end do
+      list = 'yes no '//list//' '
+    case (ask_guesses)
+      list = 'yes no '
+    case default
+      list = trim(item_table(question%row)%words)//' '
+      if (item_table(question%row)%type == 'logical') list = 'yes no '
+    end select
+    associate (all_words => words_of(list//'back list default quit'))
+      allocate (words(size(all_words)))
+      do i = 1, size(words)
+        words(i)%text = trim(all_words(i))
+      end do
+    end associate
+  end subroutine words_for
+end module mech9_question_words

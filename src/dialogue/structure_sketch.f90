@@ -1,0 +1,73 @@
+!> A structure drawn as text: its chains of links and pairs, and what the counts say of its mobility.
+!> Uses text, structure, structural_vectors.
+module mech9_structure_sketch
+  use mech9_text, only: to_text
+  use mech9_structure, only: structure_type
+  use mech9_structural_vectors, only: structural_vectors_type, chain_type, chains_of
+  implicit none
+  private
+  public :: print_sketch
+
+  integer, parameter :: line_width = 78
+  integer, parameter :: most_chains = 30      !< more are not drawn
+
+contains
+
+  !> Draw the chains in the order of computation, each as links joined by pairs: "1 =5= 2 -4- 3", where
+  !> =5= is an independent coordinate; then tell the mobility by the count.
+  subroutine print_sketch(unit, structure, vectors)
+    integer, intent(in) :: unit
+    type(structure_type), intent(in) :: structure
+    type(structural_vectors_type), intent(in) :: vectors
+    type(chain_type), allocatable :: chains(:)
+    integer :: i, loops
+
+    chains = chains_of(vectors)
+    loops = count(chains%closed)
+    write (unit, '(a)') '  The links are connected. Numbers between = = are independent coordinates:'
+    do i = 1, min(size(chains), most_chains)
+      call print_chain(unit, vectors, chains(i))
+    end do
+    if (size(chains) > most_chains) write (unit, '(a)') '  and '//to_text(size(chains) - most_chains)//' chains more'
+    if (loops == 0) then
+      write (unit, '(a)') '  Open chains only: each coordinate moves by itself, the mobility is '// &
+        to_text(structure%n_coordinates)//'.'
+    else
+      write (unit, '(a)') '  Mobility by the count: '//count_text(structure%n_coordinates, loops, 3)//' in a plane, '// &
+        count_text(structure%n_coordinates, loops, 6)//' in space;'
+      write (unit, '(a)') '  the geometry will tell which holds. Independent now: '// &
+        to_text(count(structure%independent))//'.'
+    end if
+  end subroutine print_sketch
+
+  !> "1 = 7 - 2 x 3".
+  pure function count_text(coordinates, loops, each) result(text)
+    integer, intent(in) :: coordinates, loops, each
+    character(len=:), allocatable :: text
+
+    text = to_text(coordinates - loops*each)//' = '//to_text(coordinates)//' - '//to_text(loops)//' x '//to_text(each)
+  end function count_text
+
+  !> One chain, on as many lines as it needs.
+  subroutine print_chain(unit, vectors, chain)
+    integer, intent(in) :: unit
+    type(structural_vectors_type), intent(in) :: vectors
+    type(chain_type), intent(in) :: chain
+    character(len=:), allocatable :: line, step
+    integer :: i
+
+    line = '    '//to_text(chain%start)
+    do i = chain%first, chain%last
+      step = ' -'//to_text(vectors%nws(i))//'- '
+      if (vectors%rdw(i) == 1) step = ' ='//to_text(vectors%nws(i))//'= '
+      step = step//to_text(vectors%nrg(i))
+      if (len(line) + len(step) > line_width) then
+        write (unit, '(a)') line
+        line = '     '
+      end if
+      line = line//step
+    end do
+    if (.not. chain%closed) line = line//'  (open)'
+    write (unit, '(a)') line
+  end subroutine print_chain
+end module mech9_structure_sketch

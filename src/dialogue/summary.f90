@@ -1,0 +1,139 @@
+!> All that a draft says as a list of numbered answers, and words that mean one of them. Uses text, grammar,
+!> draft, topics.
+module mech9_summary
+  use mech9_text, only: to_text, lower
+  use mech9_grammar, only: group_table, find_group_row, words_of
+  use mech9_draft, only: draft_type, integer_of, unquoted
+  use mech9_topics, only: is_numbered
+  implicit none
+  private
+  public :: print_summary, entry_with_number, number_of_entry, named_entry, title_of
+
+  integer, parameter :: line_width = 79, indent = 4
+  !> Words longer than this mean no entry.
+  integer, parameter :: longest_words = 100
+
+contains
+
+  !> Print all answers, each with its number, a group or more lines each.
+  subroutine print_summary(unit, draft)
+    integer, intent(in) :: unit
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: line, piece
+    integer :: i, j, number
+
+    number = 0
+    do i = 1, size(draft%groups)
+      line = '  '//title_of(draft, i)//':'
+      do j = 1, size(draft%groups(i)%entries)
+        if (is_hidden(draft, i, j)) cycle
+        number = number + 1
+        associate (entry => draft%groups(i)%entries(j))
+          piece = '  ['//to_text(number)//'] '//entry%name//' '//unquoted(entry%text)
+        end associate
+        if (len(line) + len(piece) > line_width .and. len(line) > indent) then
+          write (unit, '(a)') line
+          line = repeat(' ', indent)
+        end if
+        line = line//piece
+      end do
+      write (unit, '(a)') line
+    end do
+  end subroutine print_summary
+
+  !> The number of a coordinate stands in the title of its group.
+  pure logical function is_hidden(draft, group, entry)
+    type(draft_type), intent(in) :: draft
+    integer, intent(in) :: group, entry
+    integer :: row
+
+    is_hidden = .false.
+    row = find_group_row(draft%groups(group)%name)
+    if (row > 0) is_hidden = is_numbered(row) .and. draft%groups(group)%entries(entry)%name == 'coordinate'
+  end function is_hidden
+
+  !> "pair 5", "load 2", "time".
+  pure function title_of(draft, group) result(title)
+    type(draft_type), intent(in) :: draft
+    integer, intent(in) :: group
+    character(len=:), allocatable :: title
+    integer :: row
+
+    title = draft%groups(group)%name
+    row = find_group_row(title)
+    if (row == 0) return
+    if (is_numbered(row)) then
+      title = title//' '//draft%value(title, draft%place_of(group), 'coordinate')
+    else if (group_table(row)%repeats) then
+      title = title//' '//to_text(draft%place_of(group))
+    end if
+  end function title_of
+
+  !> The entry with a number; group 0 where there is none.
+  pure subroutine entry_with_number(draft, number, group, entry)
+    type(draft_type), intent(in) :: draft
+    integer, intent(in) :: number
+    integer, intent(out) :: group, entry
+    integer :: n
+
+    n = 0
+    do group = 1, size(draft%groups)
+      do entry = 1, size(draft%groups(group)%entries)
+        if (is_hidden(draft, group, entry)) cycle
+        n = n + 1
+        if (n == number) return
+      end do
+    end do
+    group = 0
+    entry = 0
+  end subroutine entry_with_number
+
+  !> The number of an entry; 0 where it has none.
+  pure integer function number_of_entry(draft, group, entry) result(number)
+    type(draft_type), intent(in) :: draft
+    integer, intent(in) :: group, entry
+    integer :: i, j
+
+    number = 0
+    if (group == 0 .or. entry == 0) return
+    if (is_hidden(draft, group, entry)) return
+    do i = 1, group
+      do j = 1, merge(entry, size(draft%groups(i)%entries), i == group)
+        if (.not. is_hidden(draft, i, j)) number = number + 1
+      end do
+    end do
+  end function number_of_entry
+
+  !> What "pair 3 axis", "time end" or "load 2" means: a group, its place, and a name, empty where none is
+  !> said. Where the group is one for each coordinate, its number is the coordinate's. `group` is empty where the
+  !> words mean nothing.
+  pure subroutine named_entry(draft, line, group, place, name)
+    type(draft_type), intent(in) :: draft
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable, intent(out) :: group, name
+    integer, intent(out) :: place
+    integer :: row, next
+
+    group = ''
+    name = ''
+    place = 1
+    if (len(line) > longest_words) return
+    associate (words => words_of(lower(line)))
+      if (size(words) < 1 .or. size(words) > 3) return
+      row = find_group_row(trim(words(1)))
+      if (row == 0) return
+      next = 2
+      if (size(words) > 1) then
+        if (integer_of(trim(words(2))) > 0) then
+          place = integer_of(trim(words(2)))
+          if (is_numbered(row)) place = draft%with_number(trim(words(1)), 'coordinate', place)
+          next = 3
+        end if
+      end if
+      if (size(words) > next) return
+      if (draft%find(trim(words(1)), place) == 0 .and. group_table(row)%repeats) return
+      group = trim(words(1))
+      if (size(words) == next) name = trim(words(next))
+    end associate
+  end subroutine named_entry
+end module mech9_summary
