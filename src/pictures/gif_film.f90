@@ -8,7 +8,7 @@ module mech9_gif_film
   use mech9_text, only: to_text
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label, in_pin, in_cross, in_pin_end, &
+  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label, in_pin, in_cross, in_cam, &
                          as_stand, as_ring, as_ball, as_dot, as_centre, as_free
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, colour_of, ink, edge
@@ -174,6 +174,8 @@ contains
     associate (style => styles(item%style))
       if (item%shape == facing_path) then
         call script%polygon(corners, white, dark, style%width)
+      else if (item%style == in_cam) then
+        call script%polygon(corners, light, dark, edge)
       else if (item%shape == closed_path) then
         call script%polygon(band(corners, 0.5_wp*style%width*script%symbol), light, dark, edge)
       else if (item%shape == segments .or. style%has_edge) then

@@ -5,7 +5,7 @@
 module mech9_picture_style
   use mech9_kinds, only: wp
   use mech9_page, only: decimal
-  use mech9_scene, only: in_cross, as_stand, as_ring, as_ball, as_dot, as_centre, as_free
+  use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free
   implicit none
   private
   public :: style_type, styles, dark_colours, light_colours, colour_of, ink, style_sheet, mark_svg
@@ -43,6 +43,7 @@ module mech9_picture_style
     style_type('spring', ink, 1.4_wp), &
     style_type('thread', ink, 1.0_wp), &
     style_type('cross', ink, 3.2_wp, .true.), &
+    style_type('cam', '', 0.5_wp, .true.), &
     style_type('stand'), style_type('ring'), style_type('ball'), style_type('dot'), style_type('centre'), &
     style_type('free'), style_type('name'), style_type('number'), style_type('coordinate'), style_type('input')]
 
@@ -73,7 +74,7 @@ contains
           '.mech9 .name{font-weight:bold}.mech9 .coordinate{font-size:10px;font-style:italic;fill:#444;text-anchor:end}'//nl// &
           '.mech9 .input{font-size:10px;font-style:italic;font-weight:bold;fill:#b04a00;text-anchor:end}'//nl// &
           '.mech9 .number{font-size:11px;text-anchor:middle;dominant-baseline:central}'//nl
-    do i = 1, in_cross
+    do i = 1, in_cam
       css = css//rule_of(styles(i), symbol)//nl
     end do
     css = css//'.mech9 .plate.sheet path{fill-opacity:.85}.mech9 .end path{fill:#f2f2f2}'//nl

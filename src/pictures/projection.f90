@@ -85,8 +85,8 @@ contains
         associate (place => skeleton%places(k))
           side = place%carrier
           call enclose(view, film%position(frame, place%links(side), place%points(:, side)), box)
-          if (place%kind == free) call enclose_curve(film, place%links, frame, view, box)
           if (place%telescopic) cycle
+          if (place%kind == free) call enclose_curve(film, view, place%links, frame, box)
           ! where a block can be, it is guided
           side = 3 - side
           call enclose(view, film%position(frame, place%links(side), &
@@ -116,16 +116,16 @@ contains
     end do
   end subroutine enclose_motion
 
-  !> The curve on which a user's pair moves its second link, as it stands in a frame.
-  pure subroutine enclose_curve(film, links, frame, view, box)
+  !> The curve on which the first link guides the origin of the second one, where it is in a frame.
+  pure subroutine enclose_curve(film, view, links, frame, box)
     type(film_type), intent(in) :: film
-    integer, intent(in) :: links(2), frame
     type(view_type), intent(in) :: view
+    integer, intent(in) :: links(2), frame
     type(box_type), intent(inout) :: box
-    integer :: i
+    integer :: other
 
-    do i = 1, film%n_frames
-      call enclose(view, film%position(frame, links(1), film%local(i, links(1), film%p(:, links(2), i))), box)
+    do other = 1, film%n_frames, max(1, film%n_frames/most_looked_at)
+      call enclose(view, film%position(frame, links(1), film%local(other, links(1), film%p(:, links(2), other))), box)
     end do
   end subroutine enclose_curve
 
@@ -138,7 +138,7 @@ contains
     box%high = max(box%high, view%seen(place))
   end subroutine enclose
 
-  !> The usual distance between the pairs of a link that are farthest apart, as seen [m]: half of the links have less.
+  !> The usual distance between the pairs of a link that are farthest apart, as seen [m]: half of the links have no more.
   pure real(wp) function usual_distance(film, skeleton, view)
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
@@ -162,7 +162,7 @@ contains
     end associate
     ! the median of the links whose pairs are at more than one place
     allocate (left(size(largest)), source=largest > 0.01_wp*skeleton%size)
-    n = (count(left) + 1)/2
+    n = min(count(left), count(left)/2 + 1)
     usual_distance = skeleton%size
     do i = 1, n
       j = minloc(largest, dim=1, mask=left)

@@ -10,7 +10,7 @@ module mech9_scene_making
   use mech9_pair_axes, only: free, turning
   use mech9_skeleton, only: skeleton_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, open_path, closed_path, segments, spring, mark, label, in_trace, in_curve, in_plate, &
+  use mech9_scene, only: scene_type, open_path, closed_path, segments, spring, mark, label, in_trace, in_curve, in_cam, in_plate, &
                          in_tube, in_spring, as_dot, as_centre, as_name, as_number
   use mech9_link_shapes, only: distinct_points, find_shape
   use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_coordinate_names
@@ -47,11 +47,12 @@ contains
     type(symbols_type) :: symbols
     type(outline_type) :: outlines(skeleton%graph%n_links)
     integer :: shapes(skeleton%graph%n_links)   !< item of each link, 0: none
+    logical :: cams(size(skeleton%places))
     integer :: link
 
     call prepare_symbols(film, skeleton, projection, planar, scene, symbols)
     call add_paths(mechanism, film, 1.0_wp/projection%scale, scene)
-    call add_curves(film, skeleton, scene)
+    call add_curves(film, skeleton, scene, cams)
     call add_guides(skeleton, projection, scene, symbols)
     call add_stands(film, skeleton, projection, scene, symbols)
     shapes = 0
@@ -63,7 +64,7 @@ contains
     ! bars above plates that are as near
     do link = 2, size(outlines)
       if (shapes(link) == 0) call add_shape(skeleton, link, .false., scene, outlines(link), shapes(link))
-      call add_reach(skeleton, symbols, link, scene, outlines(link), shapes(link))
+      call add_reach(skeleton, symbols, cams, link, scene, outlines(link), shapes(link))
     end do
     call add_springs(mechanism, shapes, scene)
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
@@ -128,13 +129,15 @@ contains
     distance = norm2(point - from - part*along)
   end function distance
 
-  !> The curves on which users' pairs guide the origins of their moving links.
-  subroutine add_curves(film, skeleton, scene)
+  !> The curves on which users' pairs guide the origins of their moving links; one that closes is the edge of a cam.
+  subroutine add_curves(film, skeleton, scene, cams)
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
     type(scene_type), intent(inout) :: scene
+    logical, intent(out) :: cams(:)             !< (M) the pair runs around a cam
     integer :: nodes(film%n_frames), k, frame
 
+    cams = .false.
     if (film%n_frames < 2) return
     do k = 1, size(skeleton%places)
       associate (place => skeleton%places(k))
@@ -143,10 +146,28 @@ contains
           call scene%add_node(place%links(1), film%local(frame, place%links(1), film%p(:, place%links(2), frame)), &
                               nodes(frame))
         end do
-        call scene%add_item(open_path, in_curve, nodes, place%links(1))
+        cams(k) = closes(scene%node_at(:, nodes)) .and. place%links(1) /= 1
+        if (cams(k)) then
+          call scene%add_item(closed_path, in_cam, nodes, place%links(1))
+        else
+          call scene%add_item(open_path, in_curve, nodes, place%links(1))
+        end if
       end associate
     end do
   end subroutine add_curves
+
+  !> Whether a curve comes back to where it began, up to two of its steps.
+  pure logical function closes(curve)
+    real(wp), intent(in) :: curve(:, :)         !< (3,n)
+    real(wp) :: length
+    integer :: i
+
+    length = 0.0_wp
+    do i = 2, size(curve, 2)
+      length = length + norm2(curve(:, i) - curve(:, i - 1))
+    end do
+    closes = norm2(curve(:, size(curve, 2)) - curve(:, 1)) < 2.0_wp*length/size(curve, 2) .and. size(curve, 2) > 8
+  end function closes
 
   !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
   !> mass centre besides.
@@ -246,9 +267,10 @@ contains
   end subroutine add_shape
 
   !> What reaches from a link to pairs that move along it.
-  subroutine add_reach(skeleton, symbols, link, scene, outline, shape)
+  subroutine add_reach(skeleton, symbols, cams, link, scene, outline, shape)
     type(skeleton_type), intent(in) :: skeleton
     type(symbols_type), intent(in) :: symbols
+    logical, intent(in) :: cams(:)
     integer, intent(in) :: link
     type(scene_type), intent(inout) :: scene
     type(outline_type), intent(inout) :: outline
@@ -267,7 +289,7 @@ contains
             call scene%add_item(open_path, in_plate, [symbols%guide(2, k), symbols%node(k)], link)
             shape = scene%n_items
             call add_to_outline(outline, place%pins(:, side), symbols%guide(2, k))
-          else if (place%kind == free .and. side == 1 .and. outline%count > 0) then
+          else if (place%kind == free .and. side == 1 .and. outline%count > 0 .and. .not. cams(k)) then
             call scene%add_item(open_path, in_plate, [outline%nodes(1), symbols%node(k)], link)
             if (shape == 0) shape = scene%n_items
           end if
