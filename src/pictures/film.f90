@@ -1,14 +1,13 @@
 !> A film: the poses of all links at some of the outputs of a run, and the paths of the points.
-!> Uses kinds, rotation, hermite, pose, mechanism, plan, state, motion.
+!> Uses kinds, rotation, hermite, mechanism, plan, state, motion.
 module mech9_film
   use mech9_kinds, only: wp
-  use mech9_rotation, only: combine, turn, turn_back
+  use mech9_rotation, only: turn, turn_back
   use mech9_hermite, only: hermite_type, build_hermite
-  use mech9_pose, only: pose_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion, only: point_motion
+  use mech9_motion, only: point_motion, link_motion
   implicit none
   private
   public :: film_type, new_film
@@ -133,30 +132,15 @@ contains
     class(film_type), intent(inout) :: self
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
-    type(pose_type) :: pose
+    real(wp) :: omega(3), v(3)
     integer :: i
 
     self%n_frames = self%n_frames + 1
     self%times(self%n_frames) = state%t
     do i = 1, plan%n_links
-      pose = pose_of(plan, state, i)
-      self%r(:, :, i, self%n_frames) = pose%r
-      self%p(:, i, self%n_frames) = pose%p
+      call link_motion(plan, state, i, self%r(:, :, i, self%n_frames), self%p(:, i, self%n_frames), omega, v)
     end do
   end subroutine take_frame
-
-  !> Pose of a link in link 1.
-  pure function pose_of(plan, state, link) result(pose)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
-    integer, intent(in) :: link
-    type(pose_type) :: pose
-    integer :: f
-
-    f = plan%frame_of(link)
-    pose%r = combine(state%r(:, :, f), plan%link_in_frame(link)%r)
-    pose%p = state%p(:, f) + turn(state%r(:, :, f), plan%link_in_frame(link)%p) + plan%origin
-  end function pose_of
 
   !> Where a point of a link is in a frame of the film [m].
   pure function position(self, frame, link, point)
