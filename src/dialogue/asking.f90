@@ -18,7 +18,7 @@ module mech9_asking
   use mech9_conversation, only: conversation_type, going
   implicit none
   private
-  public :: ask, announce_topic
+  public :: ask, take_answer, announce_topic
 
 contains
 
@@ -47,9 +47,23 @@ contains
       if (.not. done) call conversation%say('This is the first question.')
       return
     end select
+    if (question%kind == ask_item .and. line == '') then
+      call take_default(conversation, default)
+    else
+      call take_answer(conversation, line)
+    end if
+  end subroutine ask
+
+  !> Take an answer to the question that is due.
+  subroutine take_answer(conversation, line)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: line
+    type(question_type) :: question
+
+    question = conversation%interview%due()
     select case (question%kind)
     case (ask_item)
-      call take_item(conversation, question, default, line)
+      call take_item(conversation, question, line)
     case (ask_seldom)
       call take_seldom(conversation, question, line)
     case (ask_way)
@@ -57,7 +71,7 @@ contains
     case default
       call take_guesses(conversation, line)
     end select
-  end subroutine ask
+  end subroutine take_answer
 
   !> The title of a topic where it begins.
   subroutine announce_topic(conversation, question)
@@ -104,33 +118,38 @@ contains
     end associate
   end subroutine introduce
 
+  !> Enter: what stands in brackets.
+  subroutine take_default(conversation, default)
+    class(conversation_type), intent(inout) :: conversation
+    type(default_type), intent(in) :: default
+
+    if (default%noted) then
+      call keep_answer(conversation, default%text)
+    else if (default%shown == '') then
+      call conversation%say('This must be given; ? explains it.')
+    else
+      call move_on(conversation)
+    end if
+  end subroutine take_default
+
   !> The answer about a name.
-  subroutine take_item(conversation, question, default, line)
+  subroutine take_item(conversation, question, line)
     class(conversation_type), intent(inout) :: conversation
     type(question_type), intent(in) :: question
-    type(default_type), intent(in) :: default
     character(len=*), intent(in) :: line
     character(len=:), allocatable :: text, problem
 
-    if (line == '') then
-      if (default%noted) then
-        call keep_answer(conversation, default%text)
-      else if (default%shown == '') then
-        call conversation%say('This must be given; ? explains it.')
-      else
-        call move_on(conversation)
-      end if
-    else if (lower(line(:min(len(line), 8))) == 'default') then
+    if (lower(line(:min(len(line), 8))) == 'default') then
       call conversation%interview%unnote()
       call conversation%keep()
+      return
+    end if
+    call read_answer(item_table(question%row), line, text, problem)
+    if (problem == '') call hold_against_rest(conversation, question, text, problem)
+    if (problem == '') then
+      call keep_answer(conversation, text)
     else
-      call read_answer(item_table(question%row), line, text, problem)
-      if (problem == '') call hold_against_rest(conversation, question, text, problem)
-      if (problem == '') then
-        call keep_answer(conversation, text)
-      else
-        call conversation%say(problem)
-      end if
+      call conversation%say(problem)
     end if
   end subroutine take_item
 

@@ -17,7 +17,7 @@ module mech9_closing
   use mech9_correcting, only: show_faults, change, correction_help
   implicit none
   private
-  public :: close_conversation
+  public :: close_conversation, write_data_file
 
   character(len=7), parameter :: ends(4) = [character(len=7) :: 'both', 'save', 'run', 'neither']
 
@@ -119,7 +119,6 @@ contains
   subroutine save(conversation, saved)
     class(conversation_type), intent(inout) :: conversation
     logical, intent(out) :: saved
-    type(draft_type) :: draft
     type(error_type), allocatable :: err
     type(string_type) :: words(2)
     character(len=:), allocatable :: path
@@ -128,9 +127,6 @@ contains
     saved = .false.
     words(1)%text = 'back'
     words(2)%text = 'quit'
-    draft = conversation%interview%draft
-    call drop_empty_guesses(draft)
-    if (draft%head == '') draft%head = '! A data file of '//conversation%program_name//', from a conversation.'//achar(10)
     call conversation%name_files()
     do
       call conversation%listen('  data file ['//conversation%data_path//']: ', words, path)
@@ -148,15 +144,29 @@ contains
       call agree_to_overwrite(conversation, path, agreed)
       if (conversation%state /= going) return
       if (.not. agreed) cycle
-      call save_draft(draft, path, '', conversation%program_name, err)
+      call write_data_file(conversation, path, err)
       if (.not. allocated(err)) exit
       call conversation%say(err%message)
     end do
     saved = .true.
     conversation%data_path = path
-    if (conversation%draft_path /= '' .and. conversation%draft_path /= path) call delete_file(conversation%draft_path)
     call conversation%say('Saved in '//path//'; '//conversation%program_name//' '//path//' runs it again.')
   end subroutine save
+
+  !> Write all answers as a finished data file; then what was kept of them on the way is of no more use.
+  subroutine write_data_file(conversation, path, err)
+    class(conversation_type), intent(in) :: conversation
+    character(len=*), intent(in) :: path
+    type(error_type), allocatable, intent(out) :: err
+    type(draft_type) :: draft
+
+    draft = conversation%interview%draft
+    call drop_empty_guesses(draft)
+    if (draft%head == '') draft%head = '! A data file of '//conversation%program_name//', from a conversation.'//achar(10)
+    call save_draft(draft, path, '', conversation%program_name, err)
+    if (allocated(err)) return
+    if (conversation%draft_path /= '' .and. conversation%draft_path /= path) call delete_file(conversation%draft_path)
+  end subroutine write_data_file
 
   !> A file that is there and is not the one being edited is overwritten only where the user says so.
   subroutine agree_to_overwrite(conversation, path, agreed)

@@ -7,15 +7,13 @@ module mech9_converse
   use mech9_system, only: is_terminal, standard_input
   use mech9_diagnostics, only: diagnostics_type
   use mech9_task, only: task_type
-  use mech9_session, only: run_file
   use mech9_draft, only: draft_type
   use mech9_draft_file, only: load_draft, path_without_draft, stem_of_path
   use mech9_interview, only: most_parts
-  use mech9_questions, only: check_structure, check_start, check_all
   use mech9_conversation, only: conversation_type, going, left, finished
-  use mech9_asking, only: ask, announce_topic
-  use mech9_checking, only: check
+  use mech9_leading, only: lead
   use mech9_closing, only: close_conversation
+  use mech9_running, only: run_by_turns
   implicit none
   private
   public :: converse
@@ -34,10 +32,16 @@ contains
     if (code /= exit_done) return
     call conversation%input%open(task%program_name)
     run_path = ''
-    call lead(conversation, task, run_path)
+    do while (conversation%state == going)
+      call lead(conversation, task)
+      if (conversation%state == going) call close_conversation(conversation, task%needs_drives, run_path)
+    end do
+    if (run_path == '') then
+      call take_leave(conversation, code)
+    else
+      call run_by_turns(conversation, task, options, run_path, code)
+    end if
     call conversation%input%close()
-    call take_leave(conversation, code)
-    if (run_path /= '') call run_file(task, options, run_path, code)
   end subroutine converse
 
   !> The first words, and what is known already.
@@ -97,27 +101,6 @@ contains
     end if
     call conversation%say(how)
   end subroutine greet
-
-  !> One question, or check, after the other.
-  subroutine lead(conversation, task, run_path)
-    type(conversation_type), intent(inout) :: conversation
-    class(task_type), intent(in) :: task
-    character(len=:), allocatable, intent(inout) :: run_path
-
-    do while (conversation%state == going)
-      associate (question => conversation%interview%due())
-        select case (question%kind)
-        case (check_structure, check_start)
-          call announce_topic(conversation, question)
-          call check(conversation, task)
-        case (check_all)
-          call close_conversation(conversation, task%needs_drives, run_path)
-        case default
-          call ask(conversation)
-        end select
-      end associate
-    end do
-  end subroutine lead
 
   !> The last words, and the exit code of a conversation that does not end with a run.
   subroutine take_leave(conversation, code)

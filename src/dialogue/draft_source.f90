@@ -40,11 +40,12 @@ contains
     type(document_type), intent(in) :: document
     type(group_type), intent(in) :: group
     type(draft_type), intent(inout) :: draft
-    integer :: i, place
+    integer :: i, place, number
 
     call draft%add(group%name)
     place = draft%count_of(group%name)
-    draft%groups(draft%find(group%name, place))%comment = comment_above(document%source, group%span%first, .false.)
+    number = draft%find(group%name, place)
+    draft%groups(number)%comment = comment_above(document%source, group%span%first, .false.)
     if (group%name == 'structure') call take_matrix(document, group, draft)
     do i = 1, size(group%items)
       associate (item => group%items(i))

@@ -16,6 +16,7 @@ module mech9_session
   use mech9_data_help, only: write_data_help
   use mech9_structure, only: structure_type
   use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_kept_rows, only: kept_rows_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan_text, only: print_structure
   use mech9_task, only: task_type
@@ -65,11 +66,12 @@ contains
   end subroutine show_data_help
 
   !> Read a data file and do what is asked for.
-  subroutine run_file(task, options, path, code)
+  subroutine run_file(task, options, path, code, kept)
     class(task_type), intent(in) :: task
     type(command_line_type), intent(in) :: options
     character(len=*), intent(in) :: path
     integer, intent(out) :: code
+    type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     type(structure_type) :: structure
@@ -89,7 +91,7 @@ contains
       if (.not. diagnostics%failed()) call print_structure(output_unit, vectors)
     else
       call read_mechanism(document, task%needs_drives, mechanism, diagnostics)
-      if (.not. diagnostics%failed()) call task%work(options, mechanism, diagnostics)
+      if (.not. diagnostics%failed()) call task%work(options, mechanism, diagnostics, kept)
     end if
     call diagnostics%report(error_unit)
     code = diagnostics%code()

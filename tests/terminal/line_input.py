@@ -3,6 +3,7 @@
 usage: line_input.py PROBE yes|no    (the program of prompt_probe.f90; whether it can edit lines)
 """
 import os
+import random
 import signal
 import subprocess
 import sys
@@ -118,6 +119,22 @@ def test_ends():
         checks.equal(terminal.ends(), 0, 'and the program in order')
 
 
+def test_hostile_keys():
+    """Random bytes as keys, but for those that stop the terminal itself, and Ctrl-C and Ctrl-D, which end."""
+    chance = random.Random(1995)
+    kept = [byte for byte in range(256) if byte not in b'\x03\x04\x11\x13\x1a\x1c']
+    favourites = [b'\x1b[A', b'\x1b[B', b'\x1b[D', b'\x1b[3~', b'\t', b'\r', b'\x12', b'\x16', b'\x1b', 'é中'.encode(), b'p', b'\x7f', b'\x19']
+    for session in range(3):
+        with Terminal([PROBE], stdout=subprocess.DEVNULL, patience=60) as terminal:
+            terminal.expect('1> ')
+            keys = b''.join(chance.choice(favourites) if chance.random() < 0.4 else bytes([chance.choice(kept)])
+                            for _ in range(3000))
+            terminal.type(keys)
+            terminal.type(b'\r\r\x03')
+            checks.equal(terminal.ends(), 130, f'three thousand random keys, {session}: Ctrl-C still ends it')
+            checks.true('Backtrace' not in terminal.plain() and 'Sanitizer' not in terminal.plain(), 'no crash', terminal.plain()[-2000:])
+
+
 def test_simple_terminal():
     """What cannot move its cursor gets no sequences that would move it."""
     for term in ('dumb', ''):
@@ -139,6 +156,7 @@ if available():
     if EDITS:
         test_editing()
         test_completion()
+        test_hostile_keys()
     test_ends()
     test_simple_terminal()
 else:

@@ -1,0 +1,236 @@
+!> What follows a run in a conversation: its results are shown, plotted, compared with those of the run before;
+!> a value is changed, and the mechanism run again. Uses error, text, kept_rows, rows_text, run_comparison,
+!> plot, plot_request, conversation, correcting, asking.
+module mech9_after_run
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type, to_text, lower, join
+  use mech9_diagnostics, only: printable
+  use mech9_kept_rows, only: kept_rows_type
+  use mech9_rows_text, only: rows_text, columns_that_fit
+  use mech9_run_comparison, only: comparison_type, compare_runs, comparison_text
+  use mech9_plot, only: plot_columns
+  use mech9_plot_request, only: is_picture
+  use mech9_grammar, only: words_of
+  use mech9_draft, only: integer_of
+  use mech9_questions, only: check_all
+  use mech9_conversation, only: conversation_type, going
+  use mech9_correcting, only: change
+  use mech9_asking, only: take_answer
+  implicit none
+  private
+  public :: look_back, over, again, changing
+
+  !> What the user wants next: no more; another run; to be asked for a value first.
+  integer, parameter :: over = 0, again = 1, changing = 2
+
+  !> Rows that are shown unless a number is given; words longer than this ask for nothing.
+  integer, parameter :: usual_rows = 8, most_rows = 1000, longest_line = 500
+  character(len=7), parameter :: commands(6) = [character(len=7) :: 'show', 'plot', 'compare', 'change', 'run', 'done']
+  character(len=*), parameter :: help = &
+    'show: the last rows of the table; "show 20 q1 P.x" shows twenty rows of these columns. '// &
+    'plot: a plot here in the terminal; "plot q1,P.x", "plot P.x:P.y" (a path), "plot picture.svg:q1" (a file). '// &
+    'compare: the largest differences from the run before. "change time end = 2" changes an answer; without the '// &
+    'value you are asked for it; its number from list will do, too. run: run again. done ends.'
+
+contains
+
+  !> Hear what the user wants of a run that is over, until it is more than looking at it.
+  subroutine look_back(conversation, kept, earlier, changed, next)
+    class(conversation_type), intent(inout) :: conversation
+    type(kept_rows_type), intent(in) :: kept       !< of the last run; none where it did not come that far
+    type(kept_rows_type), intent(in) :: earlier    !< of the run before it
+    logical, intent(in) :: changed                 !< since the last run: Enter runs again
+    integer, intent(out) :: next                   !< over, again or changing
+    type(string_type), allocatable :: words(:)
+    character(len=:), allocatable :: line, word, rest, usual
+
+    call words_here(kept, words)
+    rest = ''
+    usual = 'done'
+    if (changed) usual = 'run'
+    next = over
+    do
+      call conversation%listen('  show, plot, compare, change, run or done ['//usual//']: ', words, line)
+      if (conversation%state /= going) return
+      if (line == '') line = usual
+      line = line(:min(len(line), longest_line))
+      word = lower(line(:scan(line//' ', ' ') - 1))
+      rest = trim(adjustl(line(len(word) + 1:)))
+      select case (word)
+      case ('done')
+        return
+      case ('?', 'help')
+        call conversation%say(help)
+        call say_columns(conversation, kept)
+      case ('show')
+        call show(conversation, kept, rest)
+      case ('plot')
+        call plot(conversation, kept, rest)
+      case ('compare')
+        call compare(conversation, kept, earlier)
+      case ('run')
+        next = again
+      case ('change')
+        call change_value(conversation, rest, next)
+      case default
+        call change_value(conversation, line, next)
+      end select
+      if (next /= over) return
+    end do
+  end subroutine look_back
+
+  !> The commands, and the names of the columns.
+  pure subroutine words_here(kept, words)
+    type(kept_rows_type), intent(in) :: kept
+    type(string_type), allocatable, intent(out) :: words(:)
+    integer :: i, n
+
+    n = 0
+    if (kept%count > 0) n = size(kept%names)
+    allocate (words(size(commands) + n))
+    do i = 1, size(commands)
+      words(i)%text = trim(commands(i))
+    end do
+    do i = 1, n
+      words(size(commands) + i)%text = kept%names(i)%text
+    end do
+  end subroutine words_here
+
+  subroutine say_columns(conversation, kept)
+    class(conversation_type), intent(in) :: conversation
+    type(kept_rows_type), intent(in) :: kept
+
+    if (kept%count > 0) call conversation%say('The columns: '//join(kept%names, ' '))
+  end subroutine say_columns
+
+  !> Whether there is something to look at; says so where there is not.
+  logical function has_rows(conversation, kept)
+    class(conversation_type), intent(in) :: conversation
+    type(kept_rows_type), intent(in) :: kept
+
+    has_rows = kept%count > 0
+    if (.not. has_rows) call conversation%say('The run has no results to look at.')
+  end function has_rows
+
+  !> "20 q1 P.x": the last rows of some columns.
+  subroutine show(conversation, kept, what)
+    class(conversation_type), intent(in) :: conversation
+    type(kept_rows_type), intent(in) :: kept
+    character(len=*), intent(in) :: what
+    character(len=len(what)), allocatable :: words(:)
+    integer, allocatable :: columns(:)
+    integer :: i, rows
+
+    if (.not. has_rows(conversation, kept)) return
+    words = words_of(with_blanks(what))
+    rows = usual_rows
+    if (size(words) > 0) then
+      if (verify(trim(words(1)), '0123456789') == 0) then
+        rows = max(1, min(integer_of(trim(words(1))), most_rows))
+        words = words(2:)
+      end if
+    end if
+    columns = [1]
+    do i = 1, size(words)
+      call append_column(conversation, kept, trim(words(i)), columns)
+      if (size(columns) == 0) return
+    end do
+    if (size(columns) == 1) columns = [(i, i=1, min(columns_that_fit, size(kept%names)))]
+    write (error_unit, '(a)', advance='no') rows_text(kept, columns, rows)
+  end subroutine show
+
+  !> The column with a name; none at all where there is none of that name.
+  subroutine append_column(conversation, kept, name, columns)
+    class(conversation_type), intent(in) :: conversation
+    type(kept_rows_type), intent(in) :: kept
+    character(len=*), intent(in) :: name
+    integer, allocatable, intent(inout) :: columns(:)
+    character(len=:), allocatable :: meant
+    integer :: number
+
+    call kept%column(name, number, meant)
+    if (number > 1) then
+      columns = [columns, number]
+    else if (number == 0) then
+      if (meant /= '') meant = '; did you mean '//meant//'?'
+      call conversation%say('There is no column '''//printable(name, 40)//''''//meant)
+      call say_columns(conversation, kept)
+      deallocate (columns)
+      allocate (columns(0))
+    end if
+  end subroutine append_column
+
+  !> A plot in the terminal, unless a picture is named.
+  subroutine plot(conversation, kept, what)
+    class(conversation_type), intent(in) :: conversation
+    type(kept_rows_type), intent(in) :: kept
+    character(len=*), intent(in) :: what            !< as the argument of --plot; blanks are as good as commas
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: request, target, said
+    integer :: i
+
+    if (.not. has_rows(conversation, kept)) return
+    request = what
+    do i = 1, len(request)
+      if (request(i:i) == ' ') request(i:i) = ','
+    end do
+    target = request(:index(request//':', ':') - 1)
+    if (.not. is_picture(target) .and. target /= 'term') request = 'term:'//request
+    call plot_columns(request, kept%title, kept%names, kept%units, kept%rows(:, :kept%count), &
+                      conversation%stem//'.svg', said, err)
+    if (allocated(err)) said = err%message
+    if (said /= '') call conversation%say(said)
+  end subroutine plot
+
+  subroutine compare(conversation, kept, earlier)
+    class(conversation_type), intent(in) :: conversation
+    type(kept_rows_type), intent(in) :: kept, earlier
+    type(comparison_type) :: comparison
+
+    if (.not. has_rows(conversation, kept)) return
+    if (earlier%count == 0) then
+      call conversation%say('There is no run before this one yet: change a value and run again.')
+      return
+    end if
+    call compare_runs(earlier, kept, comparison)
+    write (error_unit, '(a)', advance='no') comparison_text(comparison, kept)
+  end subroutine compare
+
+  !> "time end = 2" or "12 = 2": an answer to a question by its name or number; without the value the
+  !> question is due.
+  subroutine change_value(conversation, what, next)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: what
+    integer, intent(inout) :: next
+    integer :: equals
+    logical :: asked
+
+    equals = index(what//'=', '=')
+    call change(conversation, trim(what(:equals - 1)))
+    asked = is_due(conversation)
+    if (asked .and. equals < len(what)) call take_answer(conversation, trim(adjustl(what(equals + 1:))))
+    if (asked) next = changing
+  end subroutine change_value
+
+  !> Whether a question is due, and not the end of the conversation.
+  logical function is_due(conversation)
+    class(conversation_type), intent(in) :: conversation
+
+    associate (question => conversation%interview%due())
+      is_due = question%kind /= check_all
+    end associate
+  end function is_due
+
+  !> Commas as blanks.
+  pure function with_blanks(text) result(plain)
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: plain
+    integer :: i
+
+    plain = text
+    do i = 1, len(text)
+      if (text(i:i) == ',') plain(i:i) = ' '
+    end do
+  end function with_blanks
+end module mech9_after_run

@@ -1,0 +1,33 @@
+!> One question, or check, of a conversation after the other. Uses task, questions, asking, checking, conversation.
+module mech9_leading
+  use mech9_task, only: task_type
+  use mech9_questions, only: check_structure, check_start, check_all
+  use mech9_conversation, only: conversation_type, going
+  use mech9_asking, only: ask, announce_topic
+  use mech9_checking, only: check
+  implicit none
+  private
+  public :: lead
+
+contains
+
+  !> Go on until every question is answered, or the user leaves.
+  subroutine lead(conversation, task)
+    class(conversation_type), intent(inout) :: conversation
+    class(task_type), intent(in) :: task
+
+    do while (conversation%state == going)
+      associate (question => conversation%interview%due())
+        select case (question%kind)
+        case (check_all)
+          return
+        case (check_structure, check_start)
+          call announce_topic(conversation, question)
+          call check(conversation, task)
+        case default
+          call ask(conversation)
+        end select
+      end associate
+    end do
+  end subroutine lead
+end module mech9_leading

@@ -1,0 +1,87 @@
+!> The run at the end of a conversation, and what follows it: looking at results, changes, further runs. Uses error,
+!> kept_rows, system, session, task, closing, leading, after_run, conversation.
+module mech9_running
+  use mech9_error, only: error_type
+  use mech9_command_line, only: command_line_type
+  use mech9_system, only: catch_interrupts
+  use mech9_kept_rows, only: kept_rows_type
+  use mech9_task, only: task_type
+  use mech9_session, only: run_file
+  use mech9_conversation, only: conversation_type, going, finished
+  use mech9_closing, only: write_data_file
+  use mech9_leading, only: lead
+  use mech9_after_run, only: look_back, over, changing
+  implicit none
+  private
+  public :: run_by_turns
+
+contains
+
+  !> Run a data file, and again as often as the user wants; `code` is that of the last run.
+  subroutine run_by_turns(conversation, task, options, path, code)
+    class(conversation_type), intent(inout) :: conversation
+    class(task_type), intent(in) :: task
+    type(command_line_type), intent(in) :: options
+    character(len=*), intent(in) :: path            !< the data file of the conversation, or its draft
+    integer, intent(out) :: code
+    type(kept_rows_type) :: kept, earlier
+    integer :: next
+    logical :: changed
+
+    changed = .false.
+    do
+      call run_file(task, options, path, code, kept)
+      ! what interrupted the run does not end the conversation
+      call catch_interrupts()
+      conversation%state = going
+      do
+        call look_back(conversation, kept, earlier, changed, next)
+        if (next /= changing) exit
+        changed = .true.
+        call lead(conversation, task)
+        if (conversation%state /= going) next = over
+        if (next == over) exit
+      end do
+      if (next == over) exit
+      call keep_changes(conversation, path, changed)
+      if (kept%count > 0) call hand_over(kept, earlier)
+    end do
+    if (changed) then
+      call conversation%keep()
+      call conversation%say('The changes are kept in '//conversation%draft_path//'; '//conversation%program_name// &
+                            ' --resume '//conversation%draft_path//' goes on.')
+    end if
+    conversation%state = finished
+  end subroutine run_by_turns
+
+  !> Write the file that is run, if something was changed.
+  subroutine keep_changes(conversation, path, changed)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: path
+    logical, intent(inout) :: changed
+    type(error_type), allocatable :: err
+
+    if (.not. changed) return
+    if (path == conversation%draft_path) then
+      call conversation%keep()
+    else
+      call write_data_file(conversation, path, err)
+    end if
+    changed = allocated(err)
+    if (allocated(err)) call conversation%say(err%message)
+  end subroutine keep_changes
+
+  !> The results of the last run are now those of the run before.
+  subroutine hand_over(kept, earlier)
+    type(kept_rows_type), intent(inout) :: kept, earlier
+
+    earlier%title = kept%title
+    call move_alloc(kept%names, earlier%names)
+    call move_alloc(kept%units, earlier%units)
+    call move_alloc(kept%rows, earlier%rows)
+    earlier%count = kept%count
+    earlier%stride = kept%stride
+    earlier%seen = kept%seen
+    kept%count = 0
+  end subroutine hand_over
+end module mech9_running

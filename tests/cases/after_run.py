@@ -1,0 +1,186 @@
+"""What follows a run in a conversation: the table's end, a plot, a comparison, a change and another run.
+
+usage: after_run.py MECH9K MECH9D
+
+What is shown is held against the tables that the same program writes for the same data; differences are worked
+out here.
+"""
+import os
+import re
+import shutil
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import TREE, Checks, read_table, run, table_of
+from terminal import Terminal, available
+
+PROMPT = 'show, plot, compare, change, run or done'
+
+
+class Session:
+    """A conversation about an example, whose copy stands in a folder of its own."""
+
+    def __init__(self, checks, program, example):
+        self.checks, self.program, self.example = checks, os.path.abspath(program), example
+        self.holder = tempfile.TemporaryDirectory()
+        self.folder = self.holder.name
+        self.data = os.path.join(self.folder, f'{example}.nml')
+        shutil.copy(os.path.join(TREE, 'examples', example, f'{example}.nml'), self.data)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.holder.cleanup()
+
+    def after_run(self, *lines, code=0):
+        """Save and run, then type lines; what was said to each of them."""
+        done = run(self.program, '--edit', f'{self.example}.nml', folder=self.folder,
+                   stdin='\n'.join(['', 'both', '', *lines]) + '\n')
+        self.checks.equal(done.returncode, code, f'{self.example} {lines}: exit code')
+        parts = re.split(r'  ' + PROMPT + r' \[(?:done|run)\]: \n', done.stderr)
+        self.checks.true(len(parts) > 1, f'{self.example} {lines}: there is a prompt after the run', done.stderr)
+        return parts[1:], done.stdout
+
+    def written(self):
+        """The table that the run wrote."""
+        name = re.search(r"table *= *'([^']*)'", open(self.data, encoding='utf-8').read()).group(1)
+        with open(os.path.join(self.folder, name), encoding='utf-8') as file:
+            return read_table(file.read())
+
+    def independent(self, *options):
+        return table_of(self.program, self.data, *options)
+
+
+def rows_shown(text):
+    """Names, units and rows of the list."""
+    lines = text.splitlines()
+    rows = [line.split() for line in lines[2:] if not line.startswith('(')]
+    return lines[0].split(), lines[1].split(), np.array(rows, float)
+
+
+def test_show(session):
+    checks = session.checks
+    said, _ = session.after_run('show 3 q5 P.y', 'show 5', 'show q7', 'show 2 q55', 'done')
+    table = session.written()
+    for text, names, count in ((said[0], ['t', 'q5', 'P.y'], 3), (said[1], ['t', 'q1', 'q2', 'q3', 'q4', 'q5'], 5),
+                               (said[2], ['t', 'q7'], 8)):
+        got, _, rows = rows_shown(text)
+        checks.equal(got, names, f'show: the columns {names}')
+        # seven significant digits are shown
+        checks.true(np.allclose(rows, np.array([table[name][-count:] for name in names]).T, rtol=5e-7, atol=1e-12),
+                    f'show: the last {count} rows of the table', text)
+    checks.true("no column 'q55'" in said[3] and 'did you mean q5?' in said[3], 'show: a name that is not there', said[3])
+    checks.true(all(len(line) <= 79 for text in said for line in text.splitlines()), 'show: within 80 columns')
+
+
+def test_compare(session):
+    checks = session.checks
+    before = session.independent()
+    said, _ = session.after_run('compare', 'change drive 5 coefficients = 0.5, 6.01', '', 'compare', 'run', 'compare', 'done')
+    after = session.independent()     # the data file now holds the change
+    checks.true('no run before' in said[0], 'compare: nothing to compare with at first', said[0])
+    checks.near(after['q5'], 0.5 + 6.01 * after['t'], 1e-14, 'the change is in the data file')
+    found = re.findall(r'^ *(\S+) +(\S+) +(\S+) % +(\S+) +(\S+) +(\S+)$', said[3], re.M)
+    checks.equal(len(found), 15, 'compare: as many lines as fit')
+    largest = {name: np.max(np.abs(after[name] - before[name])) for name in after}
+    for name, difference, _, time, old, new in found:
+        # four and five significant digits are shown
+        checks.near(float(difference) / largest[name], 1.0, 1e-3, f'compare: the largest difference of {name}')
+        at = np.argmin(np.abs(after['t'] - float(time)))
+        checks.near([float(old), float(new)], [before[name][at], after[name][at]], 1e-4, f'compare: {name} before and now')
+    shares = [float(row[2]) for row in found]
+    checks.equal(shares, sorted(shares, reverse=True), 'compare: the greatest share first')
+    checks.true('to the last bit' in said[5], 'compare: the same data give the same numbers', said[5])
+
+
+def test_change(session):
+    """A wrong value is refused and asked for again; a change that is not run is kept."""
+    checks = session.checks
+    end = session.independent()['t'][-1]
+    said, _ = session.after_run('change time end = soon', '2', 'time intervals = 50', 'change nothing', 'run', 'change time end = 3', 'done')
+    after = session.written()
+    checks.true(end != 2 and after['t'][-1] == 2 and len(after['t']) == 51, 'two changes, and both are in the run')
+    checks.true('no answer that can be changed' in said[2], 'what cannot be changed is told', said[2])
+    draft = [name for name in os.listdir(session.folder) if name.endswith('.draft.nml')]
+    checks.equal(len(draft), 1, 'a change that was not run is kept in a file')
+    checks.true('--resume' in said[-1] and draft and draft[0] in said[-1], 'whose name is told', said[-1])
+    checks.near(session.independent()['t'][-1], 2.0, 0.0, 'and the data file is that of the last run')
+
+
+def test_plot(session):
+    checks = session.checks
+    if not shutil.which('gnuplot'):
+        said, _ = session.after_run('plot q1', 'done')
+        checks.true('gnuplot' in said[0], 'plot: says what is missing', said[0])
+        return
+    said, output = session.after_run('plot q1 P.x', 'plot sub.svg:P.x:P.y', 'plot zzz', 'done')
+    checks.true('q1' in output and 'P.x' in output and '*' in output, 'plot: in the terminal', output)
+    checks.true(os.path.getsize(os.path.join(session.folder, 'sub.svg')) > 1000, 'plot: a picture')
+    checks.true('zzz' in said[2], 'plot: a name that is not there', said[2])
+
+
+def test_failed_run(session):
+    """A run that fails ends nothing; the exit code is that of the last run."""
+    checks = session.checks
+    short, long = ('change pair 7 moving_point = %s, 0, 0' % length for length in ('0.1', '20'))
+    said, _ = session.after_run(short, '', 'show 1', 'compare', 'done', code=6)
+    checks.true('dead point' in said[1], 'a rocker too short for a full turn is told', said[1])
+    rows = re.search(r'the last 1 of (\d+) rows', said[2])
+    checks.true(rows and 0 < int(rows.group(1)) < 101, 'the results up to there are shown', said[2])
+    checks.true(f'Compared at the {rows.group(1)} times' in said[3], 'and compared', said[3])
+    said, _ = session.after_run(long, 'run', 'show 1', 'compare', 'done', code=5)
+    checks.true('assembled' in said[1], 'a rocker that reaches nothing is told', said[1])
+    checks.true('no results' in said[2] and 'no results' in said[3], 'there is nothing to look at', said[2:4])
+
+
+def test_dynamics(session):
+    said, _ = session.after_run('show 4', 'done')
+    table = session.written()
+    names, _, rows = rows_shown(said[0])
+    session.checks.true(np.allclose(rows, np.array([table[name][-4:] for name in names]).T, rtol=5e-7, atol=1e-12),
+                        'mech9d: the last rows of the table', said[0])
+
+
+def test_interrupted(session):
+    """Ctrl-C ends the run and not the conversation."""
+    with Terminal([session.program, '--edit', f'{session.example}.nml'], folder=session.folder) as terminal:
+        terminal.expect('right: ')
+        terminal.type('time intervals\r')
+        terminal.expect(']: ')
+        terminal.type('400000000\r')
+        terminal.expect('right: ')
+        terminal.type('\r')
+        terminal.expect('[both]: ')
+        terminal.type('\r')
+        terminal.expect(']: ')
+        terminal.type('\r')
+        session.checks.true(terminal.expect(' left'), 'a long run tells the time left', terminal.seen)
+        terminal.type('\x03')
+        session.checks.true(terminal.expect(PROMPT), 'and the conversation goes on after Ctrl-C', terminal.seen)
+        terminal.type('show 2 q5\r')
+        session.checks.true(terminal.expect('the last 2 of'), 'with the results so far', terminal.seen)
+        terminal.type('\r')
+        session.checks.equal(terminal.ends(), 130, 'its exit code tells that the run was interrupted')
+
+
+def main():
+    checks = Checks()
+    kinematics, dynamics = sys.argv[1:3]
+    for test in (test_show, test_compare, test_change, test_plot, test_failed_run):
+        with Session(checks, kinematics, 'fig1') as session:
+            test(session)
+    with Session(checks, dynamics, 'pendulum') as session:
+        test_dynamics(session)
+    if available():
+        with Session(checks, kinematics, 'fig1') as session:
+            test_interrupted(session)
+    else:
+        print('no pseudo-terminals here: Ctrl-C was not typed')
+    checks.finish()
+
+
+main()
