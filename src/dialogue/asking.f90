@@ -210,9 +210,8 @@ contains
     integer, allocatable :: rows(:)
     integer :: i
 
-    rows = rows_of_group(group_table(question%group_row)%name)
-    associate (interview => conversation%interview)
-      rows = pack(rows, [(is_seldom(interview%outline, item_table(rows(i))), i=1, size(rows))])
+    associate (interview => conversation%interview, every => rows_of_group(group_table(question%group_row)%name))
+      rows = pack(every, [(is_seldom(interview%outline, item_table(every(i))), i=1, size(every))])
       problem = ''
       if (yes_or_no(line) == 'yes') then
         interview%outline%asked(rows) = .true.

@@ -56,6 +56,7 @@ contains
     character(len=:), allocatable :: line, step
     integer :: i
 
+    step = ''
     line = '    '//to_text(chain%start)
     do i = chain%first, chain%last
       step = ' -'//to_text(vectors%nws(i))//'- '

@@ -23,6 +23,7 @@ contains
     integer :: i, j, number
 
     number = 0
+    piece = ''
     do i = 1, size(draft%groups)
       line = '  '//title_of(draft, i)//':'
       do j = 1, size(draft%groups(i)%entries)
