@@ -9,6 +9,8 @@ find_file(MECH9_SUNDIALS_CONFIG sundials/sundials_config.h REQUIRED)
 mark_as_advanced(MECH9_SUNDIALS_MODULES MECH9_SUNDIALS_CONFIG)
 file(STRINGS "${MECH9_SUNDIALS_CONFIG}" version REGEX "#define SUNDIALS_VERSION_MAJOR")
 string(REGEX MATCH "[0-9]+" MECH9_SUNDIALS_MAJOR "${version}")
+file(STRINGS "${MECH9_SUNDIALS_CONFIG}" version REGEX "#define SUNDIALS_VERSION ")
+string(REGEX MATCH "[0-9.]+" MECH9_SUNDIALS_VERSION "${version}")
 
 if(MECH9_SUNDIALS_MAJOR EQUAL 6)
   # static: a program then needs nothing of SUNDIALS where it runs
@@ -42,6 +44,34 @@ if(MECH9_LINE_EDITING AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|amd64|AMD64|a
   endif()
 endif()
 
+# HDF5 with its Fortran modules (Debian: libhdf5-dev), by its files: the package of HDF5 itself brings shared
+# libraries only, and those bring some forty others, so that each start of a program would take three times as long.
+find_path(MECH9_HDF5_MODULES hdf5.mod PATH_SUFFIXES hdf5/serial
+  DOC "where HDF5's Fortran modules are (Debian: libhdf5-dev)" REQUIRED)
+mark_as_advanced(MECH9_HDF5_MODULES)
+foreach(part libhdf5_serialhl_fortran.a libhdf5_serial_hl.a libhdf5_serial_fortran.a libhdf5_serial.a libsz.a libaec.a libz.a)
+  find_library(MECH9_${part} ${part} DOC "a part of HDF5")
+  mark_as_advanced(MECH9_${part})
+  list(APPEND MECH9_HDF5_STATIC "${MECH9_${part}}")
+endforeach()
+if(NOT MECH9_HDF5_STATIC MATCHES "NOTFOUND" AND NOT DEFINED MECH9_HDF5_IS_STATIC)
+  file(WRITE "${PROJECT_BINARY_DIR}/CMakeFiles/hdf5_static.f90"
+    "program hdf5_static\n use hdf5\n use h5ds\n integer :: i\n call h5open_f(i)\n call h5dsset_scale_f(0_hid_t, i)\nend program\n")
+  try_compile(MECH9_HDF5_IS_STATIC "${PROJECT_BINARY_DIR}/CMakeFiles/hdf5_static"
+    "${PROJECT_BINARY_DIR}/CMakeFiles/hdf5_static.f90"
+    CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${MECH9_HDF5_MODULES}" LINK_LIBRARIES ${MECH9_HDF5_STATIC})
+endif()
+if(MECH9_HDF5_IS_STATIC)
+  set(MECH9_HDF5_LIBRARIES ${MECH9_HDF5_STATIC})
+else()
+  # HDF5 1.14 of Debian 13 would want curl and crypto besides
+  foreach(part hl_fortran _hl _fortran "")
+    find_library(MECH9_HDF5${part} NAMES hdf5_serial${part} hdf5${part} DOC "a part of HDF5" REQUIRED)
+    mark_as_advanced(MECH9_HDF5${part})
+    list(APPEND MECH9_HDF5_LIBRARIES "${MECH9_HDF5${part}}")
+  endforeach()
+endif()
+
 # The same libraries as files or linker options, for mech9-link, which works without CMake.
-set(MECH9_LINK_LIBRARIES ${MECH9_SUNDIALS_LIBRARIES} ${LAPACK_LIBRARIES} ${LAPACK_LINKER_FLAGS}
+set(MECH9_LINK_LIBRARIES ${MECH9_HDF5_LIBRARIES} ${MECH9_SUNDIALS_LIBRARIES} ${LAPACK_LIBRARIES} ${LAPACK_LINKER_FLAGS}
   ${MECH9_LINE_EDITING_LIBRARIES})

@@ -3,9 +3,14 @@ module mech9_lapack
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: dgtsv, dgesvd, dgeqrf, dormqr, dgeqp3
+  public :: ilaver, dgtsv, dgesvd, dgeqrf, dormqr, dgeqp3
 
   interface
+    !> The version of the library.
+    subroutine ilaver(major, minor, patch)
+      integer, intent(out) :: major, minor, patch
+    end subroutine ilaver
+
     !> Tridiagonal linear equations.
     subroutine dgtsv(n, nrhs, dl, d, du, b, ldb, info)
       import :: wp

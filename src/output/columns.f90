@@ -15,6 +15,7 @@ module mech9_columns
   type :: columns_type
     type(string_type), allocatable :: names(:)
     type(string_type), allocatable :: units(:)
+    type(string_type), allocatable :: long_names(:)   !< a few words; the name where none were given
     integer :: count = 0
     real(wp), allocatable :: factors(:)     !< (M) from the program's units to those of the results
   contains
@@ -38,7 +39,7 @@ contains
 
     angle = merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
     allocate (columns%names(1 + 3*size(mechanism%pairs) + 9*size(mechanism%points)))
-    allocate (columns%units(size(columns%names)))
+    allocate (columns%units(size(columns%names)), columns%long_names(size(columns%names)))
     allocate (columns%factors(size(mechanism%pairs)), source=1.0_wp)
     call columns%append('t', 's')
     do order = 1, 3
@@ -64,23 +65,32 @@ contains
   end function kinematic_columns
 
   !> One more column at the end.
-  pure subroutine append(self, name, unit)
+  pure subroutine append(self, name, unit, long_name)
     class(columns_type), intent(inout) :: self
     character(len=*), intent(in) :: name, unit
-    type(string_type), allocatable :: grown(:)
+    character(len=*), intent(in), optional :: long_name
 
     if (self%count == size(self%names)) then
-      allocate (grown(self%count + 8))
-      grown(:self%count) = self%names
-      call move_alloc(grown, self%names)
-      allocate (grown(self%count + 8))
-      grown(:self%count) = self%units
-      call move_alloc(grown, self%units)
+      call grow(self%names)
+      call grow(self%units)
+      call grow(self%long_names)
     end if
     self%count = self%count + 1
     self%names(self%count)%text = name
     self%units(self%count)%text = unit
+    self%long_names(self%count)%text = name
+    if (present(long_name)) self%long_names(self%count)%text = long_name
   end subroutine append
+
+  !> Room for a few more.
+  pure subroutine grow(texts)
+    type(string_type), allocatable, intent(inout) :: texts(:)
+    type(string_type), allocatable :: grown(:)
+
+    allocate (grown(size(texts) + 8))
+    grown(:size(texts)) = texts
+    call move_alloc(grown, texts)
+  end subroutine grow
 
   !> The row of a state; `used` numbers are set.
   pure subroutine fill(self, mechanism, plan, state, row, used)

@@ -18,6 +18,7 @@ module mech9_command_line
   !> What a command line asks for: a data file, and options by the names of the table of options.
   type :: command_line_type
     character(len=:), allocatable :: file             !< the data file; empty where none is given
+    character(len=:), allocatable :: line             !< all words, as a shell would take them
     type(given_type), allocatable, private :: given(:)
   contains
     procedure :: has
@@ -52,6 +53,7 @@ contains
     logical :: only_files
 
     options%file = ''
+    options%line = shell_line(words)
     allocate (options%given(0))
     only_files = .false.
     i = 1
@@ -69,6 +71,29 @@ contains
     end do
     call judge(program_name, options, err)
   end subroutine parse_command_line
+
+  !> Words as one line that a shell takes for the same words.
+  pure function shell_line(words) result(line)
+    type(string_type), intent(in) :: words(:)
+    character(len=:), allocatable :: line
+    character(len=*), parameter :: harmless = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+%@'
+    integer :: i, k
+
+    line = ''
+    do i = 1, size(words)
+      if (i > 1) line = line//' '
+      if (verify(words(i)%text, harmless) == 0 .and. words(i)%text /= '') then
+        line = line//words(i)%text
+        cycle
+      end if
+      line = line//"'"
+      do k = 1, len(words(i)%text)
+        if (words(i)%text(k:k) == "'") line = line//"'\'"
+        line = line//words(i)%text(k:k)
+      end do
+      line = line//"'"
+    end do
+  end function shell_line
 
   !> A single dash is not an option: it names standard input or output.
   pure logical function is_option(word)
@@ -272,10 +297,8 @@ contains
     if (options%has('help') .or. options%has('version') .or. options%has('help-data')) return
     if (options%has('quiet') .and. options%has('verbose')) then
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
-    else if (options%has('no-write') .and. options%has('table')) then
-      call raise(err, exit_usage, '--no-write and --table contradict each other')
-    else if (options%has('no-write') .and. options%has('plot')) then
-      call raise(err, exit_usage, '--no-write and --plot contradict each other')
+    else if (options%has('no-write') .and. (options%has('table') .or. options%has('hdf5') .or. options%has('plot'))) then
+      call raise(err, exit_usage, '--no-write contradicts --table, --hdf5 and --plot')
     else if (options%converses()) then
       call judge_conversation(program_name, options, err)
     end if

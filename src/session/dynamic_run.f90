@@ -92,10 +92,10 @@ contains
 
     run%program_name = 'mech9d'
     run%columns = kinematic_columns(mechanism)
-    call run%columns%append('E.kinetic', 'J')
-    call run%columns%append('E.potential', 'J')
-    call run%columns%append('E.total', 'J')
-    call run%columns%append('closure', 'm')
+    call run%columns%append('E.kinetic', 'J', 'kinetic energy')
+    call run%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
+    call run%columns%append('E.total', 'J', 'kinetic and potential energy')
+    call run%columns%append('closure', 'm', 'largest error of a closed chain')
     run%t = mechanism%time%start
     allocate (run%events(0))
     allocate (run%system)

@@ -53,8 +53,9 @@ contains
     run%plan = plan
     run%start = start
     run%columns = kinematic_columns(mechanism)
-    call run%columns%append('closure', 'm')
-    if (mechanism%output%conditioning) call run%columns%append('conditioning', '1')
+    call run%columns%append('closure', 'm', 'largest error of a closed chain')
+    if (mechanism%output%conditioning) &
+      call run%columns%append('conditioning', '1', 'least singular value of the worst chains')
   end subroutine new_kinematic_run
 
   !> Position, velocity and acceleration at time t.

@@ -94,7 +94,7 @@ contains
 
     call announce(options, mechanism, plan)
     if (pictures%any_wanted()) run%film = pictures%film_for(mechanism, mechanism%time%intervals + 1)
-    call results%open(options, mechanism, run%program_name, run%columns, err)
+    call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return

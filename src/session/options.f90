@@ -40,6 +40,8 @@ module mech9_options
                 'print how far each independent coordinate can go from the start'), &
     option_type('table', needed_argument, 'PATH', any_text, .false., both, &
                 'write the table of results there; - is standard output'), &
+    option_type('hdf5', needed_argument, 'PATH', any_text, .false., both, &
+                'write the results as an HDF5 file there'), &
     option_type('plot', needed_argument, '[TARGET:]NAMES', any_text, .true., both, &
                 'plot columns, as in q3,P.x or P.x:P.y; TARGET is a picture or term'), &
     option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &

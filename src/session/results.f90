@@ -1,23 +1,26 @@
 !> All that a run writes its rows to, opened in one place from the options and the data file.
-!> Uses error, text, mechanism, the sinks of the output and pictures floors, command_line, version.
+!> Uses error, text, mechanism, the sinks of the output and pictures floors, command_line, hdf5_record, version.
 module mech9_results
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
   use mech9_table, only: table_type
   use mech9_plot, only: plot_type, default_picture
+  use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_command_line, only: command_line_type
+  use mech9_hdf5_record, only: write_provenance, write_structure
   use mech9_version, only: version
   implicit none
   private
-  public :: results_type, table_path_of
+  public :: results_type
 
   !> The open results of one run.
   type :: results_type
     character(len=:), allocatable :: table_path     !< '-' is standard output; empty: no table
+    character(len=:), allocatable :: hdf5_path      !< empty: no such file
     type(sink_slot_type), allocatable :: sinks(:)
   contains
     procedure :: open => open_results
@@ -25,31 +28,30 @@ module mech9_results
     procedure :: flush => flush_results
     procedure :: close => close_results
     procedure :: print_words
-    procedure, private :: open_table
-    procedure, private :: open_plots
+    procedure, private :: open_plots, open_table, open_hdf5
   end type results_type
 
 contains
 
-  !> Where the table goes: the command line comes before the data file; without either, standard output, unless
-  !> what is asked for is a picture.
-  pure function table_path_of(options, mechanism) result(path)
+  !> Where a kind of results goes: the command line comes before the data file; empty if nowhere.
+  pure function path_of(options, option, in_data_file) result(path)
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: option         !< without the dashes
+    character(len=*), intent(in) :: in_data_file   !< the path there
     character(len=:), allocatable :: path
 
-    path = '-'
-    if (options%has('plot')) path = ''
-    if (mechanism%output%table /= '') path = mechanism%output%table
-    if (options%has('table')) path = options%argument('table')
+    path = in_data_file
+    if (options%has(option)) path = options%argument(option)
     if (options%has('no-write')) path = ''
-  end function table_path_of
+  end function path_of
 
-  !> Open everything that is asked for; after an error nothing is open.
-  subroutine open_results(self, options, mechanism, program_name, columns, err)
+  !> Open everything that is asked for; if no result is, the table goes to standard output. After an error
+  !> nothing is open.
+  subroutine open_results(self, options, mechanism, data_text, program_name, columns, err)
     class(results_type), intent(out) :: self
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: data_text        !< of the data file
     character(len=*), intent(in) :: program_name
     type(columns_type), intent(in) :: columns        !< of the rows to come
     type(error_type), allocatable, intent(out) :: err
@@ -58,10 +60,19 @@ contains
     integer :: i
 
     allocate (self%sinks(0))
-    self%table_path = table_path_of(options, mechanism)
+    self%table_path = path_of(options, 'table', mechanism%output%table)
+    self%hdf5_path = path_of(options, 'hdf5', mechanism%output%hdf5)
+    if (self%table_path == '' .and. self%hdf5_path == '' .and. .not. (options%has('plot') .or. options%has('no-write'))) &
+      self%table_path = '-'
+    if (self%table_path == self%hdf5_path .and. self%table_path /= '') then
+      call raise(err, exit_usage, "the table and the HDF5 file cannot both be '"//self%table_path//"'")
+      return
+    end if
     ! a wrong name in a plot is found before a file is touched
     call self%open_plots(options, mechanism, columns, plots, err)
     if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(mechanism, program_name, columns, err)
+    if (.not. allocated(err) .and. self%hdf5_path /= '') &
+      call self%open_hdf5(options, mechanism, data_text, program_name, columns, err)
     if (allocated(err)) then
       call self%close(at_close)
       return
@@ -113,6 +124,26 @@ contains
     call move_alloc(table, sink)
     call append_sink(self%sinks, sink)
   end subroutine open_table
+
+  subroutine open_hdf5(self, options, mechanism, data_text, program_name, columns, err)
+    class(results_type), intent(inout) :: self
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: data_text, program_name
+    type(columns_type), intent(in) :: columns
+    type(error_type), allocatable, intent(out) :: err
+    type(hdf5_sink_type), allocatable :: file
+    class(result_sink_type), allocatable :: sink
+
+    allocate (file)
+    call file%open(self%hdf5_path, mechanism, columns, err)
+    if (allocated(err)) return
+    call write_provenance(file%file, program_name, options, mechanism, data_text)
+    call write_structure(file%file, mechanism)
+    call file%flush(err)
+    call move_alloc(file, sink)
+    call append_sink(self%sinks, sink)
+  end subroutine open_hdf5
 
   !> Rows to everyone; the first error ends it.
   subroutine write_rows(self, rows, err)

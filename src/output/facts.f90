@@ -1,0 +1,136 @@
+!> What is to be told of a run besides its rows: named numbers and texts, told once and written to every
+!> report. Uses json, hdf5_file and the base.
+module mech9_facts
+  use mech9_kinds, only: wp, long
+  use mech9_json, only: json_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  implicit none
+  private
+  public :: facts_type
+
+  integer, parameter :: a_number = 1, a_count = 2, a_text = 3
+
+  type :: fact_type
+    character(len=:), allocatable :: name        !< a word of lower-case letters and underscores
+    character(len=:), allocatable :: long_name   !< a few words for people
+    character(len=:), allocatable :: unit        !< empty for what has none
+    integer :: kind = a_number
+    real(wp) :: number = 0.0_wp
+    integer(long) :: whole = 0
+    character(len=:), allocatable :: text
+  end type fact_type
+
+  !> The facts in their order.
+  type :: facts_type
+    private
+    type(fact_type), allocatable :: items(:)
+    integer :: count = 0
+  contains
+    procedure, private :: add_number, add_count, add_whole, add_text, next_item
+    !> add(name, value, long_name [, unit])
+    generic :: add => add_number, add_count, add_whole, add_text
+    procedure :: to_json
+    procedure :: to_hdf5
+  end type facts_type
+
+contains
+
+  subroutine add_number(self, name, value, long_name, unit)
+    class(facts_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    real(wp), intent(in) :: value
+    character(len=*), intent(in) :: unit
+
+    call self%next_item(name, long_name, unit, a_number)
+    self%items(self%count)%number = value
+  end subroutine add_number
+
+  subroutine add_count(self, name, value, long_name)
+    class(facts_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    integer, intent(in) :: value
+
+    call self%add_whole(name, int(value, long), long_name)
+  end subroutine add_count
+
+  subroutine add_whole(self, name, value, long_name)
+    class(facts_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    integer(long), intent(in) :: value
+
+    call self%next_item(name, long_name, '', a_count)
+    self%items(self%count)%whole = value
+  end subroutine add_whole
+
+  subroutine add_text(self, name, value, long_name)
+    class(facts_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, value, long_name
+
+    call self%next_item(name, long_name, '', a_text)
+    self%items(self%count)%text = value
+  end subroutine add_text
+
+  !> Room for one more. By hand: an array constructor of them would leak (gfortran 12).
+  subroutine next_item(self, name, long_name, unit, kind)
+    class(facts_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name, unit
+    integer, intent(in) :: kind
+    type(fact_type), allocatable :: grown(:)
+    integer :: i
+
+    if (.not. allocated(self%items)) allocate (self%items(16))
+    if (self%count == size(self%items)) then
+      allocate (grown(2*self%count))
+      do i = 1, self%count
+        grown(i) = self%items(i)
+      end do
+      call move_alloc(grown, self%items)
+    end if
+    self%count = self%count + 1
+    self%items(self%count)%name = name
+    self%items(self%count)%long_name = long_name
+    self%items(self%count)%unit = unit
+    self%items(self%count)%kind = kind
+  end subroutine next_item
+
+  !> Into the object that is being composed, each under its name.
+  subroutine to_json(self, json)
+    class(facts_type), intent(in) :: self
+    type(json_type), intent(inout) :: json
+    integer :: i
+
+    do i = 1, self%count
+      associate (item => self%items(i))
+        select case (item%kind)
+        case (a_number)
+          call json%add(item%name, item%number)
+        case (a_count)
+          call json%add(item%name, item%whole)
+        case (a_text)
+          call json%add(item%name, item%text)
+        end select
+      end associate
+    end do
+  end subroutine to_json
+
+  !> Into a group, each as a data set.
+  subroutine to_hdf5(self, file, group)
+    class(facts_type), intent(in) :: self
+    type(hdf5_file_type), intent(inout) :: file
+    character(len=*), intent(in) :: group
+    integer :: i
+
+    do i = 1, self%count
+      associate (item => self%items(i))
+        select case (item%kind)
+        case (a_number)
+          call file%put(group//'/'//item%name, item%number, item%long_name, item%unit)
+        case (a_count)
+          call file%put(group//'/'//item%name, item%whole, item%long_name)
+        case (a_text)
+          call file%put(group//'/'//item%name, item%text, item%long_name)
+        end select
+      end associate
+    end do
+  end subroutine to_hdf5
+end module mech9_facts

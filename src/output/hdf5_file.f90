@@ -1,0 +1,356 @@
+!> An HDF5 file being written: data sets that stand at once, attributes, dimension scales. Uses the modules
+!> of HDF5, hdf5_reason and the base.
+!>
+!> The first failure is kept and everything after it does nothing, so that many calls can follow each
+!> other before someone asks for it. Names are paths; the groups on the way are made.
+module mech9_hdf5_file
+  use, intrinsic :: iso_c_binding, only: c_ptr, c_loc, c_null_char, c_char
+  use hdf5, only: hid_t, hsize_t, h5open_f, h5dont_atexit_f, h5eset_auto_f, h5get_libversion_f, &
+                  h5fcreate_f, h5fflush_f, h5fclose_f, h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_local_f, &
+                  h5pcreate_f, h5pclose_f, h5pset_fclose_degree_f, h5pset_meta_block_size_f, h5pset_create_inter_group_f, &
+                  h5p_file_access_f, h5p_link_create_f, &
+                  h5screate_f, h5screate_simple_f, h5sclose_f, h5s_scalar_f, &
+                  h5tcopy_f, h5tset_cset_f, h5tclose_f, h5t_string, h5t_cset_utf8_f, &
+                  h5t_ieee_f64le, h5t_std_i32le, h5t_std_i64le, h5t_native_double, h5kind_to_type, h5_integer_kind, &
+                  h5dcreate_f, h5dopen_f, h5dwrite_f, h5dclose_f, &
+                  h5acreate_by_name_f, h5awrite_f, h5aclose_f
+  use h5ds, only: h5dsset_scale_f, h5dsattach_scale_f
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, raise, exit_file
+  use mech9_text, only: string_type, to_text
+  use mech9_hdf5_reason, only: last_reason
+  implicit none
+  private
+  public :: hdf5_file_type, hdf5_version
+
+  !> Metadata stands in one piece at the beginning of the file, so that a flush hands it over in one write and
+  !> a run that is killed leaves the old state or the new one, nothing between [bytes].
+  integer(hsize_t), parameter :: metadata_block = 131072
+
+  type :: hdf5_file_type
+    character(len=:), allocatable :: path
+    integer(hid_t) :: id = -1
+    type(error_type), allocatable :: failure      !< the first one
+    integer(hid_t), private :: text_type = -1     !< UTF-8 of any length
+    integer(hid_t), private :: make_groups = -1   !< property: groups on the way are made
+  contains
+    procedure :: create => create_file
+    procedure :: flush => flush_file
+    procedure :: close => close_file
+    procedure :: is_open
+    procedure :: link_properties
+    procedure :: check
+    !> A data set that stands at once: put(name, values, long_name [, unit]).
+    generic :: put => put_text, put_texts, put_real, put_reals, put_matrix, put_integer, put_integers, &
+      put_integer_matrix, put_long
+    procedure :: add_attribute
+    procedure :: describe
+    procedure :: make_scale
+    procedure :: attach_scales
+    procedure, private :: put_text, put_texts, put_real, put_reals, put_matrix, put_integer, put_integers, &
+      put_integer_matrix, put_long, put_values
+  end type hdf5_file_type
+
+contains
+
+  !> The library's name and version.
+  function hdf5_version() result(text)
+    character(len=:), allocatable :: text
+    integer :: major, minor, release, status
+
+    call h5get_libversion_f(major, minor, release, status)
+    text = 'HDF5 '//to_text(major)//'.'//to_text(minor)//'.'//to_text(release)
+  end function hdf5_version
+
+  !> Create the file, or empty it if it exists.
+  subroutine create_file(self, path, err)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(error_type), allocatable, intent(out) :: err
+    integer(hid_t) :: access
+    integer :: status
+
+    self%path = path
+    if (path == '' .or. path == '-' .or. index(path, c_null_char) > 0) then
+      call raise(err, exit_file, "'"//path//"' is not the name of a file for HDF5 results")
+      return
+    end if
+    ! everything is closed in order; what HDF5 would do at the end of the program can only fail aloud
+    call h5dont_atexit_f(status)
+    call h5open_f(status)
+    call h5eset_auto_f(0, status)
+    call h5pcreate_f(h5p_file_access_f, access, status)
+    call h5pset_fclose_degree_f(access, h5f_close_strong_f, status)
+    call h5pset_meta_block_size_f(access, metadata_block, status)
+    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, access_prp=access)
+    if (status < 0) then
+      self%id = -1
+      call raise(err, exit_file, "cannot open '"//path//"' for writing: "//last_reason())
+    end if
+    call h5pclose_f(access, status)
+    if (allocated(err)) return
+    call h5tcopy_f(h5t_string, self%text_type, status)
+    call h5tset_cset_f(self%text_type, h5t_cset_utf8_f, status)
+    call h5pcreate_f(h5p_link_create_f, self%make_groups, status)
+    call h5pset_create_inter_group_f(self%make_groups, 1, status)
+  end subroutine create_file
+
+  pure logical function is_open(self)
+    class(hdf5_file_type), intent(in) :: self
+
+    is_open = self%id >= 0
+  end function is_open
+
+  !> Properties for making data sets by path.
+  pure integer(hid_t) function link_properties(self)
+    class(hdf5_file_type), intent(in) :: self
+
+    link_properties = self%make_groups
+  end function link_properties
+
+  !> Keep the first failure: a call answered with a negative status.
+  subroutine check(self, status)
+    class(hdf5_file_type), intent(inout) :: self
+    integer, intent(in) :: status
+
+    if (status >= 0 .or. allocated(self%failure)) return
+    call raise(self%failure, exit_file, "cannot write to '"//self%path//"': "//last_reason())
+  end subroutine check
+
+  !> Hand everything to the system: a run that is killed from now on leaves at least this.
+  subroutine flush_file(self)
+    class(hdf5_file_type), intent(inout) :: self
+    integer :: status
+
+    if (allocated(self%failure)) return
+    call h5fflush_f(self%id, h5f_scope_local_f, status)
+    call self%check(status)
+  end subroutine flush_file
+
+  !> Close the file, and with it all that is open in it; does nothing to one that is not open.
+  subroutine close_file(self)
+    class(hdf5_file_type), intent(inout) :: self
+    integer :: status
+
+    if (.not. self%is_open()) return
+    call h5tclose_f(self%text_type, status)
+    call h5pclose_f(self%make_groups, status)
+    call h5fclose_f(self%id, status)
+    call self%check(status)
+    self%id = -1
+  end subroutine close_file
+
+  subroutine put_text(self, name, text, long_name)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, text, long_name
+    type(string_type) :: texts(1)
+
+    texts(1)%text = text
+    call put_text_values(self, name, texts, [integer(hsize_t) ::], long_name)
+  end subroutine put_text
+
+  subroutine put_texts(self, name, texts, long_name)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    type(string_type), intent(in) :: texts(:)
+
+    call put_text_values(self, name, texts, [size(texts, kind=hsize_t)], long_name)
+  end subroutine put_texts
+
+  subroutine put_text_values(self, name, texts, extents, long_name)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    type(string_type), intent(in) :: texts(:)
+    integer(hsize_t), intent(in) :: extents(:)
+    character(kind=c_char), allocatable, target :: letters(:)
+    type(c_ptr), allocatable, target :: starts(:)
+
+    call lay_out(texts, letters, starts)
+    call self%put_values(name, self%text_type, self%text_type, extents, c_loc(starts), long_name)
+  end subroutine put_text_values
+
+  subroutine put_real(self, name, value, long_name, unit)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    real(wp), intent(in), target :: value
+    character(len=*), intent(in), optional :: unit
+
+    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, [integer(hsize_t) ::], c_loc(value), long_name, unit)
+  end subroutine put_real
+
+  subroutine put_reals(self, name, values, long_name, unit)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    real(wp), intent(in), contiguous, target :: values(:)
+    character(len=*), intent(in), optional :: unit
+
+    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, [size(values, kind=hsize_t)], c_loc(values), &
+                         long_name, unit)
+  end subroutine put_reals
+
+  subroutine put_matrix(self, name, values, long_name, unit)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    real(wp), intent(in), contiguous, target :: values(:, :)
+    character(len=*), intent(in), optional :: unit
+
+    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, shape(values, kind=hsize_t), c_loc(values), &
+                         long_name, unit)
+  end subroutine put_matrix
+
+  subroutine put_integer(self, name, value, long_name)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    integer, intent(in), target :: value
+
+    call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(value), h5_integer_kind), [integer(hsize_t) ::], &
+                         c_loc(value), long_name)
+  end subroutine put_integer
+
+  subroutine put_integers(self, name, values, long_name)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    integer, intent(in), contiguous, target :: values(:)
+
+    call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind), &
+                         [size(values, kind=hsize_t)], c_loc(values), long_name)
+  end subroutine put_integers
+
+  subroutine put_integer_matrix(self, name, values, long_name)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    integer, intent(in), contiguous, target :: values(:, :)
+
+    call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind), &
+                         shape(values, kind=hsize_t), c_loc(values), long_name)
+  end subroutine put_integer_matrix
+
+  subroutine put_long(self, name, value, long_name)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    integer(long), intent(in), target :: value
+
+    call self%put_values(name, h5t_std_i64le, h5kind_to_type(kind(value), h5_integer_kind), [integer(hsize_t) ::], &
+                         c_loc(value), long_name)
+  end subroutine put_long
+
+  !> A data set of any type with its attributes.
+  subroutine put_values(self, name, file_type, memory_type, extents, values, long_name, unit)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    integer(hid_t), intent(in) :: file_type, memory_type
+    integer(hsize_t), intent(in) :: extents(:)     !< empty: a single value; else the Fortran order
+    type(c_ptr), intent(in) :: values
+    character(len=*), intent(in), optional :: unit
+    integer(hid_t) :: space, data_set
+    integer :: status
+
+    if (allocated(self%failure)) return
+    if (size(extents) == 0) then
+      call h5screate_f(h5s_scalar_f, space, status)
+    else
+      call h5screate_simple_f(size(extents), extents, space, status)
+    end if
+    call h5dcreate_f(self%id, name, file_type, space, data_set, status, lcpl_id=self%make_groups)
+    call self%check(status)
+    call h5sclose_f(space, status)
+    if (allocated(self%failure)) return
+    if (all(extents > 0)) call h5dwrite_f(data_set, memory_type, values, status)
+    call self%check(status)
+    call h5dclose_f(data_set, status)
+    call self%describe(name, long_name, unit)
+  end subroutine put_values
+
+  !> What a data set is, and its unit.
+  subroutine describe(self, name, long_name, unit)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name
+    character(len=*), intent(in), optional :: unit
+
+    call self%add_attribute(name, 'long_name', long_name)
+    if (present(unit)) call self%add_attribute(name, 'units', unit)
+  end subroutine describe
+
+  !> An attribute, a text, of a data set or group; `/` is the file itself.
+  subroutine add_attribute(self, name, attribute, text)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, attribute, text
+    character(kind=c_char), allocatable, target :: letters(:)
+    type(c_ptr), allocatable, target :: starts(:)
+    type(string_type) :: texts(1)
+    integer(hid_t) :: space, id
+    integer :: status
+
+    if (allocated(self%failure)) return
+    texts(1)%text = text
+    call lay_out(texts, letters, starts)
+    call h5screate_f(h5s_scalar_f, space, status)
+    call h5acreate_by_name_f(self%id, name, attribute, self%text_type, space, id, status)
+    call self%check(status)
+    call h5sclose_f(space, status)
+    if (allocated(self%failure)) return
+    call h5awrite_f(id, self%text_type, c_loc(starts), status)
+    call self%check(status)
+    call h5aclose_f(id, status)
+  end subroutine add_attribute
+
+  !> Texts as C has them: letters with zeros between, and where each begins.
+  subroutine lay_out(texts, letters, starts)
+    type(string_type), intent(in) :: texts(:)
+    character(kind=c_char), allocatable, target, intent(out) :: letters(:)
+    type(c_ptr), allocatable, target, intent(out) :: starts(:)
+    integer :: i, k, at
+
+    allocate (letters(sum([(len(texts(i)%text) + 1, i=1, size(texts))])))
+    allocate (starts(size(texts)))
+    at = 0
+    do i = 1, size(texts)
+      starts(i) = c_loc(letters(at + 1))
+      do k = 1, len(texts(i)%text)
+        letters(at + k) = texts(i)%text(k:k)
+      end do
+      at = at + len(texts(i)%text) + 1
+      letters(at) = c_null_char
+    end do
+  end subroutine lay_out
+
+  !> Make a data set of one dimension a dimension scale, named as it is.
+  subroutine make_scale(self, name)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer(hid_t) :: data_set
+    integer :: status
+
+    if (allocated(self%failure)) return
+    call h5dopen_f(self%id, name, data_set, status)
+    call self%check(status)
+    if (allocated(self%failure)) return
+    call h5dsset_scale_f(data_set, status, name(index(name, '/', back=.true.) + 1:))
+    call self%check(status)
+    call h5dclose_f(data_set, status)
+  end subroutine make_scale
+
+  !> Attach a scale to each dimension of a data set. A scale is not attached to others.
+  subroutine attach_scales(self, name, scales)
+    class(hdf5_file_type), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: scales(:)    !< paths, the slowest dimension first
+    integer(hid_t) :: data_set, scale
+    integer :: status, i
+
+    if (allocated(self%failure)) return
+    call h5dopen_f(self%id, name, data_set, status)
+    call self%check(status)
+    do i = 1, size(scales)
+      if (allocated(self%failure)) exit
+      call h5dopen_f(self%id, trim(scales(i)), scale, status)
+      call self%check(status)
+      if (allocated(self%failure)) exit
+      ! the dimensions as C counts them, the slowest first, but from 1
+      call h5dsattach_scale_f(data_set, scale, i, status)
+      call self%check(status)
+      call h5dclose_f(scale, status)
+    end do
+    call h5dclose_f(data_set, status)
+  end subroutine attach_scales
+end module mech9_hdf5_file

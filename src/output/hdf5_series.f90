@@ -1,0 +1,259 @@
+!> Quantities over time in an HDF5 file: data sets that grow by blocks of rows. Uses the modules of HDF5,
+!> hdf5_file and the base.
+!>
+!> The data sets grow together. Rows gather in memory, each quantity by itself, and go to the file in
+!> blocks; there they count only when a flush makes the new lengths known. A run may be killed in the middle
+!> of a flush: hence the lengths of all data sets stand side by side, in one piece of metadata that goes to the file
+!> in one write, and chunks are few and large, so that their index seldom changes.
+module mech9_hdf5_series
+  use, intrinsic :: iso_c_binding, only: c_loc
+  use hdf5, only: hid_t, hsize_t, size_t, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5pset_fill_time_f, h5pset_deflate_f, &
+                  h5pset_shuffle_f, h5pset_chunk_cache_f, h5p_dataset_create_f, h5p_dataset_access_f, &
+                  h5d_fill_time_never_f, h5screate_simple_f, h5sclose_f, h5s_unlimited_f, &
+                  h5sselect_hyperslab_f, h5s_select_set_f, h5dcreate_anon_f, h5olink_f, h5dset_extent_f, h5dget_space_f, &
+                  h5dwrite_f, h5dclose_f, h5t_ieee_f64le, h5t_native_double
+  use mech9_kinds, only: wp, long
+  use mech9_hdf5_file, only: hdf5_file_type
+  implicit none
+  private
+  public :: hdf5_series_type
+
+  !> Chunks of a run that goes to its end. What is compressed is written in whole chunks only.
+  integer, parameter :: plain_chunks = 8, compressed_chunks = 60
+  integer, parameter :: least_chunk_rows = 1024
+  !> Of the rows of a chunk of each quantity, and of the rows that gather before they are written [bytes].
+  integer(long), parameter :: largest_chunk = 268435456, buffer_size = 8388608
+  integer, parameter :: most_buffered = 4096
+
+  !> One quantity.
+  type :: quantity_type
+    integer(hid_t) :: data_set = -1
+    character(len=:), allocatable :: name, long_name, unit
+    character(len=:), allocatable :: scales(:)   !< paths of the dimension scales, time first; none: it is one itself
+    integer, allocatable :: columns(:)           !< of the rows that it consists of
+    integer(hsize_t), allocatable :: extents(:)  !< of one row of it, Fortran order; empty: one number
+    real(wp), allocatable :: buffer(:, :)        !< (columns, rows)
+  end type quantity_type
+
+  !> The quantities of one file.
+  type :: hdf5_series_type
+    private
+    type(quantity_type), allocatable :: quantities(:)
+    integer :: count = 0             !< of the quantities
+    integer :: compression = 0       !< 0 none to 9 most
+    integer :: chunk_rows = 0
+    integer :: capacity = 0          !< rows of the buffers
+    integer :: waiting = 0           !< rows in the buffers
+    integer(hsize_t) :: written = 0  !< rows in the file
+  contains
+    procedure :: start
+    procedure :: add
+    procedure :: create
+    procedure :: attach
+    procedure :: append_rows
+    procedure :: hand_over
+    procedure :: close => close_series
+  end type hdf5_series_type
+
+contains
+
+  !> Before the first quantity.
+  subroutine start(self, n_quantities, n_columns, expected_rows, compression)
+    class(hdf5_series_type), intent(inout) :: self
+    integer, intent(in) :: n_quantities, n_columns   !< at most
+    integer, intent(in) :: expected_rows             !< there may be more, or fewer
+    integer, intent(in) :: compression               !< 0 none to 9 most
+    integer :: pieces
+
+    allocate (self%quantities(n_quantities))
+    self%compression = compression
+    pieces = merge(compressed_chunks, plain_chunks, compression > 0)
+    self%chunk_rows = min(max(expected_rows, 1), max(least_chunk_rows, 1 + (expected_rows - 1)/pieces))
+    self%chunk_rows = min(self%chunk_rows, rows_within(largest_chunk, n_columns))
+    self%capacity = min(most_buffered, rows_within(buffer_size, n_columns))
+    ! what is compressed is written once only, in whole chunks
+    if (compression > 0) self%capacity = self%chunk_rows
+  end subroutine start
+
+  !> How many rows fit into so many bytes; one at least.
+  pure integer function rows_within(bytes, n_columns) result(rows)
+    integer(long), intent(in) :: bytes
+    integer, intent(in) :: n_columns
+
+    rows = int(max(1_long, bytes/(8_long*n_columns)))
+  end function rows_within
+
+  !> One more quantity.
+  subroutine add(self, name, columns, extents, long_name, unit, scales)
+    class(hdf5_series_type), intent(inout) :: self
+    character(len=*), intent(in) :: name, long_name, unit
+    integer, intent(in) :: columns(:)           !< of the rows that it consists of
+    integer, intent(in) :: extents(:)           !< of one row of it, Fortran order; empty: one number
+    character(len=*), intent(in) :: scales(:)   !< paths of the dimension scales, time first; none: it is one itself
+
+    self%count = self%count + 1
+    associate (quantity => self%quantities(self%count))
+      quantity%name = name
+      quantity%long_name = long_name
+      quantity%unit = unit
+      quantity%scales = scales
+      quantity%columns = columns
+      quantity%extents = extents
+      allocate (quantity%buffer(size(columns), self%capacity), source=0.0_wp)
+    end associate
+  end subroutine add
+
+  !> Make the data sets, one after the other without anything between, and name them then. To be called before
+  !> anything else is put into the file: a page of memory then holds all their lengths.
+  subroutine create(self, file)
+    class(hdf5_series_type), intent(inout) :: self
+    type(hdf5_file_type), intent(inout) :: file
+    integer :: i, status
+
+    do i = 1, self%count
+      call create_data_set(self, self%quantities(i), file)
+    end do
+    do i = 1, self%count
+      if (allocated(file%failure)) return
+      associate (quantity => self%quantities(i))
+        call h5olink_f(quantity%data_set, file%id, quantity%name, status)
+        call file%check(status)
+        call file%describe(quantity%name, quantity%long_name, quantity%unit)
+        if (size(quantity%scales) == 0) call file%make_scale(quantity%name)
+      end associate
+    end do
+  end subroutine create
+
+  !> An empty data set, still without a name.
+  subroutine create_data_set(self, quantity, file)
+    class(hdf5_series_type), intent(in) :: self
+    type(quantity_type), intent(inout) :: quantity
+    type(hdf5_file_type), intent(inout) :: file
+    integer(hid_t) :: creation, access, space
+    integer(hsize_t), dimension(size(quantity%extents) + 1) :: none, most, chunk
+    integer :: status, rank
+
+    if (allocated(file%failure)) return
+    rank = size(none)
+    none = [quantity%extents, 0_hsize_t]
+    most = [quantity%extents, h5s_unlimited_f]
+    chunk = [quantity%extents, int(self%chunk_rows, hsize_t)]
+    call h5pcreate_f(h5p_dataset_create_f, creation, status)
+    call h5pset_chunk_f(creation, rank, chunk, status)
+    call file%check(status)
+    call h5pset_fill_time_f(creation, h5d_fill_time_never_f, status)
+    if (self%compression > 0) call h5pset_shuffle_f(creation, status)
+    if (self%compression > 0) call h5pset_deflate_f(creation, self%compression, status)
+    call file%check(status)
+    ! no cache: blocks go to the file when they are written, not when HDF5 likes
+    call h5pcreate_f(h5p_dataset_access_f, access, status)
+    call h5pset_chunk_cache_f(access, 0_size_t, 0_size_t, 0.0, status)
+    call h5screate_simple_f(rank, none, space, status, most)
+    call h5dcreate_anon_f(file%id, h5t_ieee_f64le, space, quantity%data_set, status, dcpl_id=creation, dapl_id=access)
+    call file%check(status)
+    call h5sclose_f(space, status)
+    call h5pclose_f(access, status)
+    call h5pclose_f(creation, status)
+  end subroutine create_data_set
+
+  !> Attach the scales, which stand in the file now.
+  subroutine attach(self, file)
+    class(hdf5_series_type), intent(in) :: self
+    type(hdf5_file_type), intent(inout) :: file
+    integer :: i
+
+    do i = 1, self%count
+      if (size(self%quantities(i)%scales) > 0) &
+        call file%attach_scales(self%quantities(i)%name, self%quantities(i)%scales)
+    end do
+  end subroutine attach
+
+  !> Rows more. They go to the file when the buffers are full.
+  subroutine append_rows(self, file, rows)
+    class(hdf5_series_type), intent(inout) :: self
+    type(hdf5_file_type), intent(inout) :: file
+    real(wp), intent(in) :: rows(:, :)     !< (columns, rows)
+    integer :: next, together
+
+    next = 1
+    do while (next <= size(rows, 2))
+      together = min(size(rows, 2) - next + 1, self%capacity - self%waiting)
+      call take(self, rows(:, next:next + together - 1))
+      next = next + together
+      if (self%waiting == self%capacity) call self%hand_over(file)
+    end do
+  end subroutine append_rows
+
+  !> Keep rows, each quantity's numbers side by side.
+  pure subroutine take(self, rows)
+    class(hdf5_series_type), intent(inout) :: self
+    real(wp), intent(in) :: rows(:, :)
+    integer :: i, j, k
+
+    do i = 1, self%count
+      associate (quantity => self%quantities(i))
+        do j = 1, size(rows, 2)
+          do k = 1, size(quantity%columns)
+            quantity%buffer(k, self%waiting + j) = rows(quantity%columns(k), j)
+          end do
+        end do
+      end associate
+    end do
+    self%waiting = self%waiting + size(rows, 2)
+  end subroutine take
+
+  !> Write what waits. What is compressed waits for whole chunks, but at the end.
+  subroutine hand_over(self, file, at_end)
+    class(hdf5_series_type), intent(inout) :: self
+    type(hdf5_file_type), intent(inout) :: file
+    logical, intent(in), optional :: at_end
+    integer :: i
+
+    if (self%waiting == 0) return
+    if (self%compression > 0 .and. self%waiting < self%capacity .and. .not. present(at_end)) return
+    do i = 1, self%count
+      call write_block(self, self%quantities(i), file)
+    end do
+    self%written = self%written + self%waiting
+    self%waiting = 0
+  end subroutine hand_over
+
+  subroutine write_block(self, quantity, file)
+    class(hdf5_series_type), intent(in) :: self
+    type(quantity_type), intent(in), target :: quantity
+    type(hdf5_file_type), intent(inout) :: file
+    integer(hsize_t), dimension(size(quantity%extents) + 1) :: whole, first, block
+    integer(hid_t) :: in_file, in_memory
+    integer :: status, rank
+
+    if (allocated(file%failure)) return
+    rank = size(quantity%extents) + 1
+    whole = [quantity%extents, self%written + self%waiting]
+    first = 0
+    first(rank) = self%written
+    block = [quantity%extents, int(self%waiting, hsize_t)]
+    call h5dset_extent_f(quantity%data_set, whole, status)
+    call file%check(status)
+    call h5dget_space_f(quantity%data_set, in_file, status)
+    call h5sselect_hyperslab_f(in_file, h5s_select_set_f, first, block, status)
+    call h5screate_simple_f(rank, block, in_memory, status)
+    call h5dwrite_f(quantity%data_set, h5t_native_double, c_loc(quantity%buffer), status, &
+                    mem_space_id=in_memory, file_space_id=in_file)
+    call file%check(status)
+    call h5sclose_f(in_memory, status)
+    call h5sclose_f(in_file, status)
+  end subroutine write_block
+
+  !> Write what waits and close the data sets.
+  subroutine close_series(self, file)
+    class(hdf5_series_type), intent(inout) :: self
+    type(hdf5_file_type), intent(inout) :: file
+    integer :: i, status
+
+    call self%hand_over(file, at_end=.true.)
+    do i = 1, self%count
+      if (self%quantities(i)%data_set >= 0) call h5dclose_f(self%quantities(i)%data_set, status)
+    end do
+    self%count = 0
+  end subroutine close_series
+end module mech9_hdf5_series

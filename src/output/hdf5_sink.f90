@@ -1,0 +1,228 @@
+!> Results as an HDF5 file: what stands in it is described in docs/results.md. Uses result_sink, hdf5_file,
+!> hdf5_series, columns, mechanism, clock and the base.
+module mech9_hdf5_sink
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type
+  use mech9_clock, only: pacer_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_columns, only: columns_type
+  use mech9_result_sink, only: result_sink_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_series, only: hdf5_series_type
+  implicit none
+  private
+  public :: hdf5_sink_type
+
+  !> How long rows may be unknown to the file [s].
+  real(wp), parameter :: longest_wait = 1.0_wp
+  !> Time, coordinates, points, and their derivatives.
+  integer, parameter :: quantities_of_motion = 7
+  character, parameter :: directions(3) = ['x', 'y', 'z']
+
+  type, extends(result_sink_type) :: hdf5_sink_type
+    type(hdf5_file_type) :: file
+    type(hdf5_series_type), private :: series
+    type(pacer_type), private :: pacer
+    logical, private :: told = .false.      !< the file's failure was reported
+  contains
+    procedure :: open => open_sink
+    procedure :: write_rows
+    procedure :: flush => flush_sink
+    procedure :: close => close_sink
+    procedure :: words
+    procedure :: tell
+  end type hdf5_sink_type
+
+contains
+
+  !> Create the file with all its quantities, still without rows.
+  subroutine open_sink(self, path, mechanism, columns, err)
+    class(hdf5_sink_type), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(mechanism_type), intent(in) :: mechanism
+    type(columns_type), intent(in) :: columns        !< of the rows to come
+    type(error_type), allocatable, intent(out) :: err
+    integer :: scalars
+
+    call self%file%create(path, err)
+    if (allocated(err)) return
+    scalars = columns%count - 1 - 3*size(mechanism%pairs) - 9*size(mechanism%points)
+    call self%series%start(quantities_of_motion + scalars, columns%count, mechanism%time%intervals + 1, &
+                           mechanism%output%compression)
+    call add_quantities(self, mechanism, columns, scalars)
+    call self%series%create(self%file)
+    call add_coordinate_scales(self%file, mechanism, columns)
+    if (size(mechanism%points) > 0) call add_point_scales(self%file, mechanism)
+    call self%series%attach(self%file)
+    call self%pacer%start(longest_wait)
+    call self%tell(err)
+  end subroutine open_sink
+
+  !> The quantities over time, each with a scale for every dimension.
+  subroutine add_quantities(self, mechanism, columns, scalars)
+    class(hdf5_sink_type), intent(inout) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(columns_type), intent(in) :: columns
+    integer, intent(in) :: scalars           !< columns that belong neither to a coordinate nor to a point
+    integer :: m, i, at
+
+    m = size(mechanism%pairs)
+    call self%series%add('time', [1], [integer ::], 'time', columns%units(1)%text, [character(len=5) ::])
+    call add_of_coordinates(self, columns, m, 'q', 'coordinates of the pairs', 0)
+    call add_of_coordinates(self, columns, m, 'dq', 'rates of the coordinates', 1)
+    call add_of_coordinates(self, columns, m, 'ddq', 'accelerations of the coordinates', 2)
+    if (size(mechanism%points) > 0) then
+      call add_of_points(self, mechanism, 'position', 'positions of the points in the fixed frame', 'm', 0)
+      call add_of_points(self, mechanism, 'velocity', 'velocities of the points in the fixed frame', 'm/s', 1)
+      call add_of_points(self, mechanism, 'acceleration', 'accelerations of the points in the fixed frame', 'm/s^2', 2)
+    end if
+    do i = 1, scalars
+      at = columns%count - scalars + i
+      call self%series%add(identifier(columns%names(at)%text), [at], [integer ::], &
+                           columns%long_names(at)%text, columns%units(at)%text, ['/time'])
+    end do
+  end subroutine add_quantities
+
+  !> A quantity that each coordinate has.
+  subroutine add_of_coordinates(self, columns, m, name, long_name, order)
+    class(hdf5_sink_type), intent(inout) :: self
+    type(columns_type), intent(in) :: columns
+    integer, intent(in) :: m                 !< coordinates
+    character(len=*), intent(in) :: name, long_name
+    integer, intent(in) :: order             !< 0, 1 or 2 derivatives
+    integer :: before, i
+
+    before = 1 + order*m
+    call self%series%add(name, [(before + i, i=1, m)], [m], long_name, &
+                         common_unit(columns%units(before + 1:before + m)), ['/time      ', '/coordinate'])
+  end subroutine add_of_coordinates
+
+  !> A quantity that each point has, with three components.
+  subroutine add_of_points(self, mechanism, name, long_name, unit, order)
+    class(hdf5_sink_type), intent(inout) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: name, long_name, unit
+    integer, intent(in) :: order             !< 0, 1 or 2 derivatives
+    integer :: before, i, k
+
+    before = 1 + 3*size(mechanism%pairs) + 3*order
+    call self%series%add(name, [((before + 9*(i - 1) + k, k=1, 3), i=1, size(mechanism%points))], &
+                         [3, size(mechanism%points)], long_name, unit, ['/time ', '/point', '/axis '])
+  end subroutine add_of_points
+
+  subroutine add_coordinate_scales(file, mechanism, columns)
+    type(hdf5_file_type), intent(inout) :: file
+    type(mechanism_type), intent(in) :: mechanism
+    type(columns_type), intent(in) :: columns
+    type(string_type) :: kinds(size(mechanism%pairs))
+    integer :: k
+
+    do k = 1, size(kinds)
+      kinds(k)%text = mechanism%pairs(k)%pair%kind_name()
+    end do
+    call file%put('coordinate', [(k, k=1, size(kinds))], 'number of the coordinate and of its pair')
+    call file%make_scale('coordinate')
+    call file%put('coordinate_unit', columns%units(2:1 + size(kinds)), 'unit of each coordinate')
+    call file%attach_scales('coordinate_unit', ['/coordinate'])
+    call file%put('coordinate_kind', kinds, 'kind of each pair')
+    call file%attach_scales('coordinate_kind', ['/coordinate'])
+  end subroutine add_coordinate_scales
+
+  subroutine add_point_scales(file, mechanism)
+    type(hdf5_file_type), intent(inout) :: file
+    type(mechanism_type), intent(in) :: mechanism
+    type(string_type) :: names(size(mechanism%points)), axes(3)
+    integer :: i
+
+    do i = 1, size(names)
+      names(i)%text = mechanism%points(i)%name
+    end do
+    do i = 1, 3
+      axes(i)%text = directions(i)
+    end do
+    call file%put('point', names, 'name of the point')
+    call file%make_scale('point')
+    call file%put('axis', axes, 'axis of the fixed frame')
+    call file%make_scale('axis')
+    call file%put('point_link', mechanism%points%link, 'link that carries the point')
+    call file%attach_scales('point_link', ['/point'])
+  end subroutine add_point_scales
+
+  !> The unit where all have the same; else the different ones, `coordinate_unit` tells which is whose.
+  pure function common_unit(units) result(text)
+    type(string_type), intent(in) :: units(:)
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(units)
+      if (index(' '//text//' ', ' '//units(i)%text//' ') > 0) cycle
+      if (i > 1) text = text//' or '
+      text = text//units(i)%text
+    end do
+  end function common_unit
+
+  !> The name of a column as programs take it for a name: E_kinetic for E.kinetic.
+  pure function identifier(name) result(text)
+    character(len=*), intent(in) :: name
+    character(len=len(name)) :: text
+    integer :: i
+
+    text = name
+    do i = 1, len(name)
+      if (name(i:i) == '.') text(i:i) = '_'
+    end do
+  end function identifier
+
+  !> Rows more; about once a second they are made known to the file.
+  subroutine write_rows(self, rows, err)
+    class(hdf5_sink_type), intent(inout) :: self
+    real(wp), intent(in) :: rows(:, :)
+    type(error_type), allocatable, intent(out) :: err
+
+    call self%series%append_rows(self%file, rows)
+    if (self%pacer%due()) then
+      call self%series%hand_over(self%file)
+      call self%file%flush()
+    end if
+    call self%tell(err)
+  end subroutine write_rows
+
+  !> All rows into the file.
+  subroutine flush_sink(self, err)
+    class(hdf5_sink_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    call self%series%hand_over(self%file, at_end=.true.)
+    call self%file%flush()
+    call self%tell(err)
+  end subroutine flush_sink
+
+  subroutine close_sink(self, err)
+    class(hdf5_sink_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    if (.not. self%file%is_open()) return
+    call self%series%close(self%file)
+    call self%file%close()
+    call self%tell(err)
+  end subroutine close_sink
+
+  function words(self)
+    class(hdf5_sink_type), intent(in) :: self
+    character(len=:), allocatable :: words
+
+    words = 'HDF5 file: '//self%file%path
+  end function words
+
+  !> The first failure of the file, once.
+  subroutine tell(self, err)
+    class(hdf5_sink_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    if (self%told .or. .not. allocated(self%file%failure)) return
+    self%told = .true.
+    err = self%file%failure
+  end subroutine tell
+end module mech9_hdf5_sink
