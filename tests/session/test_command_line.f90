@@ -127,7 +127,7 @@ contains
     call refuse(tester, 'a.nml|--zzzzzzzz', "'--zzzzzzzz'; mech9k --help lists")
     call refuse(tester, 'a.nml|---', "unknown option '---'")
     call refuse(tester, 'a.nml|--=x', "unknown option '--'")
-    call refuse(tester, 'a.nml|--hdf5|x', "unknown option '--hdf5'")
+    call refuse(tester, 'a.nml|--netcdf|x', "unknown option '--netcdf'")
     call refuse(tester, 'a.nml|--table', '--table needs an argument: --table PATH')
     call refuse(tester, 'a.nml|--table|--quiet', '--table needs an argument')
     call refuse(tester, 'a.nml|--table=', '--table needs an argument')
@@ -144,6 +144,7 @@ contains
     call refuse(tester, 'a.nml|--starts|99999999999', "not '99999999999'")
     call refuse(tester, 'a.nml|--quiet|--verbose', 'contradict')
     call refuse(tester, 'a.nml|--no-write|--table=x', 'contradict')
+    call refuse(tester, 'a.nml|--no-write|--hdf5=x', 'contradict')
   end subroutine test_bad_lines
 
   !> The line is an error of usage whose message holds some words.
