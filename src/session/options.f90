@@ -32,12 +32,12 @@ module mech9_options
                 'print what will be computed, in which order, and what is skipped'), &
     option_type('branches', no_argument, '', any_text, .false., both, &
                 'list the assemblies found for the start from many random guesses'), &
-    option_type('graph', needed_argument, 'FILE', any_text, .false., both, &
-                'draw links, pairs and blocks as a graph: .dot, .svg, .png or .pdf'), &
     option_type('starts', needed_argument, 'N', whole_number, .false., both, &
                 'how many guesses --branches tries; 100 unless given'), &
     option_type('range', no_argument, '', any_text, .false., 'mech9k', &
                 'print how far each independent coordinate can go from the start'), &
+    option_type('graph', needed_argument, 'FILE', any_text, .false., both, &
+                'draw links, pairs and blocks as a graph: .dot, .svg, .png or .pdf'), &
     option_type('table', needed_argument, 'PATH', any_text, .false., both, &
                 'write the table of results there; - is standard output'), &
     option_type('hdf5', needed_argument, 'PATH', any_text, .false., both, &
