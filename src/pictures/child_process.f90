@@ -148,7 +148,7 @@ contains
     character(len=*), intent(in), optional :: folder
     character(kind=c_char, len=:), allocatable, target :: letters
     character(len=:), allocatable :: place
-    type(c_ptr) :: list(size(words) + 1)
+    type(c_ptr), allocatable :: list(:)
     integer(c_int) :: status
     integer :: i, at
 
@@ -156,6 +156,7 @@ contains
     do i = 1, size(words)
       letters = letters//words(i)%text//c_null_char
     end do
+    allocate (list(size(words) + 1))
     at = 1
     do i = 1, size(words)
       list(i) = c_loc(letters(at:at))

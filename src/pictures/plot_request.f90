@@ -28,6 +28,8 @@ module mech9_plot_request
   integer, parameter :: most_curves = 7
   !> Names that a message lists at most.
   integer, parameter :: most_names = 40
+  !> Letters of a name that count when the nearest one is looked for.
+  integer, parameter :: longest_name = 64
   character(len=*), parameter :: terminal = 'term'
 
 contains
@@ -167,15 +169,13 @@ contains
     type(string_type), intent(in) :: names(:)
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: nearest, hint
-    character(len=:), allocatable :: known(:)
-    integer :: i, length
+    character(len=longest_name) :: known(size(names))
+    integer :: i
 
     if (word == '') then
       call raise(err, exit_usage, '--plot: a name of a column is missing, as in --plot q1,P.x:P.y')
       return
     end if
-    length = longest(names)
-    allocate (character(len=length) :: known(size(names)))
     do i = 1, size(names)
       known(i) = names(i)%text
     end do
@@ -191,14 +191,4 @@ contains
     end if
     call raise(err, exit_usage, "--plot: no column of the results is named '"//word//"'"//hint)
   end subroutine refuse_name
-
-  pure integer function longest(names)
-    type(string_type), intent(in) :: names(:)
-    integer :: i
-
-    longest = 0
-    do i = 1, size(names)
-      longest = max(longest, len(names(i)%text))
-    end do
-  end function longest
 end module mech9_plot_request

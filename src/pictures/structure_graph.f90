@@ -144,7 +144,7 @@ contains
         k = step%coordinate
         from = sum(mechanism%structure%links(:, k)) - step%link
         text = text//'  '//to_text(from)//' -- '//to_text(step%link)//' [color="'//colour(b)//'", label=" q'// &
-               to_text(k)//' '//mechanism%pairs(k)%pair%kind_name()//'\l'
+               to_text(k)//' '//trim(mechanism%pairs(k)%pair%kind_name())//'\l'
         if (.not. step%dependent) text = text//' independent\l", penwidth="4'
         text = text//'"];'//line_end
       end associate
