@@ -1,6 +1,6 @@
 !> What follows a run in a conversation: its results are shown, plotted, compared with those of the run before;
 !> a value is changed, and the mechanism run again. Uses error, text, kept_rows, rows_text, run_comparison,
-!> plot, plot_request, conversation, correcting, asking.
+!> plot, plot_request, conversation, correcting.
 module mech9_after_run
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
@@ -13,10 +13,8 @@ module mech9_after_run
   use mech9_plot_request, only: is_picture
   use mech9_grammar, only: words_of
   use mech9_draft, only: integer_of
-  use mech9_questions, only: check_all
   use mech9_conversation, only: conversation_type, going
   use mech9_correcting, only: change
-  use mech9_asking, only: take_answer
   implicit none
   private
   public :: look_back, over, again, changing
@@ -44,6 +42,7 @@ contains
     integer, intent(out) :: next                   !< over, again or changing
     type(string_type), allocatable :: words(:)
     character(len=:), allocatable :: line, word, rest, usual
+    logical :: done
 
     call words_here(kept, words)
     rest = ''
@@ -71,10 +70,9 @@ contains
         call compare(conversation, kept, earlier)
       case ('run')
         next = again
-      case ('change')
-        call change_value(conversation, rest, next)
       case default
-        call change_value(conversation, line, next)
+        call change(conversation, line, done)
+        if (done) next = changing
       end select
       if (next /= over) return
     end do
@@ -196,31 +194,6 @@ contains
     call compare_runs(earlier, kept, comparison)
     write (error_unit, '(a)', advance='no') comparison_text(comparison, kept)
   end subroutine compare
-
-  !> "time end = 2" or "12 = 2": an answer to a question by its name or number; without the value the
-  !> question is due.
-  subroutine change_value(conversation, what, next)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: what
-    integer, intent(inout) :: next
-    integer :: equals
-    logical :: asked
-
-    equals = index(what//'=', '=')
-    call change(conversation, trim(what(:equals - 1)))
-    asked = is_due(conversation)
-    if (asked .and. equals < len(what)) call take_answer(conversation, trim(adjustl(what(equals + 1:))))
-    if (asked) next = changing
-  end subroutine change_value
-
-  !> Whether a question is due, and not the end of the conversation.
-  logical function is_due(conversation)
-    class(conversation_type), intent(in) :: conversation
-
-    associate (question => conversation%interview%due())
-      is_due = question%kind /= check_all
-    end associate
-  end function is_due
 
   !> Commas as blanks.
   pure function with_blanks(text) result(plain)

@@ -1,5 +1,6 @@
 !> How answers are corrected. What is wrong is shown with the numbers of the answers, and any answer can be changed, taken
-!> away or added. Uses text, grammar, draft, draft_check, questions, question_words, summary, conversation.
+!> away or added. Uses text, grammar, draft, draft_check, questions, question_words, summary, asking,
+!> conversation.
 module mech9_correcting
   use mech9_text, only: string_type, to_text, lower
   use mech9_grammar, only: group_table, find_group_row
@@ -9,15 +10,16 @@ module mech9_correcting
   use mech9_question_words, only: is_lacking
   use mech9_summary, only: entry_with_number, number_of_entry, named_entry, title_of
   use mech9_conversation, only: conversation_type, going
+  use mech9_asking, only: take_answer
   implicit none
   private
   public :: show_faults, offer_correction, change, correction_help
 
   integer, parameter :: most_shown = 5
   character(len=*), parameter :: correction_help = &
-    'Give the number of an answer (list shows them), or its name as in "pair 3 zero" or "time end". "add load" begins '// &
-    'another load; "remove 12" takes an answer away, "remove load 2" a whole group. back goes to the question before, '// &
-    'quit leaves (what was typed is kept).'
+    'Give the number of an answer (list shows them), or its name as in "pair 3 zero"; "time end = 2" gives the new '// &
+    'answer at once. "add load" begins another load; "remove 12" takes an answer away, "remove load 2" a whole '// &
+    'group. back goes to the question before, quit leaves (what was typed is kept).'
 
 contains
 
@@ -124,48 +126,70 @@ contains
     conversation%heading = ''
   end subroutine begin_correction
 
-  !> Do what a line asks for: change an answer by its number or its name, add a group, remove something.
-  subroutine change(conversation, line)
+  !> Do what a line asks for: change an answer by its number or its name, to a value where one is given as in
+  !> "time end = 2"; add a group; remove something. `done` is false where the line means none of these.
+  subroutine change(conversation, line, done)
     class(conversation_type), intent(inout) :: conversation
     character(len=*), intent(in) :: line
-    character(len=:), allocatable :: group, name, word
-    integer :: index_of_group, entry, place
+    logical, intent(out), optional :: done
+    character(len=:), allocatable :: word
     logical :: found
 
     word = lower(line(:scan(line//' ', ' ') - 1))
+    found = .true.
     if (word == 'add') then
-      call add_group(conversation, trim(adjustl(line(len(word) + 1:))))
-      return
+      call add_group(conversation, trim(adjustl(line(len(word) + 1:))), found)
     else if (word == 'remove') then
-      call remove(conversation, trim(adjustl(line(len(word) + 1:))))
-      return
+      call remove(conversation, trim(adjustl(line(len(word) + 1:))), found)
+    else if (word == 'change') then
+      call change_answer(conversation, trim(adjustl(line(len(word) + 1:))), found)
+    else
+      call change_answer(conversation, line, found)
     end if
-    associate (interview => conversation%interview)
-      found = .false.
-      if (integer_of(line) > 0) then
-        call entry_with_number(interview%draft, integer_of(line), index_of_group, entry)
-        if (index_of_group > 0) then
-          group = interview%draft%groups(index_of_group)%name
-          call interview%correct(group, interview%draft%place_of(index_of_group), &
-                                 interview%draft%groups(index_of_group)%entries(entry)%name, found)
-          if (.not. found) call conversation%say('This program does not ask for that; "remove '//line//'" takes it away.')
-          conversation%heading = ''
-          return
-        end if
-      end if
-      call named_entry(interview%draft, line, group, place, name)
-      if (group /= '' .and. name /= '') call interview%correct(group, place, name, found)
-    end associate
-    conversation%heading = ''
-    if (.not. found) call conversation%say('That is no answer that can be changed; list shows their numbers, ? tells more.')
+    if (present(done)) done = found
   end subroutine change
 
+  !> Make the question due whose answer is named, or give it its answer.
+  subroutine change_answer(conversation, line, found)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: line
+    logical, intent(out) :: found
+    character(len=:), allocatable :: group, name, which
+    integer :: index_of_group, entry, place, equals
+
+    found = .false.
+    equals = index(line//'=', '=')
+    which = trim(line(:equals - 1))
+    conversation%heading = ''
+    associate (interview => conversation%interview)
+      index_of_group = 0
+      if (integer_of(which) > 0) call entry_with_number(interview%draft, integer_of(which), index_of_group, entry)
+      if (index_of_group > 0) then
+        group = interview%draft%groups(index_of_group)%name
+        place = interview%draft%place_of(index_of_group)
+        name = interview%draft%groups(index_of_group)%entries(entry)%name
+      else
+        call named_entry(interview%draft, which, group, place, name)
+      end if
+      if (group /= '' .and. name /= '') call interview%correct(group, place, name, found)
+    end associate
+    if (found .and. equals < len(line)) then
+      call take_answer(conversation, trim(adjustl(line(equals + 1:))))
+    else if (index_of_group > 0 .and. .not. found) then
+      call conversation%say('This program does not ask for that; "remove '//which//'" takes it away.')
+    else if (.not. found) then
+      call conversation%say('That is no answer that can be changed; list shows their numbers, ? tells more.')
+    end if
+  end subroutine change_answer
+
   !> Ask for one group more.
-  subroutine add_group(conversation, group)
+  subroutine add_group(conversation, group, found)
     class(conversation_type), intent(inout) :: conversation
     character(len=*), intent(in) :: group
+    logical, intent(out) :: found
     integer :: i, row
 
+    found = .true.
     row = find_group_row(group(:min(len(group), 20)))
     associate (interview => conversation%interview)
       if (row > 0) then
@@ -177,6 +201,7 @@ contains
         end do
       end if
     end associate
+    found = .false.
     call conversation%say('What can be added: '//addable(conversation)//'; for example: add point')
   end subroutine add_group
 
@@ -197,9 +222,10 @@ contains
   end function addable
 
   !> Take an answer away, or a group.
-  subroutine remove(conversation, what)
+  subroutine remove(conversation, what, found)
     class(conversation_type), intent(inout) :: conversation
     character(len=*), intent(in) :: what
+    logical, intent(out) :: found
     character(len=:), allocatable :: group, name, here
     integer :: index_of_group, entry, place
 
@@ -214,7 +240,8 @@ contains
       else
         call named_entry(interview%draft, what, group, place, name)
       end if
-      if (group == '') then
+      found = group /= ''
+      if (.not. found) then
         call conversation%say('That is nothing that can be removed; list shows the numbers of the answers.')
         return
       end if

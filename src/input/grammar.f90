@@ -197,17 +197,17 @@ module mech9_grammar
     item_row_type('output', 'table', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'file for the table of results', '''fig1.dat'''), &
     item_row_type('output', 'hdf5', 'text', 1, 1, '', optional, '''''', '', '', '', &
-                  'HDF5 file for the results', '''fig1.h5'''), &
+                  'HDF5 file for the results', '''fig1.h5''', seldom=.true.), &
     item_row_type('output', 'sketch', 'text', 1, 1, '', optional, '''''', '', '', '', &
-                  'SVG file for a drawing of the mechanism at the start', '''fig1.svg'''), &
+                  'SVG file for a drawing of the mechanism at the start', '''fig1.svg''', seldom=.true.), &
     item_row_type('output', 'animation', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'file for the moving mechanism: .html is a page that plays it, .svg and .gif are pictures that repeat', &
-                  '''fig1.html'''), &
+                  '''fig1.html''', seldom=.true.), &
     item_row_type('output', 'view', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'of these pictures: axes to the right and up, as in xz; iso; or the direction to the viewer, as in 1,-2,1', &
-                  '''xz'''), &
+                  '''xz''', seldom=.true.), &
     item_row_type('output', 'compression', 'integer', 1, 1, '', optional, '0', '>=0', '', '', &
-                  'how much the HDF5 file is compressed: 0 not at all (the fastest) to 9 (the smallest)', '4'), &
+                  'how much the HDF5 file is compressed: 0 not at all (the fastest) to 9 (the smallest)', '4', seldom=.true.), &
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'mech9k: a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &
                   '.true.', seldom=.true.), &

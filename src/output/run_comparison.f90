@@ -28,6 +28,8 @@ module mech9_run_comparison
   real(wp), parameter :: same_time = 1.0e-12_wp
   !> A share that round-off along different ways can come to, as when a tolerance is changed.
   real(wp), parameter :: round_off = 1.0e-12_wp
+  !> Residuals and what else is to be zero stay below this, in any unit; nothing that moves does.
+  real(wp), parameter :: as_good_as_zero = 1.0e-10_wp
   !> Lines of a comparison, so that it stays on the screen.
   integer, parameter :: most_lines = 15
   character, parameter :: eol = achar(10)
@@ -57,7 +59,7 @@ contains
       difference%column = i
       greatest = max(greatest_before(other), greatest_now(i))
       if (greatest > 0.0_wp) difference%share = difference%difference/greatest
-      if (difference%share > round_off) then
+      if (difference%share > round_off .and. greatest > as_good_as_zero) then
         call insert(comparison%columns, difference)
       else if (difference%difference > 0.0_wp) then
         comparison%alike = comparison%alike + 1

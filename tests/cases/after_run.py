@@ -111,6 +111,14 @@ def test_change(session):
     checks.near(session.independent()['t'][-1], 2.0, 0.0, 'and the data file is that of the last run')
 
 
+def test_change_before(session):
+    """The summary takes the same words."""
+    done = run(session.program, '--edit', 'fig1.nml', folder=session.folder, stdin='time end = 0.5\nchange 61 = 10\n\nsave\n\n')
+    session.checks.equal(done.returncode, 0, 'saved')
+    table = session.independent()
+    session.checks.true(len(table['t']) == 11 and table['t'][-1] == 0.5, 'answers given at once, by name and by number')
+
+
 def test_plot(session):
     checks = session.checks
     if not shutil.which('gnuplot'):
@@ -170,7 +178,7 @@ def test_interrupted(session):
 def main():
     checks = Checks()
     kinematics, dynamics = sys.argv[1:3]
-    for test in (test_show, test_compare, test_change, test_plot, test_failed_run):
+    for test in (test_show, test_compare, test_change, test_change_before, test_plot, test_failed_run):
         with Session(checks, kinematics, 'fig1') as session:
             test(session)
     with Session(checks, dynamics, 'pendulum') as session:
