@@ -8,7 +8,7 @@ module mech9_kinematic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_task, only: task_type, answers_only, print_check, announce
+  use mech9_task, only: task_type, answers_only, print_check, announce, draw
   use mech9_range_text, only: print_ranges
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
@@ -106,8 +106,7 @@ contains
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('quiet')) call results%print_words(error_unit)
-    if (allocated(run%film)) call pictures%save(mechanism, run%film, err)
-    if (allocated(err)) call diagnostics%add_error(err)
+    if (allocated(run%film)) call draw(options, pictures, mechanism, run%film, diagnostics)
     if (.not. options%has('report')) return
     call save_kinematic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
                                outcome, run%tracker, err)

@@ -35,6 +35,7 @@ module mech9_picture_requests
     procedure :: film_for
     procedure :: save => save_pictures
     procedure :: save_start
+    procedure :: print_words
   end type picture_requests_type
 
   character(len=*), parameter :: endings(*) = [character(len=5) :: '.html', '.svg', '.gif']
@@ -126,6 +127,15 @@ contains
     if (self%animation /= '' .and. .not. allocated(err)) &
       call save_one(self, mechanism, film, skeleton, view, planar, self%animation, .true., err)
   end subroutine save_pictures
+
+  !> Say which pictures were made.
+  subroutine print_words(self, unit)
+    class(picture_requests_type), intent(in) :: self
+    integer, intent(in) :: unit
+
+    if (self%sketch /= '') write (unit, '(2a)') 'sketch: ', self%sketch
+    if (self%animation /= '') write (unit, '(2a)') 'animation: ', self%animation
+  end subroutine print_words
 
   !> One picture. A page can be turned, unless the mechanism is planar: it has room for that.
   subroutine save_one(self, mechanism, film, skeleton, view, planar, path, moving, err)

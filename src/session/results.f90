@@ -45,6 +45,13 @@ contains
     if (options%has('no-write')) path = ''
   end function path_of
 
+  !> Whether pictures are asked for, or nothing.
+  pure logical function needs_no_table(options)
+    type(command_line_type), intent(in) :: options
+
+    needs_no_table = options%has('plot') .or. options%has('sketch') .or. options%has('animate') .or. options%has('no-write')
+  end function needs_no_table
+
   !> Open everything that is asked for; if no result is, the table goes to standard output. After an error
   !> nothing is open.
   subroutine open_results(self, options, mechanism, data_text, program_name, columns, err)
@@ -62,8 +69,7 @@ contains
     allocate (self%sinks(0))
     self%table_path = path_of(options, 'table', mechanism%output%table)
     self%hdf5_path = path_of(options, 'hdf5', mechanism%output%hdf5)
-    if (self%table_path == '' .and. self%hdf5_path == '' .and. .not. (options%has('plot') .or. options%has('no-write'))) &
-      self%table_path = '-'
+    if (self%table_path == '' .and. self%hdf5_path == '' .and. .not. needs_no_table(options)) self%table_path = '-'
     if (self%table_path == self%hdf5_path .and. self%table_path /= '') then
       call raise(err, exit_usage, "the table and the HDF5 file cannot both be '"//self%table_path//"'")
       return

@@ -1,6 +1,6 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
 !> Uses command_line, mechanism, plan, state, mobility_report,
-!> assemblies_text, plan_text, structure_graph, diagnostics, kept_rows.
+!> assemblies_text, plan_text, structure_graph, diagnostics, kept_rows, film, picture_requests.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
@@ -9,15 +9,17 @@ module mech9_task
   use mech9_diagnostics, only: diagnostics_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_film, only: film_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_picture_requests, only: picture_requests_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
   use mech9_plan_text, only: print_structure, print_mobility, print_mobility_report, print_plan
   implicit none
   private
-  public :: task_type, answers_only, print_check, announce
+  public :: task_type, answers_only, print_check, announce, draw
 
   type, abstract :: task_type
     character(len=6) :: program_name = ''
@@ -117,4 +119,21 @@ contains
     call print_mobility(error_unit, plan)
     call print_plan(error_unit, mechanism, plan)
   end subroutine announce
+
+  !> After a run: the pictures of the mechanism that are asked for, and a word on each.
+  subroutine draw(options, pictures, mechanism, film, diagnostics)
+    type(command_line_type), intent(in) :: options
+    type(picture_requests_type), intent(in) :: pictures
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(error_type), allocatable :: err
+
+    call pictures%save(mechanism, film, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+    else if (.not. options%has('quiet')) then
+      call pictures%print_words(error_unit)
+    end if
+  end subroutine draw
 end module mech9_task
