@@ -22,8 +22,9 @@ contains
 
     page = '.TH '//program_name//' 1 "" "MECH9 '//version//'" "User Commands"'//eol// &
            '.SH NAME'//eol//line(program_name//' - '//purpose(program_name))// &
-           '.SH SYNOPSIS'//eol//'.B '//program_name//eol//'.I FILE'//eol//line('[options]')// &
-           description(program_name)//options_of(program_name)//data_file()//examples(program_name)//exit_status()
+           '.SH SYNOPSIS'//eol//'.B '//program_name//eol//'.RI [ FILE ]'//eol//line('[options]')// &
+           description(program_name)//options_of(program_name)//conversation(program_name)//data_file()// &
+           examples(program_name)//environment()//exit_status()
   end function manual_page
 
   pure function description(program_name) result(text)
@@ -56,6 +57,31 @@ contains
       text = text//entry(option_form(options_table(i)), trim(options_table(i)%help))
     end do
   end function options_of
+
+  pure function conversation(program_name) result(text)
+    character(len=*), intent(in) :: program_name
+    character(len=:), allocatable :: text
+
+    text = '.SH CONVERSATION'//eol// &
+      line('Without FILE '//program_name//' asks for the data, one after the other. Enter takes what stands in brackets; &
+           &? explains the question, back returns to the one before, list shows all answers, quit leaves. An answer that &
+           &cannot be right is refused at once with the reason. The structure is judged as soon as it is complete, and the &
+           &geometry by putting the mechanism together.')// &
+      paragraph('In the summary at the end any answer can be changed, by its number or its name, as in "time end = 2". &
+                &The answers are saved as a data file that repeats the run. What is typed is kept on the way: after Ctrl-C, &
+                &or when the terminal is closed, --resume goes on.')// &
+      paragraph('After the run its results can be shown, plotted in the terminal or into a picture, and compared with &
+                &those of the run before; an answer can be changed and the mechanism run again.')// &
+      paragraph('On a terminal lines can be edited; the arrow keys recall earlier answers, and Tab completes words. &
+                &Answers may come from a file or a pipe as well: '//program_name//' < answers.')
+  end function conversation
+
+  pure function environment() result(text)
+    character(len=:), allocatable :: text
+
+    text = '.SH ENVIRONMENT'//eol// &
+           entry('TERM', 'With dumb, or without any, lines are not edited, and no cursor is moved.')
+  end function environment
 
   !> Every group and name of the data file.
   pure function data_file() result(text)
@@ -90,6 +116,8 @@ contains
     character(len=:), allocatable :: text
 
     text = '.SH EXAMPLES'//eol// &
+           entry(program_name, 'Ask for a mechanism, save and run it.')// &
+           entry(program_name//' --edit mine.nml', 'The same, beginning with the data of a file.')// &
            entry(program_name//' mine.nml --check', &
                  'Read the file, judge structure and mobility, put the mechanism together.')// &
            entry(program_name//' mine.nml --table mine.dat', &

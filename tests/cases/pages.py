@@ -50,7 +50,7 @@ def test_manual(name, program):
         checks.true(f'&{group}' in text, f'{name}.1 has the group {group}')
     for item in names:
         checks.true(re.search(rf'^ +{item.split(".")[1]}\b.* = ', text, re.M), f'{name}.1 has the name {item}')
-    for section in ('NAME', 'SYNOPSIS', 'DESCRIPTION', 'OPTIONS', 'DATA FILE', 'EXAMPLES', 'EXIT STATUS'):
+    for section in ('NAME', 'SYNOPSIS', 'DESCRIPTION', 'OPTIONS', 'CONVERSATION', 'DATA FILE', 'EXAMPLES', 'ENVIRONMENT', 'EXIT STATUS'):
         checks.true(re.search(rf'^{section}$', text, re.M), f'{name}.1 has the section {section}')
     for code in (0, 1, 2, 3, 4, 5, 6, 7, 8, 130):
         checks.true(re.search(rf'^ +{code}\b', text, re.M), f'{name}.1 explains the exit code {code}')
