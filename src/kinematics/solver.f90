@@ -56,15 +56,19 @@ contains
 
   !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its
   !> frames are in place. Whether it converged, and how, is in `outcome`. Fails only where a pair has no pose.
-  subroutine close_block(plan, block, state, work, outcome, err)
+  subroutine close_block(plan, block, state, work, outcome, err, at_least)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     type(state_type), intent(inout) :: state
     type(block_work_type), intent(inout) :: work
     type(newton_outcome_type), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: err
+    integer, intent(in), optional :: at_least        !< iterations also where the chains are closed enough
     real(wp) :: size_of_change, previous, lack
+    integer :: least
 
+    least = 0
+    if (present(at_least)) least = at_least
     previous = 0.0_wp
     do
       call place_frames(plan, block%first_step, block%last_step, state, err)
@@ -75,7 +79,8 @@ contains
       end if
       call closure_errors(plan, block, state, work%right)
       lack = maxval(abs(work%right))
-      outcome%converged = lack <= closed_enough .or. (outcome%iterations > 0 .and. previous <= last_correction)
+      outcome%converged = (lack <= closed_enough .and. outcome%iterations >= least) .or. &
+                          (outcome%iterations > 0 .and. previous <= last_correction)
       if (outcome%converged) return
       ! not a number, or no progress
       if (outcome%iterations == most_iterations .or. .not. lack < huge(lack)) return

@@ -35,7 +35,7 @@ module mech9_special_start
   !> Rates below this part of the largest are zero.
   real(wp), parameter :: round_off = 1.0e-13_wp
   !> Movement to the first position off the start [rad, lengths of the mechanism].
-  real(wp), parameter :: first_move = 0.03_wp
+  real(wp), parameter :: first_move = 0.05_wp
   integer, parameter :: most_trials = 5
 
 contains
