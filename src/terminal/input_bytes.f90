@@ -83,8 +83,7 @@ contains
     integer :: ready, got
 
     ready = 0
-    do while (ready <= 0)
-      if (interrupted()) exit
+    do while (ready <= 0 .and. .not. interrupted())
       ready = int(c_poll(asked, 1_c_long, patience))
     end do
     if (interrupted()) then
