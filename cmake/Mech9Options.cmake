@@ -1,6 +1,7 @@
 # What can be chosen when configuring, and the compiler flags of each kind of build.
 # The user's own flags (FFLAGS, CMAKE_Fortran_FLAGS) are left as they are and come first.
 option(MECH9_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(MECH9_BUILD_BENCH "build the benchmarks of bench/run" OFF)
 option(MECH9_NATIVE "use every instruction of this machine (-march=native)" OFF)
 option(MECH9_LTO "release: optimise across files when linking (a fifth faster, measured on Fig. 1)" ON)
 option(MECH9_LINE_EDITING "edit lines at the terminal by libedit, where it is found" ON)

@@ -7,13 +7,20 @@ module mech9_path
 
 contains
 
+  !> Length of the folder's name, with its slash.
+  pure integer function last_slash(path) result(place)
+    character(len=*), intent(in) :: path
+
+    place = index(path, '/', back=.true.)
+  end function last_slash
+
   !> Place of the dot before the ending; the length of the path where there is no ending. A dot at the
   !> beginning of a name (.hidden) belongs to the name.
   pure integer function last_dot(path) result(place)
     character(len=*), intent(in) :: path
 
     place = index(path, '.', back=.true.)
-    if (place < index(path, '/', back=.true.) + 2) place = len(path)
+    if (place < last_slash(path) + 2) place = len(path)
   end function last_dot
 
   pure integer function changed_length(path, ending) result(length)
@@ -27,7 +34,7 @@ contains
   !> The folder of a file, with the slash at its end; empty where the path names none.
   pure function folder_of(path) result(folder)
     character(len=*), intent(in) :: path
-    character(len=index(path, '/', back=.true.)) :: folder
+    character(len=last_slash(path)) :: folder
 
     folder = path
   end function folder_of
@@ -35,9 +42,9 @@ contains
   !> The name of a file without its folder.
   pure function name_of(path) result(name)
     character(len=*), intent(in) :: path
-    character(len=len(path) - index(path, '/', back=.true.)) :: name
+    character(len=len(path) - last_slash(path)) :: name
 
-    name = path(index(path, '/', back=.true.) + 1:)
+    name = path(last_slash(path) + 1:)
   end function name_of
 
   !> The ending of a file's name in lower case, without the dot: svg, png, csv; empty where it has none.

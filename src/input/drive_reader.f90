@@ -167,12 +167,19 @@ contains
     end if
   end subroutine read_table_drive
 
+  !> How much of the data file's path leads to where a name starts.
+  pure integer function start_length(data_file, name)
+    character(len=*), intent(in) :: data_file, name
+
+    start_length = index(data_file, '/', back=.true.)
+    if (starts_with(name, '/')) start_length = 0
+  end function start_length
+
   !> Path of a file named in a data file: relative names start from the data file's folder.
   pure function beside(data_file, name) result(path)
     character(len=*), intent(in) :: data_file, name
-    character(len=len(name) + merge(0, index(data_file, '/', back=.true.), starts_with(name, '/'))) :: path
+    character(len=start_length(data_file, name) + len(name)) :: path
 
-    path = name
-    if (.not. starts_with(name, '/')) path = data_file(:index(data_file, '/', back=.true.))//name
+    path = data_file(:start_length(data_file, name))//name
   end function beside
 end module mech9_drive_reader

@@ -1,5 +1,5 @@
 !> Following a driven motion through regular positions, step by step, on one branch. Uses kinds, error,
-!> mechanism, plan, state, solver, closure.
+!> mechanism, plan, state, solver, watch.
 !>
 !> Each block is predicted by the polynomial through the last two positions with their rates and
 !> accelerations, corrected by Newton's method, and judged. A step is accepted if the block's Jacobian
@@ -12,22 +12,17 @@ module mech9_following
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, nothing_known, acceleration_known
-  use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, least_pivot, &
+  use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
     solve_rates, solve_accelerations
-  use mech9_closure, only: closure_jacobian
+  use mech9_watch, only: watch_type, new_watch, watch_step, keep, nearness, is_near
   implicit none
   private
-  public :: follower_type, departure_type, watch_type, new_follower, settle, factorize_trial, step_towards, set_inputs, go_back
+  public :: follower_type, departure_type, new_follower, settle, step_towards, set_inputs, go_back
 
   !> A driven coordinate moves no farther in a step than this [rad, lengths of the mechanism], ...
   real(wp), parameter :: longest_drive = 0.25_wp
   !> ... and a dependent one than this.
   real(wp), parameter :: longest_move = 0.5_wp
-  !> Change of the Jacobian against its least pivot, as a sum of squares, that needs no closer look.
-  real(wp), parameter :: harmless_change = 0.25_wp
-  !> Change of the Jacobian, divided by the Jacobian: below 1 no singular matrix lies between; the
-  !> rest is room for what lies beside the straight way.
-  real(wp), parameter :: trusted_change = 0.5_wp
   !> Correction of the prediction against the least pivot. By Kantorovich's theorem Newton's method
   !> stays with the only solution near by while this is below about 1/2 over the curvature.
   real(wp), parameter :: trusted_correction = 0.05_wp
@@ -37,30 +32,26 @@ module mech9_following
   real(wp), parameter :: trusted_contraction = 0.25_wp
   !> ... unless that is small anyway, against the least pivot.
   real(wp), parameter :: small_correction = 1.0e-4_wp
-  !> A measure of steps that are too long without a measure.
-  real(wp), parameter :: hopeless = 1.0e30_wp
   !> A prediction uses the polynomial through two positions up to this many times their distance.
   real(wp), parameter :: longest_prediction = 3.0_wp
   !> The highest term of the polynomial is nothing but round-off below this.
   real(wp), parameter :: only_round_off = 64.0_wp*epsilon(1.0_wp)
   !> Steps below this part of the time are given up.
   real(wp), parameter :: least_step = 1.0e-14_wp
+  !> A step creeps that goes less than this part of what remains, and moves nothing farther than ...
+  real(wp), parameter :: creeping_step = 1.0e-5_wp
+  !> ... this [rad, lengths of the mechanism].
+  real(wp), parameter :: creeping_move = 1.0e-3_wp
+  !> So many creeping steps towards one time are given up.
+  integer, parameter :: most_creeping = 10000
 
   !> Where a step starts from.
   type :: departure_type
     real(wp) :: t = 0.0_wp
     real(wp), allocatable :: q(:), dq(:), ddq(:)
     real(wp) :: before = 0.0_wp                 !< distance of the position accepted before it [s]
-    real(wp), allocatable :: higher(:, :)       !< (M,3) factors of h^3, h^4, h^5 of the prediction
+    real(wp), allocatable :: higher(:, :)       !< (3,M) factors of h^3, h^4, h^5 of the prediction
   end type departure_type
-
-  !> What is known of a block's Jacobian: at the departure and at the end of the step on trial.
-  type :: watch_type
-    real(wp), allocatable :: jacobian(:, :), trial_jacobian(:, :)
-    integer :: sign = 1, trial_sign = 1                        !< of the determinant of a square one
-    real(wp) :: pivot = 1.0_wp, trial_pivot = 1.0_wp           !< the least
-    real(wp) :: largest_pivot = 0.0_wp                         !< largest least pivot of any position so far
-  end type watch_type
 
   !> What follows the branch: state, departure and scratch, and counts for the report.
   type :: follower_type
@@ -69,7 +60,10 @@ module mech9_following
     type(block_work_type), allocatable :: work(:)
     type(watch_type), allocatable :: watches(:)
     integer, allocatable :: drives(:)             !< those that move closed chains
+    integer :: last_block = huge(1)               !< the blocks after this one are left as they are
     real(wp) :: reach = huge(1.0_wp)              !< a step that will probably be accepted [s]
+    real(wp) :: goal = 0.0_wp                     !< time towards which it went last [s]
+    integer :: creeping = 0                       !< steps towards it that went nearly nowhere
     integer(long) :: steps = 0                    !< taken
     integer(long) :: halvings = 0                 !< steps refused
     integer(long) :: iterations = 0               !< of Newton's method, all blocks
@@ -98,18 +92,16 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: assembled
     type(follower_type) :: follower
-    integer :: b, m, n
+    integer :: b, m
 
     follower%state = assembled
     m = plan%n_coordinates
     allocate (follower%departure%q(m), follower%departure%dq(m), follower%departure%ddq(m), source=0.0_wp)
-    allocate (follower%departure%higher(m, 3), source=0.0_wp)
+    allocate (follower%departure%higher(3, m), source=0.0_wp)
     allocate (follower%work(size(plan%blocks)), follower%watches(size(plan%blocks)))
     do b = 1, size(plan%blocks)
       follower%work(b) = new_block_work(plan%blocks(b))
-      m = plan%blocks(b)%equations
-      n = size(plan%blocks(b)%unknowns)
-      allocate (follower%watches(b)%jacobian(m, n), follower%watches(b)%trial_jacobian(m, n), source=0.0_wp)
+      follower%watches(b) = new_watch(plan%blocks(b))
     end do
     follower%drives = drives_of_chains(mechanism, plan)
   end function new_follower
@@ -153,11 +145,12 @@ contains
       last%before = 0.0_wp
       last%higher = 0.0_wp
     end associate
-    call keep_watches(follower)
+    call keep(follower%watches)
   end subroutine settle
 
   !> One accepted step towards time t, as far as it can be trusted. `stuck` tells that even the shortest one
-  !> cannot, and `refused_by` because of which block. Fails where a drive or a pair has no value.
+  !> cannot, or that too many have led nearly nowhere, and `refused_by` because of which block. Fails where a
+  !> drive or a pair has no value.
   subroutine step_towards(mechanism, plan, follower, t, stuck, refused_by, err)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
@@ -167,13 +160,15 @@ contains
     integer, intent(out) :: refused_by
     type(error_type), allocatable, intent(out) :: err
     real(wp) :: remaining, h, worst
-    logical :: no_drive
+    logical :: no_drive, driven
 
     stuck = .false.
+    if (abs(t - follower%goal) > 0.0_wp) follower%creeping = 0
+    follower%goal = t
     do
       remaining = t - follower%departure%t
       h = min(abs(remaining), follower%reach)
-      call limit_by_drives(mechanism, plan, follower, sign(1.0_wp, remaining), h)
+      call limit_by_drives(mechanism, plan, follower, sign(1.0_wp, remaining), h, driven)
       follower%state%t = follower%departure%t + sign(h, remaining)
       ! two like steps rather than a long one and a rest
       if (h < abs(remaining) .and. 2.0_wp*h > abs(remaining)) &
@@ -184,6 +179,8 @@ contains
       if (no_drive) return
       if (worst <= 1.0_wp) then
         follower%reach = min(2.0_wp*min(max(follower%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
+        if (h < creeping_step*abs(remaining) .and. .not. driven) &
+          call count_creeping(plan, follower, stuck, refused_by)
         call accept(follower)
         return
       end if
@@ -194,22 +191,46 @@ contains
     end do
   end subroutine step_towards
 
+  !> Count a short step that is about to be accepted, if it moves nothing far. Were there no end to them, the
+  !> search would be as good as endless.
+  pure subroutine count_creeping(plan, follower, too_many, slowest)
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(inout) :: follower
+    logical, intent(out) :: too_many
+    integer, intent(inout) :: slowest         !< too many: the block that is nearest to a singular position
+    integer :: b
+
+    if (any(abs(follower%state%q - follower%departure%q) > creeping_move*plan%unit_of)) then
+      too_many = .false.
+      return
+    end if
+    follower%creeping = follower%creeping + 1
+    too_many = follower%creeping > most_creeping
+    if (.not. too_many) return
+    do b = 1, size(plan%blocks)
+      if (nearness(follower%watches(b)) < nearness(follower%watches(slowest))) slowest = b
+    end do
+  end subroutine count_creeping
+
   !> Shorten a step until no driven coordinate of a closed chain can move far within it.
-  subroutine limit_by_drives(mechanism, plan, follower, direction, h)
+  subroutine limit_by_drives(mechanism, plan, follower, direction, h, driven)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(follower_type), intent(inout) :: follower
     real(wp), intent(in) :: direction         !< +1, or -1 backwards in time
     real(wp), intent(inout) :: h              !< > 0
+    logical, intent(out) :: driven            !< it was shortened
     real(wp) :: part
     integer :: i, trial
 
+    driven = .false.
     do i = 1, size(follower%drives)
       associate (drive => mechanism%drives(follower%drives(i))%drive)
         ! the bound of the rate itself gets smaller with the step
         do trial = 1, 100
           part = h*drive%greatest_rate(follower%departure%t, direction*h)/(longest_drive*plan%unit_of(drive%coordinate))
           if (.not. part > 1.0_wp) exit
+          driven = .true.
           h = h*max(0.2_wp, 0.99_wp/part)
           follower%reach = h
         end do
@@ -234,17 +255,18 @@ contains
     call set_inputs(mechanism, follower%state%t, follower%state%q, follower%state%dq, follower%state%ddq, err)
     no_drive = allocated(err)
     if (no_drive) return
-    do b = 1, size(plan%blocks)
+    do b = 1, min(size(plan%blocks), follower%last_block)
       refused_by = b
       associate (block => plan%blocks(b), work => follower%work(b))
         call predict(plan, block, follower%departure, follower%state)
-        call close_block(plan, block, follower%state, work, newton, err)
+        ! beside a singular position what chains that are closed enough leave open is large: to the last digit
+        call close_block(plan, block, follower%state, work, newton, err, merge(1, 0, is_near(follower%watches(b))))
         follower%iterations = follower%iterations + newton%iterations
         ! a pair may have no pose where a step that is too long leads
         if (allocated(err) .or. .not. newton%converged) worst = 4.0_wp
         if (worst > 1.0_wp) return
         if (size(block%unknowns) > 0) &
-          call watch_jacobian(plan, block, follower%state, work, follower%watches(b), worst)
+          call watch_step(plan, block, follower%state, work, follower%watches(b), worst)
         if (worst > 1.0_wp) return
         call solve_rates(plan, block, follower%state, work)
         call judge(plan, block, follower%departure, follower%state, newton, follower%watches(b)%trial_pivot, worst)
@@ -268,70 +290,11 @@ contains
     near = 0.0_wp
     if (abs(h) <= longest_prediction*departure%before) near = h
     do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%q(k) = departure%q(k) + h*(departure%dq(k) + h*(0.5_wp*departure%ddq(k) + near*(departure%higher(k, 1) &
-                   + near*(departure%higher(k, 2) + near*departure%higher(k, 3)))))
+      k = plan%steps(block%unknowns(i))%coordinate
+      state%q(k) = departure%q(k) + h*(departure%dq(k) + h*(0.5_wp*departure%ddq(k) + near*(departure%higher(1, k) &
+                   + near*(departure%higher(2, k) + near*departure%higher(3, k)))))
     end do
   end subroutine predict
-
-  !> Put the block's Jacobian at the position in `state` on trial, and factorize it.
-  subroutine factorize_trial(plan, block, state, work, watch)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
-    type(block_work_type), intent(inout) :: work
-    type(watch_type), intent(inout) :: watch
-
-    if (size(block%unknowns) == 0) return
-    call closure_jacobian(plan, block, state, work%column_of, watch%trial_jacobian)
-    call copy(size(watch%trial_jacobian), watch%trial_jacobian, work%equations%a)
-    call work%equations%factorize()
-    watch%trial_pivot = least_pivot(work)
-    watch%trial_sign = work%equations%determinant_sign()
-  end subroutine factorize_trial
-
-  !> Factorize the block's Jacobian at the end of a step and judge whether a singular one lies between.
-  subroutine watch_jacobian(plan, block, state, work, watch, worst)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
-    type(block_work_type), intent(inout) :: work
-    type(watch_type), intent(inout) :: watch
-    real(wp), intent(inout) :: worst
-    real(wp) :: change
-
-    call factorize_trial(plan, block, state, work, watch)
-    if (.not. watch%trial_pivot > 0.0_wp) then
-      worst = hopeless
-      return
-    end if
-    change = distance(size(watch%jacobian), watch%trial_jacobian, watch%jacobian)
-    if (change <= harmless_change*watch%trial_pivot) then
-      change = change/(harmless_change*watch%trial_pivot)
-    else
-      change = relative_change(work, watch)/trusted_change
-    end if
-    worst = max(worst, change)
-    if (watch%trial_sign /= watch%sign) worst = max(worst, 2.0_wp)
-  end subroutine watch_jacobian
-
-  !> The change of the Jacobian in a step divided by the Jacobian at its end, as a sum of squares; hopeless
-  !> where that is singular.
-  real(wp) function relative_change(work, watch) result(change)
-    type(block_work_type), intent(inout) :: work
-    type(watch_type), intent(in) :: watch
-    integer :: j
-
-    change = hopeless
-    if (work%equations%rank() < work%equations%n) return
-    change = 0.0_wp
-    do j = 1, work%equations%n
-      work%right = watch%trial_jacobian(:, j) - watch%jacobian(:, j)
-      call work%equations%solve(work%right, work%change)
-      change = change + dot_product(work%change, work%change)
-    end do
-    change = sqrt(change)
-  end function relative_change
 
   !> Judge a block's prediction against its correction, and its movement against its rates.
   pure subroutine judge(plan, block, departure, state, newton, pivot, worst)
@@ -351,7 +314,7 @@ contains
     move = 0.0_wp
     bend = 0.0_wp
     do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
+      k = plan%steps(block%unknowns(i))%coordinate
       move = max(move, abs(state%q(k) - departure%q(k))/plan%unit_of(k))
       bend = max(bend, abs(state%dq(k) - departure%dq(k))/plan%unit_of(k))
     end do
@@ -362,92 +325,39 @@ contains
   !> The trial becomes the place of departure.
   pure subroutine accept(follower)
     type(follower_type), intent(inout) :: follower
-    real(wp) :: h
+    real(wp) :: h, d0, d1, d2, x, y, z
+    integer :: k
 
     follower%steps = follower%steps + 1
     follower%state%known = acceleration_known
     associate (here => follower%state, last => follower%departure)
       h = here%t - last%t
-      call extrapolate(size(here%q), h, here%q, here%dq, here%ddq, last%q, last%dq, last%ddq, last%higher)
+      do k = 1, size(last%q)
+        ! the polynomial through both positions, about the later one: its terms of third to fifth order at h
+        d0 = last%q(k) - (here%q(k) - h*(here%dq(k) - 0.5_wp*h*here%ddq(k)))
+        d1 = h*(last%dq(k) - here%dq(k) + h*here%ddq(k))
+        d2 = h**2*(last%ddq(k) - here%ddq(k))
+        x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
+        z = x + d1 + 4.0_wp*d0
+        y = d0 + x + z
+        if (abs(z) <= only_round_off*max(1.0_wp, abs(here%q(k)))) then
+          ! without the positions, whose round-off is all there is to the last term
+          z = 0.0_wp
+          y = 0.25_wp*d2 + 0.5_wp*d1
+          x = d1 + d2/3.0_wp
+        end if
+        last%higher(1, k) = x/h**3
+        last%higher(2, k) = y/h**4
+        last%higher(3, k) = z/h**5
+        last%q(k) = here%q(k)
+        last%dq(k) = here%dq(k)
+        last%ddq(k) = here%ddq(k)
+      end do
       last%t = here%t
       last%before = abs(h)
     end associate
-    call keep_watches(follower)
+    call keep(follower%watches)
   end subroutine accept
-
-  !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
-  !> order. The later position takes the place of the earlier one.
-  pure subroutine extrapolate(m, h, q, dq, ddq, last_q, last_dq, last_ddq, higher)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: h
-    real(wp), dimension(m), intent(in) :: q, dq, ddq
-    real(wp), dimension(m), intent(inout) :: last_q, last_dq, last_ddq
-    real(wp), intent(out) :: higher(m, 3)
-    real(wp) :: d0, d1, d2, x, y, z, per_h, per_cube
-    logical :: is_noise
-    integer :: k
-
-    per_h = 1.0_wp/h
-    per_cube = per_h**3
-    do k = 1, m
-      ! the terms at h
-      d0 = last_q(k) - (q(k) - h*(dq(k) - 0.5_wp*h*ddq(k)))
-      d1 = h*(last_dq(k) - dq(k) + h*ddq(k))
-      d2 = h**2*(last_ddq(k) - ddq(k))
-      x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
-      z = x + d1 + 4.0_wp*d0
-      y = d0 + x + z
-      ! without the positions, where their round-off is all there is to the last term
-      is_noise = abs(z) <= only_round_off*max(1.0_wp, abs(q(k)))
-      x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_noise)
-      y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_noise)
-      z = merge(0.0_wp, z, is_noise)
-      higher(k, 1) = x*per_cube
-      higher(k, 2) = y*per_cube*per_h
-      higher(k, 3) = z*per_cube*per_h**2
-      last_q(k) = q(k)
-      last_dq(k) = dq(k)
-      last_ddq(k) = ddq(k)
-    end do
-  end subroutine extrapolate
-
-  !> The Jacobians on trial become those of the departure.
-  pure subroutine keep_watches(follower)
-    type(follower_type), intent(inout) :: follower
-    integer :: b
-
-    do b = 1, size(follower%watches)
-      associate (watch => follower%watches(b))
-        call copy(size(watch%jacobian), watch%trial_jacobian, watch%jacobian)
-        watch%sign = watch%trial_sign
-        watch%pivot = watch%trial_pivot
-        watch%largest_pivot = max(watch%largest_pivot, watch%pivot)
-      end associate
-    end do
-  end subroutine keep_watches
-
-  ! Copies and sums over arrays of known shape: no look at allocation, no strides.
-
-  pure subroutine copy(n, from, to)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: from(n)
-    real(wp), intent(out) :: to(n)
-
-    to = from
-  end subroutine copy
-
-  !> Root of the sum of squares of differences.
-  pure real(wp) function distance(n, a, b)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: a(n), b(n)
-    integer :: i
-
-    distance = 0.0_wp
-    do i = 1, n
-      distance = distance + (a(i) - b(i))**2
-    end do
-    distance = sqrt(distance)
-  end function distance
 
   !> After a step that was given up: the coordinates of the last position again.
   pure subroutine go_back(follower)

@@ -1,5 +1,5 @@
 !> Passing a special position where branches cross, on the branch whose velocities are continuous.
-!> Uses kinds, error, least_squares, hermite, mechanism, plan, state, composition, closure, solver, motion,
+!> Uses kinds, error, hermite, mechanism, plan, state, composition, closure, solver, motion, watch,
 !> following.
 !>
 !> There the equations of the block do not tell one branch from the other, but each branch is smooth:
@@ -12,13 +12,14 @@ module mech9_passage
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, acceleration_known
+  use mech9_state, only: state_type, velocity_known, acceleration_known
   use mech9_composition, only: place_frames
-  use mech9_closure, only: closure_errors
+  use mech9_closure, only: closure_errors, closure_rates
   use mech9_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, &
     apply_change
   use mech9_motion, only: spread_velocities, spread_accelerations
-  use mech9_following, only: follower_type, watch_type, settle, factorize_trial, step_towards, set_inputs
+  use mech9_watch, only: watch_type, factorize_trial
+  use mech9_following, only: follower_type, settle, step_towards, set_inputs
   implicit none
   private
   public :: passage_type, build_passage, position_within, land_near, walk
@@ -193,7 +194,7 @@ contains
     end if
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b), work => scout%work(b), watch => scout%watches(b))
-        call close_block(plan, block, scout%state, work, newton, err)
+        call close_block(plan, block, scout%state, work, newton, err, 1)
         scout%iterations = scout%iterations + newton%iterations
         if (allocated(err) .or. .not. newton%converged) return
         call factorize_trial(plan, block, scout%state, work, watch)
@@ -236,10 +237,9 @@ contains
         if (size(block%unknowns) > 0 .and. watches(b)%trial_pivot < near*watches(b)%largest_pivot) then
           call close_where_determined(plan, block, state, work(b), watches(b), err)
           if (allocated(err)) return
-          state%dq(block%coordinates) = dq(block%coordinates)
-          state%ddq(block%coordinates) = ddq(block%coordinates)
-          call spread_velocities(plan, block%first_step, block%last_step, state)
-          call spread_accelerations(plan, block%first_step, block%last_step, state)
+          state%dq(plan%steps(block%unknowns)%coordinate) = dq(plan%steps(block%unknowns)%coordinate)
+          state%ddq(plan%steps(block%unknowns)%coordinate) = ddq(plan%steps(block%unknowns)%coordinate)
+          call move_where_determined(plan, block, state, work(b), watches(b))
         else
           call close_block(plan, block, state, work(b), newton, err)
           if (allocated(err)) return
@@ -264,12 +264,41 @@ contains
 
     do i = 1, 2
       call closure_errors(plan, block, state, work%right)
-      work%right = -work%right
-      call work%equations%solve(work%right, work%change, &
-                                tolerance=near*watch%largest_pivot/abs(work%equations%a(1, 1)))
+      call solve_where_determined(work, watch)
       call apply_change(plan, block, work%change, state)
       call place_frames(plan, block%first_step, block%last_step, state, err)
       if (allocated(err)) return
     end do
   end subroutine close_where_determined
+
+  !> Rates and accelerations of a block, likewise.
+  subroutine move_where_determined(plan, block, state, work, watch)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(in) :: watch
+
+    associate (k => plan%steps(block%unknowns)%coordinate)
+      call spread_velocities(plan, block%first_step, block%last_step, state)
+      call closure_rates(plan, block, state, velocity_known, work%right)
+      call solve_where_determined(work, watch)
+      state%dq(k) = state%dq(k) + work%change*plan%unit_of(k)
+      call spread_velocities(plan, block%first_step, block%last_step, state)
+      call spread_accelerations(plan, block%first_step, block%last_step, state)
+      call closure_rates(plan, block, state, acceleration_known, work%right)
+      call solve_where_determined(work, watch)
+      state%ddq(k) = state%ddq(k) + work%change*plan%unit_of(k)
+      call spread_accelerations(plan, block%first_step, block%last_step, state)
+    end associate
+  end subroutine move_where_determined
+
+  !> The least change that makes up for what stands on the right, the directions of the least pivots left out.
+  subroutine solve_where_determined(work, watch)
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(in) :: watch
+
+    work%right = -work%right
+    call work%equations%solve(work%right, work%change, tolerance=near*watch%largest_pivot/abs(work%equations%a(1, 1)))
+  end subroutine solve_where_determined
 end module mech9_passage

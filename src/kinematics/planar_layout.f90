@@ -1,8 +1,7 @@
-!> Second part of the plan: is the mechanism planar, and its plan in the plane. Uses kinds, text, rotation,
+!> Second part of the plan: is the mechanism planar, and its plan in the plane. Uses kinds, rotation,
 !> pose, plan, planar_plan.
 module mech9_planar_layout
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
   use mech9_rotation, only: identity
   use mech9_pose, only: pose_type, pose_from_axis, default_zero
   use mech9_plan, only: plan_type
@@ -19,7 +18,7 @@ contains
 
   !> Lay out the plan in its plane, if it has one: all axes of revolute pairs along one normal, all of
   !> prismatic pairs across it, and every closed chain bound in all three dimensions of the plane. The ranks
-  !> of the closures must be known. `planar%used` and `planar%why_not` tell.
+  !> of the closures must be known. `planar%used` tells.
   pure subroutine lay_out_in_plane(plan)
     type(plan_type), intent(inout) :: plan
     type(planar_plan_type) :: planar
@@ -27,32 +26,20 @@ contains
     logical :: fits
     integer :: s, c
 
-    do c = 1, size(plan%closures)
-      if (plan%closures(c)%rank == 3) cycle
-      plan%planar%why_not = 'the motions of closed chain '//to_text(plan%closures(c)%chain)//' have '// &
-                            to_text(plan%closures(c)%rank)//' dimensions, not 3'
-      return
-    end do
+    if (any(plan%closures%rank /= 3) .or. .not. all(plan%steps%is_screw)) return
     call find_axes(plan, planar, fits)
-    if (.not. fits) plan%planar%why_not = 'no pair turns'
     if (.not. fits) return
     planar%length = plan%length
     allocate (planar%steps(plan%n_coordinates), planar%closures(size(plan%closures)))
     allocate (planar%height(0:plan%n_coordinates), source=0.0_wp)
     to_frame(:, :, 0) = transpose(planar%axes)
     do s = 1, plan%n_coordinates
-      fits = plan%steps(s)%is_screw
-      if (fits) call lay_out_step(plan, s, planar, to_frame, fits)
-      if (fits) cycle
-      plan%planar%why_not = 'pair '//to_text(plan%steps(s)%coordinate)//' neither turns about the plane''s normal '// &
-                            'nor slides across it'
-      return
+      call lay_out_step(plan, s, planar, to_frame, fits)
+      if (.not. fits) return
     end do
     do c = 1, size(plan%closures)
       call lay_out_closure(plan, c, to_frame, planar, fits)
-      if (fits) cycle
-      plan%planar%why_not = 'closed chain '//to_text(plan%closures(c)%chain)//' does not close in a plane'
-      return
+      if (.not. fits) return
     end do
     allocate (planar%link_in_frame(plan%n_links))
     do s = 1, plan%n_links

@@ -56,15 +56,19 @@ contains
 
   !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its
   !> frames are in place. Whether it converged, and how, is in `outcome`. Fails only where a pair has no pose.
-  subroutine close_block(plan, block, state, work, outcome, err)
+  subroutine close_block(plan, block, state, work, outcome, err, at_least)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     type(state_type), intent(inout) :: state
     type(block_work_type), intent(inout) :: work
     type(newton_outcome_type), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: err
+    integer, intent(in), optional :: at_least        !< iterations also where the chains are closed enough
     real(wp) :: size_of_change, previous, lack
+    integer :: least
 
+    least = 0
+    if (present(at_least)) least = at_least
     previous = 0.0_wp
     do
       call place_frames(plan, block%first_step, block%last_step, state, err)
@@ -75,7 +79,8 @@ contains
       end if
       call closure_errors(plan, block, state, work%right)
       lack = maxval(abs(work%right))
-      outcome%converged = lack <= closed_enough .or. (outcome%iterations > 0 .and. previous <= last_correction)
+      outcome%converged = (lack <= closed_enough .and. outcome%iterations >= least) .or. &
+                          (outcome%iterations > 0 .and. previous <= last_correction)
       if (outcome%converged) return
       ! not a number, or no progress
       if (outcome%iterations == most_iterations .or. .not. lack < huge(lack)) return
@@ -122,7 +127,7 @@ contains
     integer :: i, k
 
     do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
+      k = plan%steps(block%unknowns(i))%coordinate
       state%q(k) = state%q(k) + change(i)*plan%unit_of(k)
     end do
   end subroutine apply_change
@@ -139,7 +144,7 @@ contains
 
     if (present(remainder)) remainder = 0.0_wp
     do i = 1, size(block%unknowns)
-      state%dq(block%coordinates(i)) = 0.0_wp
+      state%dq(plan%steps(block%unknowns(i))%coordinate) = 0.0_wp
     end do
     call spread_velocities(plan, block%first_step, block%last_step, state)
     if (block%equations == 0) return
@@ -151,7 +156,7 @@ contains
       call work%equations%solve(work%right, work%change)
     end if
     do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
+      k = plan%steps(block%unknowns(i))%coordinate
       state%dq(k) = work%change(i)*plan%unit_of(k)
     end do
     call spread_velocities(plan, block%first_step, block%last_step, state)
@@ -167,7 +172,7 @@ contains
     integer :: i, k
 
     do i = 1, size(block%unknowns)
-      state%ddq(block%coordinates(i)) = 0.0_wp
+      state%ddq(plan%steps(block%unknowns(i))%coordinate) = 0.0_wp
     end do
     call spread_accelerations(plan, block%first_step, block%last_step, state)
     if (size(block%unknowns) == 0) return
@@ -175,7 +180,7 @@ contains
     work%right = -work%right
     call work%equations%solve(work%right, work%change)
     do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
+      k = plan%steps(block%unknowns(i))%coordinate
       state%ddq(k) = work%change(i)*plan%unit_of(k)
     end do
     call spread_accelerations(plan, block%first_step, block%last_step, state)

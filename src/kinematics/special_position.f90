@@ -5,7 +5,8 @@
 !> without bound, as 1/sqrt(T - t); two positions of the scout then give T far better than Newton's method
 !> could find it. Where branches cross, the rates stay finite while the least pivot falls to zero
 !> at an even rate. Everything between, two branches that come close and part again, the scout
-!> simply passes.
+!> simply passes. A sliding coordinate may also escape: where axes come to be parallel it grows as a
+!> power of 1/(T - t), and no position is there at T.
 module mech9_special_position
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -14,24 +15,27 @@ module mech9_special_position
   use mech9_following, only: follower_type, step_towards
   implicit none
   private
-  public :: finding_type, look_ahead, is_near, nothing_special, dead_point, crossing, lost
+  public :: finding_type, look_ahead, find_escape
+  public :: nothing_special, dead_point, crossing, lost, escape
 
   integer, parameter :: nothing_special = 0
   integer, parameter :: dead_point = 1      !< the motion ends there
   integer, parameter :: crossing = 2        !< branches cross: it can go through
   integer, parameter :: lost = 3            !< neither; but no step goes on
+  integer, parameter :: escape = 4          !< a sliding coordinate grows beyond all bounds
 
   !> What lies ahead.
   type :: finding_type
     integer :: kind = nothing_special
     integer :: block = 0
     real(wp) :: t = 0.0_wp                  !< when it is reached; nothing special: until when [s]
+    integer :: coordinate = 0               !< that escapes
   end type finding_type
 
-  !> Near: the least pivot is below this part of the largest it was.
-  real(wp), parameter :: near = 0.03_wp
+  !> Far from the special position again: the least pivot is above this part of the largest it was.
+  real(wp), parameter :: clear = 0.06_wp
   !> Rates that have grown so much come from a dead point ...
-  real(wp), parameter :: dead_growth = 1.0e3_wp
+  real(wp), parameter :: dead_growth = 1.0e4_wp
   !> ... and at this part of the largest pivot those that have not grown so much come from a crossing.
   real(wp), parameter :: crossing_pivot = 1.0e-6_wp
   real(wp), parameter :: crossing_growth = 3.0_wp
@@ -45,16 +49,16 @@ module mech9_special_position
   !> A step of a scout against the one before it, and how often it is shortened for drives that end.
   real(wp), parameter :: longer = 4.0_wp
   integer, parameter :: most_trials = 20
+  !> A slide may escape from so many lengths of the mechanism on ...
+  real(wp), parameter :: far = 3.0_wp
+  !> ... and does, where it is so far and so many times faster than what drives it: two axes that come as close
+  !> to parallel as that and part again are hardly meant.
+  real(wp), parameter :: far_away = 100.0_wp
+  real(wp), parameter :: fast_away = 5.0e3_wp
+  !> For x = c/(T - t)^p the quotient x x''/x'^2 is 1 + 1/p, between these; at a dead point it is large.
+  real(wp), parameter :: power_law(2) = [1.2_wp, 6.0_wp]
 
 contains
-
-  !> Whether a block of a follower is near a singular position.
-  pure logical function is_near(follower, b)
-    type(follower_type), intent(in) :: follower
-    integer, intent(in) :: b
-
-    is_near = follower%watches(b)%pivot < near*follower%watches(b)%largest_pivot
-  end function is_near
 
   !> Look ahead from a follower that is near a singular position of its block b.
   subroutine look_ahead(mechanism, plan, follower, b, direction, finding)
@@ -77,6 +81,7 @@ contains
     usual = max(usual, speed)
     if (.not. speed > 0.0_wp) return            ! at rest: no telling where it goes
     scout = follower
+    scout%last_block = b
     do i = 1, most_steps
       if (.not. speed > 0.0_wp) return
       pivot_before = scout%watches(b)%pivot
@@ -94,7 +99,10 @@ contains
       call find_speeds(plan, scout, b, speed, usual)
       growth = speed/max(usual, tiny(usual))
       part = scout%watches(b)%pivot/scout%watches(b)%largest_pivot
-      if (part > 2.0_wp*near) return
+      if (part > clear) return
+      call find_escape(plan, scout, b, stuck, finding)
+      if (finding%kind == escape) return
+      if (follows_power_law(plan, scout, b)) cycle
       if (growth > dead_growth .or. ((stuck .or. part < last_pivot) .and. growth > crossing_growth)) then
         finding%kind = dead_point
         finding%t = time_of_dead_point(plan, scout, b)
@@ -111,6 +119,49 @@ contains
       end if
     end do
   end subroutine look_ahead
+
+  !> Whether the fastest coordinate of a block escapes, and when it is beyond all bounds.
+  pure subroutine find_escape(plan, follower, b, stuck, finding)
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(in) :: follower
+    integer, intent(in) :: b
+    logical, intent(in) :: stuck                   !< it cannot go on, however far the coordinate is
+    type(finding_type), intent(inout) :: finding   !< changed where one escapes
+    real(wp) :: speed, usual
+    integer :: k
+
+    usual = 0.0_wp
+    call find_speeds(plan, follower, b, speed, usual)
+    k = fastest_of(plan, follower, b)
+    if (.not. stuck .and. (speed <= fast_away*usual .or. abs(follower%departure%q(k)) < far_away*plan%unit_of(k))) return
+    if (.not. follows_power_law(plan, follower, b)) return
+    associate (q => follower%departure%q(k), dq => follower%departure%dq(k), ddq => follower%departure%ddq(k))
+      ! x'/x'' is (T - t)/(p + 1), and x/x' is (T - t)/p
+      finding = finding_type(escape, b, follower%departure%t + 1.0_wp/(ddq/dq - dq/q), k)
+    end associate
+  end subroutine find_escape
+
+  !> Whether the fastest coordinate of a block slides, is far, and moves as a power of 1/(T - t).
+  pure logical function follows_power_law(plan, follower, b) result(follows)
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(in) :: follower
+    integer, intent(in) :: b
+    real(wp) :: quotient
+    integer :: i, k
+
+    follows = .false.
+    k = fastest_of(plan, follower, b)
+    do i = 1, size(plan%blocks(b)%unknowns)
+      associate (step => plan%steps(plan%blocks(b)%unknowns(i)))
+        if (step%coordinate == k .and. (.not. step%is_screw .or. abs(step%turn) > 0.0_wp)) return
+      end associate
+    end do
+    associate (q => follower%departure%q(k), dq => follower%departure%dq(k), ddq => follower%departure%ddq(k))
+      if (abs(q) < far*plan%unit_of(k) .or. .not. q*dq > 0.0_wp .or. .not. dq*ddq > 0.0_wp) return
+      quotient = (q/dq)*(ddq/dq)
+      follows = quotient > power_law(1) .and. quotient < power_law(2)
+    end associate
+  end function follows_power_law
 
   !> Largest rate of a block's dependent coordinates, and of all that drives it if that is more than `usual`.
   pure subroutine find_speeds(plan, follower, b, speed, usual)
@@ -137,17 +188,27 @@ contains
     type(plan_type), intent(in) :: plan
     type(follower_type), intent(in) :: follower
     integer, intent(in) :: b
-    integer :: i, k, fastest
+    integer :: k
 
-    fastest = plan%blocks(b)%coordinates(1)
-    do i = 2, size(plan%blocks(b)%unknowns)
-      k = plan%blocks(b)%coordinates(i)
-      if (abs(follower%departure%dq(k))/plan%unit_of(k) > abs(follower%departure%dq(fastest))/plan%unit_of(fastest)) &
-        fastest = k
-    end do
+    k = fastest_of(plan, follower, b)
     t = follower%departure%t
-    associate (dq => follower%departure%dq(fastest), ddq => follower%departure%ddq(fastest))
+    associate (dq => follower%departure%dq(k), ddq => follower%departure%ddq(k))
       if (abs(ddq) > 0.0_wp) t = t + 0.5_wp*dq/ddq
     end associate
   end function time_of_dead_point
+
+  !> The dependent coordinate of a block that moves fastest.
+  pure integer function fastest_of(plan, follower, b) result(fastest)
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(in) :: follower
+    integer, intent(in) :: b
+    integer :: i, k
+
+    fastest = plan%steps(plan%blocks(b)%unknowns(1))%coordinate
+    do i = 2, size(plan%blocks(b)%unknowns)
+      k = plan%steps(plan%blocks(b)%unknowns(i))%coordinate
+      if (abs(follower%departure%dq(k))/plan%unit_of(k) > abs(follower%departure%dq(fastest))/plan%unit_of(fastest)) &
+        fastest = k
+    end do
+  end function fastest_of
 end module mech9_special_position

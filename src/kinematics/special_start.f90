@@ -35,7 +35,7 @@ module mech9_special_start
   !> Rates below this part of the largest are zero.
   real(wp), parameter :: round_off = 1.0e-13_wp
   !> Movement to the first position off the start [rad, lengths of the mechanism].
-  real(wp), parameter :: first_move = 0.03_wp
+  real(wp), parameter :: first_move = 0.05_wp
   integer, parameter :: most_trials = 5
 
 contains
@@ -74,7 +74,7 @@ contains
     do i = 1, ways%count
       ways%rates(:, i) = particular + roots(i)*vt(n, :)
       where (abs(ways%rates(:, i)) <= round_off*maxval(abs(ways%rates(:, i)))) ways%rates(:, i) = 0.0_wp
-      ways%rates(:, i) = ways%rates(:, i)*plan%unit_of(block%coordinates)
+      ways%rates(:, i) = ways%rates(:, i)*plan%unit_of(plan%steps(block%unknowns)%coordinate)
     end do
   end subroutine find_ways
 
@@ -101,7 +101,7 @@ contains
     integer :: i, k
 
     do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
+      k = plan%steps(block%unknowns(i))%coordinate
       state%dq(k) = rates(i)*plan%unit_of(k)
       state%ddq(k) = 0.0_wp
     end do

@@ -1,5 +1,5 @@
 !> Following a driven motion from output to output, through special positions or up to where it ends.
-!> Uses kinds, error, text, mechanism, plan, state, solver, closure, following, special_position,
+!> Uses kinds, error, text, mechanism, plan, state, solver, closure, watch, following, special_position,
 !> passage, special_start, motion, planning.
 module mech9_tracking
   use mech9_kinds, only: wp, long
@@ -11,8 +11,10 @@ module mech9_tracking
   use mech9_solver, only: least_pivot, solve_rates, solve_accelerations
   use mech9_closure, only: closing_error
   use mech9_planning, only: chain_names
-  use mech9_following, only: follower_type, new_follower, settle, factorize_trial, step_towards, set_inputs, go_back
-  use mech9_special_position, only: finding_type, look_ahead, is_near, nothing_special, dead_point, crossing, lost
+  use mech9_watch, only: factorize_trial, is_near
+  use mech9_following, only: follower_type, new_follower, settle, step_towards, set_inputs, go_back
+  use mech9_special_position, only: finding_type, look_ahead, find_escape, nothing_special, dead_point, crossing, &
+    lost, escape
   use mech9_motion, only: spread_velocities
   use mech9_special_start, only: ways_type, find_ways, start_passage
   use mech9_passage, only: passage_type, build_passage, position_within
@@ -113,7 +115,7 @@ contains
     else if (ways%count == 0) then
       text = text//', which it cannot leave'
     else
-      tracker%state%dq(block%coordinates) = ways%rates(:, 1)
+      tracker%state%dq(plan%steps(block%unknowns)%coordinate) = ways%rates(:, 1)
       call spread_velocities(plan, block%first_step, block%last_step, tracker%state)
       return
     end if
@@ -132,7 +134,7 @@ contains
       if (way > 1) text = text//' or '
       do i = 1, size(block%unknowns)
         if (i > 1) text = text//', '
-        text = text//'dq'//to_text(block%coordinates(i))//' = '//to_text(ways%rates(i, way), 5)
+        text = text//'dq'//to_text(plan%steps(block%unknowns(i))%coordinate)//' = '//to_text(ways%rates(i, way), 5)
       end do
     end do
     text = text//' (rad/s, m/s)'
@@ -215,7 +217,13 @@ contains
     integer :: b
 
     do b = 1, size(plan%blocks)
-      if (.not. is_near(tracker%follower_type, b)) cycle
+      if (size(plan%blocks(b)%unknowns) == 0) cycle
+      call find_escape(plan, tracker%follower_type, b, .false., tracker%ahead)
+      if (tracker%ahead%kind == escape) then
+        call refuse(mechanism, plan, tracker, err)
+        return
+      end if
+      if (.not. is_near(tracker%watches(b))) cycle
       ! already seen, or seen to be nothing
       if (tracker%ahead%kind /= nothing_special) exit
       if ((tracker%clear_until(b) - tracker%departure%t)*direction > 0.0_wp) cycle
@@ -227,7 +235,7 @@ contains
         if (allocated(err)) return
         if (.not. tracker%passage%exists) tracker%ahead%kind = lost
       end if
-      if (tracker%ahead%kind == lost) call refuse(mechanism, plan, tracker, err)
+      if (tracker%ahead%kind == lost .or. tracker%ahead%kind == escape) call refuse(mechanism, plan, tracker, err)
       if (allocated(err)) return
     end do
   end subroutine look_out
@@ -340,17 +348,25 @@ contains
       k = plan%independent(i)
       if (i > 1) where = where//', '
       where = where//'q'//to_text(k)//' = '// &
-              to_text(q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular), 13)
+              to_text(q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular), &
+              merge(7, 13, tracker%ahead%kind == escape))
     end do
     associate (block => plan%blocks(tracker%ahead%block))
-      text = words_of_block(plan, block)//trim(merge(' reach  ', ' reaches', block%last_closure > block%first_closure))
+      text = words_of_block(plan, block)
+      if (tracker%ahead%kind /= escape) &
+        text = text//trim(merge(' reach  ', ' reaches', block%last_closure > block%first_closure))
     end associate
-    if (tracker%ahead%kind == dead_point) then
+    if (tracker%ahead%kind == escape) then
+      text = text//' cannot follow up to '//where//', where coordinate '//to_text(tracker%ahead%coordinate)// &
+             ' grows beyond all bounds'
+    else if (tracker%ahead%kind == dead_point) then
       text = text//' a dead point at '//where//' and cannot follow farther'
     else
       text = text//' a singular position at '//where//', where it is not certain how the motion goes on'
     end if
-    call raise(err, exit_singular, 'the motion cannot go on beyond t = '//to_text(tracker%ahead%t, 13)//' s: '//text)
+    ! where a coordinate escapes the end is told less sharply than a dead point
+    call raise(err, exit_singular, 'the motion cannot go on beyond t = '// &
+               to_text(tracker%ahead%t, merge(7, 13, tracker%ahead%kind == escape))//' s: '//text)
   end subroutine refuse
 
   !> The coordinates that a block determines, in their order.
@@ -362,7 +378,7 @@ contains
     integer :: k
 
     mine = .false.
-    mine(block%coordinates) = .true.
+    mine(plan%steps(block%unknowns)%coordinate) = .true.
     coordinates = pack([(k, k=1, plan%n_coordinates)], mine)
   end function coordinates_of
 

@@ -113,11 +113,13 @@ contains
     end do
   end subroutine to_json
 
-  !> Into a group, each as a data set.
-  subroutine to_hdf5(self, file, group)
+  !> Into a group, each as a data set. Done before a run and again after it, only numbers in their places change:
+  !> whenever the run is killed, the file is whole. Texts stay as they were.
+  subroutine to_hdf5(self, file, group, again)
     class(facts_type), intent(in) :: self
     type(hdf5_file_type), intent(inout) :: file
     character(len=*), intent(in) :: group
+    logical, intent(in) :: again           !< the facts stand there already, with other values
     integer :: i
 
     do i = 1, self%count
@@ -128,7 +130,7 @@ contains
         case (a_count)
           call file%put(group//'/'//item%name, item%whole, item%long_name)
         case (a_text)
-          call file%put(group//'/'//item%name, item%text, item%long_name)
+          if (.not. again) call file%put(group//'/'//item%name, item%text, item%long_name)
         end select
       end associate
     end do

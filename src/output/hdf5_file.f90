@@ -12,7 +12,7 @@ module mech9_hdf5_file
                   h5screate_f, h5screate_simple_f, h5sclose_f, h5s_scalar_f, &
                   h5tcopy_f, h5tset_cset_f, h5tclose_f, h5t_string, h5t_cset_utf8_f, &
                   h5t_ieee_f64le, h5t_std_i32le, h5t_std_i64le, h5t_native_double, h5kind_to_type, h5_integer_kind, &
-                  h5dcreate_f, h5dopen_f, h5dwrite_f, h5dclose_f, &
+                  h5lexists_f, h5dcreate_f, h5dopen_f, h5dwrite_f, h5dclose_f, &
                   h5acreate_by_name_f, h5awrite_f, h5aclose_f
   use h5ds, only: h5dsset_scale_f, h5dsattach_scale_f
   use mech9_kinds, only: wp, long
@@ -40,7 +40,7 @@ module mech9_hdf5_file
     procedure :: is_open
     procedure :: link_properties
     procedure :: check
-    !> A data set that stands at once: put(name, values, long_name [, unit]).
+    !> A data set that stands at once: put(name, values, long_name [, unit]). What is there already gets other values.
     generic :: put => put_text, put_texts, put_real, put_reals, put_matrix, put_integer, put_integers, &
       put_integer_matrix, put_long
     procedure :: add_attribute
@@ -244,8 +244,18 @@ contains
     character(len=*), intent(in), optional :: unit
     integer(hid_t) :: space, data_set
     integer :: status
+    logical :: exists
 
     if (allocated(self%failure)) return
+    ! fails where even its group is not there
+    call h5lexists_f(self%id, name, exists, status)
+    if (exists .and. status >= 0) then
+      call h5dopen_f(self%id, name, data_set, status)
+      call h5dwrite_f(data_set, memory_type, values, status)
+      call self%check(status)
+      call h5dclose_f(data_set, status)
+      return
+    end if
     if (size(extents) == 0) then
       call h5screate_f(h5s_scalar_f, space, status)
     else

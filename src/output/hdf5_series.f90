@@ -4,31 +4,32 @@
 !> The data sets grow together. Rows gather in memory, each quantity by itself, and go to the file in
 !> blocks; there they count only when a flush makes the new lengths known. A run may be killed in the middle
 !> of a flush: hence the lengths of all data sets stand side by side, in one piece of metadata that goes to the file
-!> in one write, and chunks are few and large, so that their index seldom changes.
+!> in one write, and chunks are so large that their index seldom changes, for most runs never.
 module mech9_hdf5_series
   use, intrinsic :: iso_c_binding, only: c_loc
   use hdf5, only: hid_t, hsize_t, size_t, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5pset_fill_time_f, h5pset_deflate_f, &
                   h5pset_shuffle_f, h5pset_chunk_cache_f, h5p_dataset_create_f, h5p_dataset_access_f, &
                   h5d_fill_time_never_f, h5screate_simple_f, h5sclose_f, h5s_unlimited_f, &
                   h5sselect_hyperslab_f, h5s_select_set_f, h5dcreate_anon_f, h5olink_f, h5dset_extent_f, h5dget_space_f, &
-                  h5dwrite_f, h5dclose_f, h5t_ieee_f64le, h5t_native_double
+                  h5dwrite_f, h5dclose_f, h5t_ieee_f64le, h5t_std_i32le, h5t_native_double
   use mech9_kinds, only: wp, long
   use mech9_hdf5_file, only: hdf5_file_type
   implicit none
   private
   public :: hdf5_series_type
 
-  !> Chunks of a run that goes to its end. What is compressed is written in whole chunks only.
-  integer, parameter :: plain_chunks = 8, compressed_chunks = 60
+  !> Chunks of a compressed run that goes to its end; they are written whole.
+  integer, parameter :: compressed_chunks = 60
   integer, parameter :: least_chunk_rows = 1024
-  !> Of the rows of a chunk of each quantity, and of the rows that gather before they are written [bytes].
-  integer(long), parameter :: largest_chunk = 268435456, buffer_size = 8388608
+  !> Of the chunks of all quantities together, and of the rows that gather before they are written [bytes].
+  integer(long), parameter :: largest_chunk = 67108864, buffer_size = 8388608
   integer, parameter :: most_buffered = 4096
 
   !> One quantity.
   type :: quantity_type
     integer(hid_t) :: data_set = -1
     character(len=:), allocatable :: name, long_name, unit
+    logical :: whole = .false.                   !< of whole numbers
     character(len=:), allocatable :: scales(:)   !< paths of the dimension scales, time first; none: it is one itself
     integer, allocatable :: columns(:)           !< of the rows that it consists of
     integer(hsize_t), allocatable :: extents(:)  !< of one row of it, Fortran order; empty: one number
@@ -63,13 +64,12 @@ contains
     integer, intent(in) :: n_quantities, n_columns   !< at most
     integer, intent(in) :: expected_rows             !< there may be more, or fewer
     integer, intent(in) :: compression               !< 0 none to 9 most
-    integer :: pieces
 
     allocate (self%quantities(n_quantities))
     self%compression = compression
-    pieces = merge(compressed_chunks, plain_chunks, compression > 0)
-    self%chunk_rows = min(max(expected_rows, 1), max(least_chunk_rows, 1 + (expected_rows - 1)/pieces))
-    self%chunk_rows = min(self%chunk_rows, rows_within(largest_chunk, n_columns))
+    self%chunk_rows = min(max(expected_rows, 1), rows_within(largest_chunk, n_columns))
+    if (compression > 0) self%chunk_rows = min(self%chunk_rows, &
+                                               max(least_chunk_rows, 1 + (expected_rows - 1)/compressed_chunks))
     self%capacity = min(most_buffered, rows_within(buffer_size, n_columns))
     ! what is compressed is written once only, in whole chunks
     if (compression > 0) self%capacity = self%chunk_rows
@@ -84,12 +84,13 @@ contains
   end function rows_within
 
   !> One more quantity.
-  subroutine add(self, name, columns, extents, long_name, unit, scales)
+  subroutine add(self, name, columns, extents, long_name, unit, scales, whole)
     class(hdf5_series_type), intent(inout) :: self
     character(len=*), intent(in) :: name, long_name, unit
     integer, intent(in) :: columns(:)           !< of the rows that it consists of
     integer, intent(in) :: extents(:)           !< of one row of it, Fortran order; empty: one number
     character(len=*), intent(in) :: scales(:)   !< paths of the dimension scales, time first; none: it is one itself
+    logical, intent(in), optional :: whole      !< of whole numbers; not unless given
 
     self%count = self%count + 1
     associate (quantity => self%quantities(self%count))
@@ -97,6 +98,7 @@ contains
       quantity%long_name = long_name
       quantity%unit = unit
       quantity%scales = scales
+      if (present(whole)) quantity%whole = whole
       quantity%columns = columns
       quantity%extents = extents
       allocate (quantity%buffer(size(columns), self%capacity), source=0.0_wp)
@@ -116,7 +118,7 @@ contains
     do i = 1, self%count
       if (allocated(file%failure)) return
       associate (quantity => self%quantities(i))
-        call h5olink_f(quantity%data_set, file%id, quantity%name, status)
+        call h5olink_f(quantity%data_set, file%id, quantity%name, status, lcpl_id=file%link_properties())
         call file%check(status)
         call file%describe(quantity%name, quantity%long_name, quantity%unit)
         if (size(quantity%scales) == 0) call file%make_scale(quantity%name)
@@ -149,7 +151,8 @@ contains
     call h5pcreate_f(h5p_dataset_access_f, access, status)
     call h5pset_chunk_cache_f(access, 0_size_t, 0_size_t, 0.0, status)
     call h5screate_simple_f(rank, none, space, status, most)
-    call h5dcreate_anon_f(file%id, h5t_ieee_f64le, space, quantity%data_set, status, dcpl_id=creation, dapl_id=access)
+    call h5dcreate_anon_f(file%id, merge(h5t_std_i32le, h5t_ieee_f64le, quantity%whole), space, quantity%data_set, &
+                          status, dcpl_id=creation, dapl_id=access)
     call file%check(status)
     call h5sclose_f(space, status)
     call h5pclose_f(access, status)

@@ -18,11 +18,15 @@ module mech9_hdf5_sink
   real(wp), parameter :: longest_wait = 1.0_wp
   !> Time, coordinates, points, and their derivatives.
   integer, parameter :: quantities_of_motion = 7
+  !> Events that one chunk of their data sets holds.
+  integer, parameter :: most_events = 64
   character, parameter :: directions(3) = ['x', 'y', 'z']
 
   type, extends(result_sink_type) :: hdf5_sink_type
     type(hdf5_file_type) :: file
     type(hdf5_series_type), private :: series
+    type(hdf5_series_type), private :: events
+    logical, private :: begun = .false.     !< rows were written
     type(pacer_type), private :: pacer
     logical, private :: told = .false.      !< the file's failure was reported
   contains
@@ -31,6 +35,8 @@ module mech9_hdf5_sink
     procedure :: flush => flush_sink
     procedure :: close => close_sink
     procedure :: words
+    procedure :: begin_events
+    procedure :: write_events
     procedure :: tell
   end type hdf5_sink_type
 
@@ -119,7 +125,7 @@ contains
     integer :: k
 
     do k = 1, size(kinds)
-      kinds(k)%text = mechanism%pairs(k)%pair%kind_name()
+      kinds(k)%text = trim(mechanism%pairs(k)%pair%kind_name())
     end do
     call file%put('coordinate', [(k, k=1, size(kinds))], 'number of the coordinate and of its pair')
     call file%make_scale('coordinate')
@@ -175,14 +181,45 @@ contains
     end do
   end function identifier
 
-  !> Rows more; about once a second they are made known to the file.
+  !> Room for the events of a run: when other coordinates became the independent ones, and which.
+  subroutine begin_events(self, n_independent)
+    class(hdf5_sink_type), intent(inout) :: self
+    integer, intent(in) :: n_independent
+    integer :: i
+
+    call self%events%start(2, 1 + n_independent, most_events, 0)
+    call self%events%add('events/time', [1], [integer ::], 'when other coordinates became the independent ones', 's', &
+                         [character(len=5) ::])
+    call self%events%add('events/independent', [(1 + i, i=1, n_independent)], [n_independent], &
+                         'the independent coordinates from then on', '1', ['/events/time   ', '/events/freedom'], whole=.true.)
+    call self%events%create(self%file)
+    call self%file%put('events/freedom', [(i, i=1, n_independent)], 'number of the degree of freedom')
+    call self%file%make_scale('events/freedom')
+    call self%events%attach(self%file)
+  end subroutine begin_events
+
+  !> The events of the run.
+  subroutine write_events(self, times, independent)
+    class(hdf5_sink_type), intent(inout) :: self
+    real(wp), intent(in) :: times(:)           !< [s]
+    integer, intent(in) :: independent(:, :)   !< (degrees of freedom, events)
+    real(wp) :: rows(1 + size(independent, 1), size(times))
+
+    rows(1, :) = times
+    rows(2:, :) = real(independent, wp)
+    call self%events%append_rows(self%file, rows)
+  end subroutine write_events
+
+  !> Rows more; about once a second they are made known to the file, and the first ones at once: with them the
+  !> places of what follows are settled.
   subroutine write_rows(self, rows, err)
     class(hdf5_sink_type), intent(inout) :: self
     real(wp), intent(in) :: rows(:, :)
     type(error_type), allocatable, intent(out) :: err
 
     call self%series%append_rows(self%file, rows)
-    if (self%pacer%due()) then
+    if (self%pacer%due() .or. .not. self%begun) then
+      self%begun = .true.
       call self%series%hand_over(self%file)
       call self%file%flush()
     end if
@@ -205,6 +242,7 @@ contains
 
     if (.not. self%file%is_open()) return
     call self%series%close(self%file)
+    call self%events%close(self%file)
     call self%file%close()
     call self%tell(err)
   end subroutine close_sink

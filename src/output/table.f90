@@ -7,13 +7,15 @@
 !>                             t                       q1
 !>        0.0000000000000000E+00   5.0000000000000000E-01
 !>
+!> A file whose name ends in .csv gets the names, in the first line, and the rows only, with commas between.
+!>
 !> Rows gather in a buffer and leave it as whole rows, when it is full and about once a second, so
 !> that a run that is killed leaves a table that can be read. (Linux ends even a write in hand when a
 !> process is killed outright; then, and only then, the last line may be a part of a row.)
 module mech9_table
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal
-  use mech9_text, only: string_type
+  use mech9_text, only: string_type, lower
   use mech9_clock, only: pacer_type
   use mech9_result_sink, only: result_sink_type
   use mech9_number_format, only: number_format_type, number_width
@@ -37,7 +39,8 @@ module mech9_table
     character(len=:), allocatable :: buffer
     integer :: used = 0      !< bytes waiting in the buffer
     integer :: columns = 0
-    integer :: row_size = 0  !< bytes
+    integer :: row_size = 0  !< bytes; of the longest row
+    logical :: commas = .false.  !< a file of comma-separated values
   contains
     procedure :: open => open_table
     procedure :: write_row
@@ -71,8 +74,13 @@ contains
     if (allocated(self%buffer)) deallocate (self%buffer)
     allocate (character(len=max(buffer_size, self%row_size)) :: self%buffer)
     call self%pacer%start(longest_wait)
-    call self%file%write(comment_lines(title)//comment_lines(program) &
-                         //unit_line(units)//name_line(names), err)
+    self%commas = .false.
+    if (len(path) > 4) self%commas = lower(path(len(path) - 3:)) == '.csv'
+    if (self%commas) then
+      call self%file%write(comma_line(names), err)
+    else
+      call self%file%write(comment_lines(title)//comment_lines(program)//unit_line(units)//name_line(names), err)
+    end if
   end subroutine open_table
 
   !> Write one row, a value for each column. It may wait in the buffer for a moment.
@@ -80,7 +88,7 @@ contains
     class(table_type), intent(inout) :: self
     real(wp), intent(in) :: values(:)
     type(error_type), allocatable, intent(out) :: err
-    integer :: i, at
+    integer :: at
 
     if (size(values) /= self%columns .or. .not. self%file%is_open()) then
       call raise(err, exit_internal, 'a row needs an open table and a value for each column')
@@ -91,14 +99,50 @@ contains
       if (allocated(err)) return
     end if
     at = self%used
-    do i = 1, self%columns
-      call self%format%put(values(i), self%buffer(at + 1:at + number_width))
-      at = at + number_width
-    end do
+    if (self%commas) then
+      call put_with_commas(self%format, values, self%buffer, at)
+    else
+      call put_in_fields(self%format, values, self%buffer, at)
+    end if
     self%buffer(at + 1:at + 1) = line_end
     self%used = at + 1
     if (self%pacer%due()) call self%flush(err)
   end subroutine write_row
+
+  !> Numbers in columns of one width, from behind `at` on.
+  pure subroutine put_in_fields(format, values, buffer, at)
+    type(number_format_type), intent(in) :: format
+    real(wp), intent(in) :: values(:)
+    character(len=*), intent(inout) :: buffer
+    integer, intent(inout) :: at
+    integer :: i
+
+    do i = 1, size(values)
+      call format%put(values(i), buffer(at + 1:at + number_width))
+      at = at + number_width
+    end do
+  end subroutine put_in_fields
+
+  !> Numbers without blanks, commas between them, from behind `at` on.
+  pure subroutine put_with_commas(format, values, buffer, at)
+    type(number_format_type), intent(in) :: format
+    real(wp), intent(in) :: values(:)
+    character(len=*), intent(inout) :: buffer
+    integer, intent(inout) :: at
+    character(len=number_width) :: field
+    integer :: i, first
+
+    do i = 1, size(values)
+      if (i > 1) then
+        at = at + 1
+        buffer(at:at) = ','
+      end if
+      call format%put(values(i), field)
+      first = verify(field, ' ')
+      buffer(at + 1:at + number_width - first + 1) = field(first:)
+      at = at + number_width - first + 1
+    end do
+  end subroutine put_with_commas
 
   !> Write rows, one after the other.
   subroutine write_rows(self, rows, err)
@@ -189,6 +233,30 @@ contains
     end do
     line = line//line_end
   end function name_line
+
+  !> The names with commas between, in quotes where they hold a comma or a quote.
+  pure function comma_line(names) result(line)
+    type(string_type), intent(in) :: names(:)
+    character(len=:), allocatable :: line
+    character(len=:), allocatable :: name
+    integer :: i, k
+
+    line = ''
+    do i = 1, size(names)
+      name = trim(printable(names(i)%text))
+      if (i > 1) line = line//','
+      if (scan(name, ',"') == 0) then
+        line = line//name
+        cycle
+      end if
+      line = line//'"'
+      do k = 1, len(name)
+        line = line//repeat(name(k:k), merge(2, 1, name(k:k) == '"'))
+      end do
+      line = line//'"'
+    end do
+    line = line//line_end
+  end function comma_line
 
   !> A word at the right end of a field; a word that fills the field keeps a blank before it.
   pure function right_aligned(word, width) result(field)

@@ -29,10 +29,11 @@ contains
   end function distinct_points
 
   !> The outline of points, no two of which are the same: `closed` around a plate, where they lie in one
-  !> plane; else pairs of points that bars join.
-  pure subroutine find_shape(points, tolerance, order, closed)
+  !> plane; else, or where some are the ends of rails, pairs of points that bars join.
+  pure subroutine find_shape(points, tolerance, rails, order, closed)
     real(wp), intent(in) :: points(:, :)          !< (3,n)
     real(wp), intent(in) :: tolerance
+    integer, intent(in) :: rails(:, :)            !< (2,n) points that a bar must join
     integer, allocatable, intent(out) :: order(:) !< numbers of points
     logical, intent(out) :: closed
     real(wp) :: normal(3), along(3), off(size(points, 2)), x(2, size(points, 2))
@@ -58,11 +59,11 @@ contains
       x(1, i) = dot_product(along, points(:, i) - points(:, first))
       x(2, i) = dot_product(cross(normal, along), points(:, i) - points(:, first))
     end do
-    closed = maxval(off) <= tolerance
+    closed = maxval(off) <= tolerance .and. size(rails) == 0
     if (closed) then
       order = hull(x)
     else
-      order = spanning_bars(points)
+      order = spanning_bars(points, rails)
     end if
   end subroutine find_shape
 
@@ -98,9 +99,11 @@ contains
     around = found(:n)
   end function hull
 
-  !> The shortest bars that hold points in space together: each point is joined to the nearest one that is.
-  pure function spanning_bars(points) result(ends)
+  !> The shortest bars that hold points in space together: each point is joined to the nearest one that is;
+  !> the ends of a rail are joined to each other.
+  pure function spanning_bars(points, rails) result(ends)
     real(wp), intent(in) :: points(:, :)
+    integer, intent(in) :: rails(:, :)            !< without common points
     integer, allocatable :: ends(:)               !< two for each bar
     real(wp) :: distance(size(points, 2))
     integer :: nearest(size(points, 2)), i, n, new
@@ -108,18 +111,24 @@ contains
 
     allocate (ends(2*(size(points, 2) - 1)))
     joined = .false.
-    joined(1) = .true.
-    nearest = 1
-    distance = [(norm2(points(:, i) - points(:, 1)), i=1, size(points, 2))]
-    do n = 1, size(points, 2) - 1
-      new = minloc(distance, dim=1, mask=.not. joined)
-      ends(2*n - 1:2*n) = [nearest(new), new]
+    distance = huge(distance)
+    nearest = 0
+    new = 1
+    if (size(rails, 2) > 0) new = rails(1, 1)
+    do n = 1, size(points, 2)
       joined(new) = .true.
+      if (n > 1) ends(2*n - 3:2*n - 2) = [nearest(new), new]
       do i = 1, size(points, 2)
         if (norm2(points(:, i) - points(:, new)) >= distance(i)) cycle
         distance(i) = norm2(points(:, i) - points(:, new))
         nearest(i) = new
       end do
+      do i = 1, size(rails, 2)
+        if (all(rails(:, i) /= new)) cycle
+        distance(sum(rails(:, i)) - new) = -1.0_wp
+        nearest(sum(rails(:, i)) - new) = new
+      end do
+      new = minloc(distance, dim=1, mask=.not. joined)
     end do
   end function spanning_bars
 end module mech9_link_shapes

@@ -58,7 +58,11 @@ contains
     middle = 0.5_wp*(box%low + box%high)
     extent = box%high(:2) - box%low(:2)
     diagonal = norm2(box%high - box%low)
-    if (.not. diagonal > 0.0_wp) diagonal = skeleton%size
+    ! without any extent, as much room as the mechanism is large
+    if (diagonal < 1.0e-6_wp*skeleton%size) then
+      diagonal = skeleton%size
+      extent = diagonal
+    end if
     if (turned) extent = max(extent, wide*diagonal)
     projection%view = view
     projection%centre = middle(1)*view%right + middle(2)*view%up + middle(3)*view%toward

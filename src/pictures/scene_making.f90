@@ -1,6 +1,6 @@
 !> From a mechanism and its film to a scene: paths and guides, links, springs, pairs, points and labels.
 !> Uses kinds, rotation, text, mechanism, spring_load, film, pair_axes, skeleton, projection, scene,
-!> link_shapes, pair_symbols.
+!> scene_paths, link_shapes, pair_symbols.
 module mech9_scene_making
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -10,8 +10,9 @@ module mech9_scene_making
   use mech9_pair_axes, only: free, turning
   use mech9_skeleton, only: skeleton_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, open_path, closed_path, segments, spring, mark, label, in_trace, in_curve, in_cam, in_plate, &
+  use mech9_scene, only: scene_type, open_path, closed_path, segments, spring, mark, label, in_plate, &
                          in_tube, in_spring, as_dot, as_centre, as_name, as_number
+  use mech9_scene_paths, only: add_paths, add_curves
   use mech9_link_shapes, only: distinct_points, find_shape
   use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_coordinate_names
   implicit none
@@ -22,9 +23,6 @@ module mech9_scene_making
   real(wp), parameter :: same = 0.004_wp
   !> Links and coordinates are labelled where there are no more than these.
   integer, parameter :: most_labelled = 24
-  !> Lines may leave a curve by so much [px], and of so many points of it.
-  real(wp), parameter :: straight = 0.15_wp
-  integer, parameter :: longest_straight = 40
 
   !> Points that give a link its shape, in the link's system, with the nodes that stand there.
   type :: outline_type
@@ -59,11 +57,11 @@ contains
     scene%first_sorted = scene%n_items + 1
     do link = 2, size(outlines)
       call find_outline(mechanism, skeleton, symbols, link, scene, outlines(link))
-      call add_shape(skeleton, link, .true., scene, outlines(link), shapes(link))
+      call add_shape(skeleton, symbols, link, .true., scene, outlines(link), shapes(link))
     end do
     ! bars above plates that are as near
     do link = 2, size(outlines)
-      if (shapes(link) == 0) call add_shape(skeleton, link, .false., scene, outlines(link), shapes(link))
+      if (shapes(link) == 0) call add_shape(skeleton, symbols, link, .false., scene, outlines(link), shapes(link))
       call add_reach(skeleton, symbols, cams, link, scene, outlines(link), shapes(link))
     end do
     call add_springs(mechanism, shapes, scene)
@@ -72,102 +70,6 @@ contains
     call add_points(mechanism, with_masses, scene)
     call add_names(mechanism, skeleton, symbols, outlines, scene)
   end subroutine make_scene
-
-  !> Where the points have been.
-  subroutine add_paths(mechanism, film, px, scene)
-    type(mechanism_type), intent(in) :: mechanism
-    type(film_type), intent(in) :: film
-    real(wp), intent(in) :: px                  !< length of 1 px in the mechanism [m]
-    type(scene_type), intent(inout) :: scene
-    integer, allocatable :: chosen(:), nodes(:)
-    integer :: i, n
-
-    if (film%n_path_points < 2) return
-    do i = 1, size(mechanism%points)
-      if (mechanism%points(i)%link == 1) cycle
-      chosen = bends_of(film%paths(:, i, :film%n_path_points), straight*px)
-      if (allocated(nodes)) deallocate (nodes)
-      allocate (nodes(size(chosen)))
-      do n = 1, size(chosen)
-        call scene%add_node(1, film%paths(:, i, chosen(n)), nodes(n))
-      end do
-      call scene%add_item(open_path, in_trace, nodes, mechanism%points(i)%link)
-    end do
-  end subroutine add_paths
-
-  !> Which points of a path have to be kept so that none of the others lies farther than `tolerance` from the line.
-  pure function bends_of(path, tolerance) result(kept)
-    real(wp), intent(in) :: path(:, :)          !< (3,n)
-    real(wp), intent(in) :: tolerance           !< [m]
-    integer, allocatable :: kept(:)
-    logical :: keep(size(path, 2))
-    integer :: from, to, i
-
-    keep = .false.
-    keep([1, size(keep)]) = .true.
-    from = 1
-    do to = 3, size(keep)
-      ! a bound on how many are looked at again and again
-      if (to - from < longest_straight) then
-        if (all([(distance(path(:, i), path(:, from), path(:, to)) <= tolerance, i=from + 1, to - 1)])) cycle
-      end if
-      keep(to - 1) = .true.
-      from = to - 1
-    end do
-    kept = pack([(i, i=1, size(keep))], keep)
-  end function bends_of
-
-  !> Distance of a point from a line between two others [m].
-  pure real(wp) function distance(point, from, to)
-    real(wp), intent(in) :: point(3), from(3), to(3)
-    real(wp) :: along(3), part
-
-    along = to - from
-    part = 0.0_wp
-    if (dot_product(along, along) > 0.0_wp) &
-      part = max(0.0_wp, min(1.0_wp, dot_product(point - from, along)/dot_product(along, along)))
-    distance = norm2(point - from - part*along)
-  end function distance
-
-  !> The curves on which users' pairs guide the origins of their moving links; one that closes is the edge of a cam.
-  subroutine add_curves(film, skeleton, scene, cams)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(scene_type), intent(inout) :: scene
-    logical, intent(out) :: cams(:)             !< (M) the pair runs around a cam
-    integer :: nodes(film%n_frames), k, frame
-
-    cams = .false.
-    if (film%n_frames < 2) return
-    do k = 1, size(skeleton%places)
-      associate (place => skeleton%places(k))
-        if (place%kind /= free) cycle
-        do frame = 1, film%n_frames
-          call scene%add_node(place%links(1), film%local(frame, place%links(1), film%p(:, place%links(2), frame)), &
-                              nodes(frame))
-        end do
-        cams(k) = closes(scene%node_at(:, nodes)) .and. place%links(1) /= 1
-        if (cams(k)) then
-          call scene%add_item(closed_path, in_cam, nodes, place%links(1))
-        else
-          call scene%add_item(open_path, in_curve, nodes, place%links(1))
-        end if
-      end associate
-    end do
-  end subroutine add_curves
-
-  !> Whether a curve comes back to where it began, up to two of its steps.
-  pure logical function closes(curve)
-    real(wp), intent(in) :: curve(:, :)         !< (3,n)
-    real(wp) :: length
-    integer :: i
-
-    length = 0.0_wp
-    do i = 2, size(curve, 2)
-      length = length + norm2(curve(:, i) - curve(:, i - 1))
-    end do
-    closes = norm2(curve(:, size(curve, 2)) - curve(:, 1)) < 2.0_wp*length/size(curve, 2) .and. size(curve, 2) > 8
-  end function closes
 
   !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
   !> mass centre besides.
@@ -245,8 +147,9 @@ contains
   end subroutine add_to_outline
 
   !> The plate of a link, or its bars.
-  subroutine add_shape(skeleton, link, plates, scene, outline, shape)
+  subroutine add_shape(skeleton, symbols, link, plates, scene, outline, shape)
     type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
     integer, intent(in) :: link
     logical, intent(in) :: plates               !< only a plate, or only bars
     type(scene_type), intent(inout) :: scene
@@ -260,11 +163,33 @@ contains
     outline%points(:, :size(chosen)) = outline%points(:, chosen)
     outline%nodes(:size(chosen)) = outline%nodes(chosen)
     outline%count = size(chosen)
-    call find_shape(outline%points(:, :outline%count), same*skeleton%size, order, closed)
+    call find_shape(outline%points(:, :outline%count), same*skeleton%size, rails_of(skeleton, symbols, link, outline), &
+                    order, closed)
     if (size(order) == 0 .or. (closed .neqv. plates)) return
     call scene%add_item(merge(closed_path, segments, closed), in_plate, outline%nodes(order), link)
     shape = scene%n_items
   end subroutine add_shape
+
+  !> Which points of an outline are the ends of a guide that is part of the link.
+  pure function rails_of(skeleton, symbols, link, outline) result(rails)
+    type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
+    integer, intent(in) :: link
+    type(outline_type), intent(in) :: outline
+    integer, allocatable :: rails(:, :)         !< (2,n) numbers of points
+    integer :: ends(2), i, n
+
+    allocate (rails(2, 0))
+    do i = skeleton%graph%first(link), skeleton%graph%first(link + 1) - 1
+      associate (guide => symbols%guide(:, skeleton%graph%pair_at(i)))
+        if (any(guide == 0)) cycle
+        do n = 1, 2
+          ends(n) = findloc(outline%nodes(:outline%count), guide(n), dim=1)
+        end do
+      end associate
+      if (all(ends > 0)) rails = reshape([rails, ends], [2, size(rails, 2) + 1])
+    end do
+  end function rails_of
 
   !> What reaches from a link to pairs that move along it.
   subroutine add_reach(skeleton, symbols, cams, link, scene, outline, shape)

@@ -177,7 +177,7 @@ contains
         across = off_line(pins%at(:, i), point, axis)
         foot = pins%at(:, i) - across
         ! the line itself is nobody's own where it is far from the link: only its direction counts
-        if (norm2(across) > 0.75_wp*size) foot = pins%at(:, i)
+        if (norm2(across) > 0.75_wp*size .and. place%kind == sliding) foot = pins%at(:, i)
         if (norm2(across) > same*size .and. norm2(foot - point) < 0.3_wp*size) foot = point
       end do
       place%points(:, place%carrier) = foot

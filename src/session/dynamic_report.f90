@@ -1,10 +1,12 @@
-!> What mech9d says at the end of a run: a few lines for a person, JSON for a program.
-!> Uses text, json, mechanism, dynamic_run, recording, run_words.
+!> What mech9d says at the end of a run: a few lines for a person, JSON and data sets for programs.
+!> Uses text, json, facts, hdf5_sink, mechanism, dynamic_run, recording, run_words.
 module mech9_dynamic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_json, only: json_type
+  use mech9_facts, only: facts_type
+  use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_recording, only: recording_outcome_type
@@ -15,6 +17,7 @@ module mech9_dynamic_report
   implicit none
   private
   public :: print_dynamic_report, save_dynamic_report, print_coefficients
+  public :: dynamic_facts, write_dynamics, write_events
 
 contains
 
@@ -67,6 +70,36 @@ contains
     end do
   end subroutine print_coefficients
 
+  !> What a program may want to know of a run.
+  subroutine dynamic_facts(mechanism, plan, outcome, run, facts)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(recording_outcome_type), intent(in) :: outcome
+    type(dynamic_run_type), intent(inout) :: run
+    type(facts_type), intent(out) :: facts
+    type(integration_statistics_type) :: counts
+
+    counts = run%statistics()
+    call facts%add('outputs', outcome%rows, 'outputs computed')
+    call facts%add('method', method_of(run), 'method of integration')
+    call facts%add('relative_tolerance', mechanism%solver%relative_tolerance, 'relative error allowed in a step', '1')
+    call facts%add('absolute_tolerance', mechanism%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
+    call facts%add('steps', counts%steps, 'steps of the integrator')
+    call facts%add('evaluations', counts%rate_evaluations, 'evaluations of the accelerations')
+    call facts%add('jacobian_evaluations', counts%jacobian_evaluations, 'evaluations of their derivatives')
+    call facts%add('error_test_failures', counts%error_test_failures, 'steps made again for their error')
+    call facts%add('convergence_failures', counts%convergence_failures, 'steps made again that did not converge')
+    call facts%add('refusals', counts%refusals, 'steps made again for what they met')
+    call facts%add('newton_iterations', run%system%iterations, 'Newton iterations')
+    call facts%add('largest_closure', run%worst_closure, 'largest error of a closed chain', 'm')
+    call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
+    call facts%add('energy_at_start', run%energy_at_start, 'kinetic and potential energy at the start', 'J')
+    call facts%add('largest_energy_change', run%largest_energy_change, 'largest change of that energy', 'J')
+    call facts%add('least_conditioning', run%least_conditioning, 'least pivot ratio of a block: 0 is singular', '1')
+    call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
+    call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
+  end subroutine dynamic_facts
+
   !> The same, and more, as JSON.
   subroutine save_dynamic_report(path, mechanism, plan, table_path, exit_code, outcome, run, err)
     character(len=*), intent(in) :: path
@@ -77,33 +110,16 @@ contains
     type(recording_outcome_type), intent(in) :: outcome
     type(dynamic_run_type), intent(inout) :: run
     type(error_type), allocatable, intent(out) :: err
-    type(integration_statistics_type) :: counts
     type(json_type) :: json
+    type(facts_type) :: facts
 
     call json%begin_object()
     call add_provenance(json, 'mech9d')
     call json%add('title', mechanism%title)
     call json%add('exit_code', exit_code)
     call json%add('table', table_path)
-    call json%add('outputs', outcome%rows)
-    counts = run%statistics()
-    call json%add('method', method_of(run))
-    call json%add('relative_tolerance', mechanism%solver%relative_tolerance)
-    call json%add('absolute_tolerance', mechanism%solver%absolute_tolerance)
-    call json%add('steps', counts%steps)
-    call json%add('evaluations', counts%rate_evaluations)
-    call json%add('jacobian_evaluations', counts%jacobian_evaluations)
-    call json%add('error_test_failures', counts%error_test_failures)
-    call json%add('convergence_failures', counts%convergence_failures)
-    call json%add('refusals', counts%refusals)
-    call json%add('newton_iterations', run%system%iterations)
-    call json%add('largest_closure', run%worst_closure)
-    call json%add('size', plan%length)
-    call json%add('energy_at_start', run%energy_at_start)
-    call json%add('largest_energy_change', run%largest_energy_change)
-    call json%add('least_conditioning', run%least_conditioning)
-    call json%add('seconds_solving', outcome%seconds_solving)
-    call json%add('seconds_writing', outcome%seconds_writing)
+    call dynamic_facts(mechanism, plan, outcome, run, facts)
+    call facts%to_json(json)
     call add_coefficients(json, plan, run%coefficients)
     call add_events(json, run)
     call add_structure(json, mechanism, plan)
@@ -150,4 +166,39 @@ contains
     end do
     call json%end_array()
   end subroutine add_events
+
+  !> Coefficients of motion as data sets, and room for events.
+  subroutine write_dynamics(hdf5, plan, run)
+    type(hdf5_sink_type), intent(inout) :: hdf5
+    type(plan_type), intent(in) :: plan
+    type(dynamic_run_type), intent(in) :: run
+    real(wp) :: coefficients(size(plan%independent), size(plan%independent))
+    integer :: p
+
+    do p = 1, size(plan%independent)
+      coefficients(p:, p) = run%coefficients(p:, p)
+      coefficients(p, p:) = run%coefficients(p:, p)
+    end do
+    associate (file => hdf5%file)
+      call file%put('dynamics/p', plan%independent, 'number of an independent coordinate at the start')
+      call file%make_scale('dynamics/p')
+      call file%put('dynamics/r', plan%independent, 'number of an independent coordinate at the start')
+      call file%make_scale('dynamics/r')
+      call file%put('dynamics/coefficients', coefficients, 'coefficients of motion a(p,r) at the start')
+      call file%attach_scales('dynamics/coefficients', ['/dynamics/p', '/dynamics/r'])
+    end associate
+    call hdf5%begin_events(size(plan%independent))
+  end subroutine write_dynamics
+
+  !> Changes of the independent coordinates as data sets.
+  subroutine write_events(hdf5, run)
+    type(hdf5_sink_type), intent(inout) :: hdf5
+    type(dynamic_run_type), intent(in) :: run
+    integer :: independent(size(run%system%plan%independent), size(run%events)), i
+
+    do i = 1, size(run%events)
+      independent(:, i) = run%events(i)%independent
+    end do
+    call hdf5%write_events(run%events%t, independent)
+  end subroutine write_events
 end module mech9_dynamic_report

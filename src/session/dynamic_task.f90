@@ -1,4 +1,4 @@
-!> What mech9d does with a mechanism. Uses task, results, recording, dynamic_run, dynamic_report.
+!> What mech9d does with a mechanism. Uses task, facts, hdf5_sink, results, recording, dynamic_run, dynamic_report.
 module mech9_dynamic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -9,11 +9,14 @@ module mech9_dynamic_task
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_task, only: task_type, answers_only, print_check, announce, draw
+  use mech9_hdf5_sink, only: hdf5_sink_type
+  use mech9_facts, only: facts_type
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_recording, only: recording_outcome_type, record
   use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
-  use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients
+  use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients, &
+                                   dynamic_facts, write_dynamics, write_events
   implicit none
   private
   public :: dynamic_task_type, dynamic_task
@@ -83,7 +86,9 @@ contains
     type(dynamic_run_type), intent(inout) :: run
     type(diagnostics_type), intent(inout) :: diagnostics
     type(kept_rows_type), intent(inout), optional :: kept
-    type(results_type) :: results
+    type(results_type), target :: results
+    type(facts_type) :: facts
+    type(hdf5_sink_type), pointer :: hdf5
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
 
@@ -94,9 +99,16 @@ contains
       call diagnostics%add_error(err)
       return
     end if
+    call dynamic_facts(mechanism, plan, outcome, run, facts)
+    call results%write_facts(facts)
+    hdf5 => results%hdf5()
+    if (associated(hdf5)) call write_dynamics(hdf5, plan, run)
     call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) call print_dynamic_report(error_unit, results%table_path, outcome, run)
     if (allocated(err)) call diagnostics%add_error(err)
+    call dynamic_facts(mechanism, plan, outcome, run, facts)
+    call results%write_facts(facts, diagnostics%code())
+    if (associated(hdf5)) call write_events(hdf5, run)
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('quiet')) call results%print_words(error_unit)

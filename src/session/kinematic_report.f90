@@ -1,10 +1,11 @@
 !> What mech9k says at the end of a run: a few lines for a person, JSON for a program.
-!> Uses text, json, plan, tracking, recording, run_words.
+!> Uses text, json, facts, plan, tracking, recording, run_words.
 module mech9_kinematic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_json, only: json_type
+  use mech9_facts, only: facts_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_tracking, only: tracker_type, words_of_block
@@ -12,7 +13,7 @@ module mech9_kinematic_report
   use mech9_run_words, only: duration, each, add_structure, add_provenance
   implicit none
   private
-  public :: print_kinematic_report, save_kinematic_report
+  public :: print_kinematic_report, save_kinematic_report, kinematic_facts
 
 contains
 
@@ -53,6 +54,28 @@ contains
     iterations_each = real(tracker%iterations, wp)/max(1, outcome%rows)
   end function iterations_each
 
+  !> What a program may want to know of a run.
+  subroutine kinematic_facts(plan, outcome, tracker, facts)
+    type(plan_type), intent(in) :: plan
+    type(recording_outcome_type), intent(in) :: outcome
+    type(tracker_type), intent(in) :: tracker
+    type(facts_type), intent(out) :: facts
+
+    call facts%add('positions', outcome%rows, 'positions computed')
+    call facts%add('steps', tracker%steps, 'steps of following the drives')
+    call facts%add('halvings', tracker%halvings, 'steps that were too long')
+    call facts%add('newton_iterations', tracker%iterations, 'Newton iterations')
+    call facts%add('newton_iterations_per_position', iterations_each(outcome, tracker), 'Newton iterations a position', '1')
+    call facts%add('largest_closure', tracker%worst_closure, 'largest error of a closed chain', 'm')
+    call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
+    call facts%add('least_conditioning', tracker%least_conditioning, 'least pivot ratio of a block: 0 is singular', '1')
+    call facts%add('least_conditioning_time', tracker%least_conditioning_time, 'when it was that', 's')
+    call facts%add('least_conditioning_block', tracker%least_conditioning_block, 'block that it was in')
+    call facts%add('special_positions_passed', tracker%passages, 'special positions passed')
+    call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
+    call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
+  end subroutine kinematic_facts
+
   !> The same, and more, as JSON.
   subroutine save_kinematic_report(path, mechanism, plan, table_path, exit_code, outcome, tracker, err)
     character(len=*), intent(in) :: path
@@ -64,25 +87,15 @@ contains
     type(tracker_type), intent(in) :: tracker
     type(error_type), allocatable, intent(out) :: err
     type(json_type) :: json
+    type(facts_type) :: facts
 
     call json%begin_object()
     call add_provenance(json, 'mech9k')
     call json%add('title', mechanism%title)
     call json%add('exit_code', exit_code)
     call json%add('table', table_path)
-    call json%add('positions', outcome%rows)
-    call json%add('steps', tracker%steps)
-    call json%add('halvings', tracker%halvings)
-    call json%add('newton_iterations', tracker%iterations)
-    call json%add('newton_iterations_per_position', iterations_each(outcome, tracker))
-    call json%add('largest_closure', tracker%worst_closure)
-    call json%add('size', plan%length)
-    call json%add('least_conditioning', tracker%least_conditioning)
-    call json%add('least_conditioning_time', tracker%least_conditioning_time)
-    call json%add('least_conditioning_block', tracker%least_conditioning_block)
-    call json%add('special_positions_passed', tracker%passages)
-    call json%add('seconds_solving', outcome%seconds_solving)
-    call json%add('seconds_writing', outcome%seconds_writing)
+    call kinematic_facts(plan, outcome, tracker, facts)
+    call facts%to_json(json)
     call add_structure(json, mechanism, plan)
     call json%end_object()
     call json%save(path, err)

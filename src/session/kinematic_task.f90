@@ -1,4 +1,4 @@
-!> What mech9k does with a mechanism. Uses task, range_text, results, recording, kinematic_run, kinematic_report.
+!> What mech9k does with a mechanism. Uses task, range_text, facts, results, recording, kinematic_run, kinematic_report.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -10,11 +10,12 @@ module mech9_kinematic_task
   use mech9_state, only: state_type
   use mech9_task, only: task_type, answers_only, print_check, announce, draw
   use mech9_range_text, only: print_ranges
+  use mech9_facts, only: facts_type
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_recording, only: recording_outcome_type, record
   use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
-  use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report
+  use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report, kinematic_facts
   implicit none
   private
   public :: kinematic_task_type, kinematic_task
@@ -88,7 +89,8 @@ contains
     type(kinematic_run_type), intent(inout) :: run
     type(diagnostics_type), intent(inout) :: diagnostics
     type(kept_rows_type), intent(inout), optional :: kept
-    type(results_type) :: results
+    type(results_type), target :: results
+    type(facts_type) :: facts
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
 
@@ -99,10 +101,14 @@ contains
       call diagnostics%add_error(err)
       return
     end if
+    call kinematic_facts(plan, outcome, run%tracker, facts)
+    call results%write_facts(facts)
     call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) &
       call print_kinematic_report(error_unit, mechanism, plan, results%table_path, outcome, run%tracker)
     if (allocated(err)) call diagnostics%add_error(err)
+    call kinematic_facts(plan, outcome, run%tracker, facts)
+    call results%write_facts(facts, diagnostics%code())
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('quiet')) call results%print_words(error_unit)

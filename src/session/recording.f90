@@ -4,7 +4,7 @@ module mech9_recording
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_interrupted
   use mech9_text, only: to_text
-  use mech9_clock, only: seconds
+  use mech9_clock, only: seconds, pacer_type
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
   use mech9_kept_rows, only: kept_rows_type
@@ -19,6 +19,8 @@ module mech9_recording
   !> Rows that are computed before they are written together, so that both can be timed without a
   !> clock in the inner loop.
   integer, parameter :: rows_together = 256
+  !> ... unless they take longer than this: they are written then, lest a run that is killed lose them [s].
+  real(wp), parameter :: longest_wait = 0.25_wp
 
   !> What computes rows.
   type, abstract :: motion_source_type
@@ -61,6 +63,7 @@ contains
     type(kept_rows_type), intent(inout), optional :: kept   !< for who looks at the rows after the run
     type(error_type), allocatable :: stopped, at_flush
     type(progress_type) :: progress
+    type(pacer_type) :: pacer
     real(wp), allocatable :: rows(:, :)
     real(wp) :: clock
     integer :: next, count
@@ -71,10 +74,11 @@ contains
                       source%columns%units(:source%columns%count), mechanism%time%intervals + 1)
     clock = seconds()
     call progress%start(source%program_name, quiet)
+    call pacer%start(longest_wait)
     next = 0
     do while (next <= mechanism%time%intervals .and. .not. allocated(stopped))
       call lap(clock, outcome%seconds_writing)
-      call compute_rows(source, mechanism, progress, next, rows, count, stopped)
+      call compute_rows(source, mechanism, progress, pacer, next, rows, count, stopped)
       call lap(clock, outcome%seconds_solving)
       outcome%rows = outcome%rows + count
       if (present(kept)) call kept%take(rows(:, :count))
@@ -88,11 +92,12 @@ contains
     if (.not. allocated(err)) call move_alloc(stopped, err)
   end subroutine record
 
-  !> The next rows, from output number `next` on; fewer than fit where the motion or the run ends.
-  subroutine compute_rows(source, mechanism, progress, next, rows, count, err)
+  !> The next rows, from output number `next` on; fewer than fit where the motion or the run ends, or takes long.
+  subroutine compute_rows(source, mechanism, progress, pacer, next, rows, count, err)
     class(motion_source_type), intent(inout) :: source
     type(mechanism_type), intent(in) :: mechanism
     type(progress_type), intent(inout) :: progress
+    type(pacer_type), intent(inout) :: pacer
     integer, intent(inout) :: next
     real(wp), intent(inout) :: rows(:, :)
     integer, intent(out) :: count
@@ -109,6 +114,7 @@ contains
       count = count + 1
       next = next + 1
       call progress%update(real(next, wp)/max(1, mechanism%time%intervals))
+      if (pacer%due()) return
     end do
   end subroutine compute_rows
 

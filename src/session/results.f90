@@ -10,6 +10,7 @@ module mech9_results
   use mech9_table, only: table_type
   use mech9_plot, only: plot_type, default_picture
   use mech9_hdf5_sink, only: hdf5_sink_type
+  use mech9_facts, only: facts_type
   use mech9_command_line, only: command_line_type
   use mech9_hdf5_record, only: write_provenance, write_structure
   use mech9_version, only: version
@@ -28,6 +29,8 @@ module mech9_results
     procedure :: flush => flush_results
     procedure :: close => close_results
     procedure :: print_words
+    procedure :: hdf5
+    procedure :: write_facts
     procedure, private :: open_plots, open_table, open_hdf5
   end type results_type
 
@@ -146,7 +149,7 @@ contains
     if (allocated(err)) return
     call write_provenance(file%file, program_name, options, mechanism, data_text)
     call write_structure(file%file, mechanism)
-    call file%flush(err)
+    call file%tell(err)
     call move_alloc(file, sink)
     call append_sink(self%sinks, sink)
   end subroutine open_hdf5
@@ -189,6 +192,38 @@ contains
       if (.not. allocated(err)) call move_alloc(one, err)
     end do
   end subroutine close_results
+
+  !> The HDF5 file among the results, for what it holds besides rows; null where there is none.
+  function hdf5(self)
+    class(results_type), intent(in), target :: self
+    type(hdf5_sink_type), pointer :: hdf5
+    integer :: i
+
+    hdf5 => null()
+    do i = 1, size(self%sinks)
+      select type (sink => self%sinks(i)%sink)
+      type is (hdf5_sink_type)
+        hdf5 => sink
+      end select
+    end do
+  end function hdf5
+
+  !> What is to be told of the run, where there is a place for it: before the run, and again after it. Failures are
+  !> those of the files, told with the next rows or when they are closed.
+  subroutine write_facts(self, facts, exit_code)
+    class(results_type), intent(in), target :: self
+    type(facts_type), intent(in) :: facts
+    integer, intent(in), optional :: exit_code   !< that the run is going to answer; before it: not given
+    type(hdf5_sink_type), pointer :: hdf5
+    integer :: code
+
+    hdf5 => self%hdf5()
+    if (.not. associated(hdf5)) return
+    call facts%to_hdf5(hdf5%file, 'diagnostics', again=present(exit_code))
+    code = -1
+    if (present(exit_code)) code = exit_code
+    call hdf5%file%put('diagnostics/exit_code', code, 'what the program answered to the shell; -1: the run did not end')
+  end subroutine write_facts
 
   !> What the user is told about what was written, once all is closed.
   subroutine print_words(self, unit)

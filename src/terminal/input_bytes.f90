@@ -83,7 +83,8 @@ contains
     integer :: ready, got
 
     ready = 0
-    do while (ready <= 0 .and. .not. interrupted())
+    do while (ready <= 0)
+      if (interrupted()) exit
       ready = int(c_poll(asked, 1_c_long, patience))
     end do
     if (interrupted()) then

@@ -12,7 +12,7 @@ module mech9_system
   integer, parameter :: standard_input = 0, standard_output = 1, standard_error = 2
 
   ! Numbers of POSIX systems.
-  integer(c_int), parameter :: signal_hang_up = 1, signal_interrupt = 2, signal_broken_pipe = 13, &
+  integer(c_int), parameter :: signal_file_size = 25, signal_hang_up = 1, signal_interrupt = 2, signal_broken_pipe = 13, &
                                signal_terminate = 15
   !> SIG_DFL and SIG_IGN as addresses.
   integer(c_intptr_t), parameter :: default_action = 0, ignore_action = 1
@@ -69,8 +69,8 @@ contains
 
   !> From now on the first Ctrl-C, request to terminate or closing of the terminal only sets what
   !> `interrupted` tells, so that a loop can end in order; a second one ends the program at once. A reader
-  !> that goes away (`mech9k ... | head`) becomes an error of writing instead of a silent death. Called
-  !> again, it forgets what was caught: a session that outlives an interrupted run is ready for the next.
+  !> that goes away (`mech9k ... | head`) and a file that may not grow (ulimit -f) become errors of writing
+  !> instead of the death of the program. Called again, it forgets what was caught: a session that outlives an interrupted run is ready for the next.
   subroutine catch_interrupts()
     type(c_funptr) :: previous
 
@@ -79,6 +79,7 @@ contains
     call catch(signal_terminate)
     call catch(signal_hang_up)
     previous = c_signal(signal_broken_pipe, action(ignore_action))
+    previous = c_signal(signal_file_size, action(ignore_action))
   end subroutine catch_interrupts
 
   !> Catch one signal, unless whoever started the program had it ignored (nohup, a job in the background).

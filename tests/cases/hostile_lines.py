@@ -15,6 +15,7 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 from mech9_cases import TREE, Checks
+from terminal import Terminal, available, random_keys
 
 LINES, PER_SESSION, MOST_SESSIONS = 10000, 500, 300
 BLOCK = 4096     # what the program may have taken from its input without having asked for it
@@ -66,6 +67,16 @@ def session(checks, program, words, folder, lines):
     return len(lines) if at >= len(data) else data[:max(at - BLOCK, 0)].count(b'\n')
 
 
+def keys(checks, chance, program, folder):
+    """The same at a terminal, key by key; Ctrl-C ends it, or the conversation has come to an end by itself."""
+    with Terminal([program], folder=folder, patience=60) as terminal:
+        terminal.expect('title')
+        terminal.type(random_keys(chance, 2000))
+        terminal.type('\r\x03')
+        checks.true(terminal.ends() in ALLOWED, 'random keys: a known exit code', f'{terminal.process.returncode}\n{terminal.seen[-2000:]}')
+        checks.true(not any(word in terminal.seen for word in TROUBLE), 'random keys: no crash', terminal.seen[-2000:])
+
+
 def main():
     programs = [os.path.abspath(path) for path in sys.argv[1:3]]
     checks, chance = Checks(), random.Random(20240229)
@@ -80,6 +91,8 @@ def main():
             words = [os.path.join('..', word) if word.endswith('.nml') else word for word in starts[sessions % len(starts)]]
             read += session(checks, programs[sessions // 2 % 2], words, work, [line_of(chance) for _ in range(PER_SESSION)])
             sessions += 1
+        for program in programs if available() else []:
+            keys(checks, chance, program, folder)
     checks.true(read >= LINES, f'{LINES} lines were read', f'{read} in {sessions} sessions')
     print(f'{read} lines in {sessions} sessions')
     checks.finish()

@@ -128,6 +128,46 @@ def check_bricard(checks, programs, folder):
     checks.equal(centres, 5, 'mech9d marks the centres of its five bodies')
 
 
+SCREW = """&mechanism title='screw jack', links=4, coordinates=4 /
+&structure cq=1,4 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='helical', axis=0,0,1, pitch=0.05, point=0,0,0.3 /
+&pair coordinate=3, links=1,3, kind='prismatic', axis=0,0,1, point=0.2,0,0.3 /
+&pair coordinate=4, links=3,4, kind='revolute', axis=1,0,0, point=0.2,0,0.5 /
+&point name='T', link=4, position=0.2,0.2,0.6 /
+&drive coordinate=1, kind='polynomial', coefficients=0,12 /
+&drive coordinate=4, kind='polynomial', coefficients=0,3 /
+"""
+
+
+def check_symbols(checks, programs, folder):
+    """How many of which symbols: what the pairs of each mechanism are says how many there must be."""
+    screw = os.path.join(folder, 'screw.nml')
+    with open(screw, 'w', encoding='utf-8') as file:
+        file.write(SCREW)
+    path = os.path.join(folder, 'symbols.svg')
+    for program, data, expected in (
+            # six legs: universal joint (two bars of a cross), tube and rod, ball
+            ('mech9k', example('stewart_gough'), {'cross': 12, 'tube': 6, 'ball': 6, 'pin': 0, 'ring': 0, 'block': 0}),
+            # two universal joints between two shafts
+            ('mech9k', example('double_hooke'), {'cross': 4, 'pin': 2, 'ball': 0}),
+            # three pairs at E, two at A, one each at O, F, B, G, H; the spring
+            ('mech9d', example('andrews'), {'ring': 7, 'stand': 3, 'spring': 1, 'centre': 7}),
+            # crank, pin, and the block with the other pin on a guide of the frame
+            ('mech9k', example('slider_crank'), {'ring': 3, 'block': 1, 'guide': 1, 'ground': 1, 'hatch': 1, 'stand': 1}),
+            # four single hinges, none parallel to another
+            ('mech9k', example('bennett'), {'pin': 4, 'ring': 0, 'stand': 2}),
+            ('mech9k', screw, {'thread': 1, 'block': 2, 'pin': 1, 'guide': 1})):
+        if not os.path.exists(f'{programs}/{program}'):
+            continue
+        done = run(f'{programs}/{program}', data, '--no-write', '--quiet', '--sketch', path)
+        checks.equal(done.returncode, 0, f'{data}: drawn')
+        svg = ElementTree.parse(path).getroot()
+        classes = [(group.get('class') or ' ').split()[0:1] for group in svg.iter(SVG + 'g')]
+        for name, count in expected.items():
+            checks.equal(classes.count([name]), count, f'{data}: number of symbols of the kind {name}')
+
+
 def film_of(html):
     """The constant that the script of a page begins with."""
     text = re.search(r'const film = (\{.*?\n\});?\n', html, re.S).group(1)
@@ -316,6 +356,7 @@ def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
         check_fig1(checks, programs, folder)
+        check_symbols(checks, programs, folder)
         if os.path.exists(f'{programs}/mech9d'):
             check_bricard(checks, programs, folder)
             check_page(checks, programs, folder, 'mech9d', 'double_pendulum', {'A', 'B'})

@@ -15,6 +15,7 @@ contains
 
     call test_contents(tester)
     call test_odd_words(tester)
+    call test_commas(tester)
     call test_many_rows(tester)
     call test_regular_flush(tester)
     call test_failures(tester)
@@ -85,6 +86,31 @@ contains
     call tester%is_true(lines(6)(45:50) == 'a_b__c', 'a name is one word and no comment')
     call tester%is_true(lines(6)(51:) == ' '//repeat('n', 30), 'a long name keeps apart from its neighbour')
   end subroutine test_odd_words
+
+  !> A file of comma-separated values: names, then rows, nothing else; names in quotes where they must be.
+  subroutine test_commas(tester)
+    type(tester_type), intent(inout) :: tester
+    type(table_type) :: table
+    type(error_type), allocatable :: err
+    character(len=100) :: lines(4)
+    real(wp) :: row(3)
+    integer :: count
+
+    call table%open('commas.CSV', 'title', 'p', words('t|a b|say "x, y"'), words('s|m|m'), err)
+    call tester%no_error(err, 'open')
+    call table%write_row([0.1_wp, -1.0_wp/3.0_wp, 1.0e-300_wp], err)
+    call table%write_row([0.0_wp, 1.0_wp, -huge(1.0_wp)], err)
+    call table%close(err)
+    call tester%no_error(err, 'close')
+    call read_lines('commas.CSV', lines, count)
+    call tester%is_true(count == 3, 'names and two rows')
+    call tester%is_true(lines(1) == 't,a b,"say ""x, y"""', 'the names')
+    call tester%is_true(scan(trim(lines(2)), ' ') == 0 .and. scan(trim(lines(3)), ' ') == 0, 'no blanks')
+    read (lines(2), *) row
+    call tester%is_true(all(abs(row - [0.1_wp, -1.0_wp/3.0_wp, 1.0e-300_wp]) <= 0.0_wp), 'the first row, bit for bit')
+    read (lines(3), *) row
+    call tester%is_true(all(abs(row - [0.0_wp, 1.0_wp, -huge(1.0_wp)]) <= 0.0_wp), 'the second row, bit for bit')
+  end subroutine test_commas
 
   !> Several buffers full of rows: nothing is lost or torn where one ends.
   subroutine test_many_rows(tester)

@@ -8,11 +8,13 @@ program test_link_shapes
   use mech9_testing, only: tester_type
   implicit none
   real(wp), parameter :: tolerance = 1.0e-6_wp
+  integer, parameter :: no_rails(2, 0) = 0
   type(tester_type) :: test
 
   call few_points(test)
   call plates(test)
   call points_in_space(test)
+  call rails(test)
   call same_points(test)
   call test%finish()
 
@@ -27,14 +29,14 @@ contains
     logical :: closed
     integer :: i
 
-    call find_shape(points(:, :0), tolerance, order, closed)
+    call find_shape(points(:, :0), tolerance, no_rails, order, closed)
     call test%is_true(size(order) == 0 .and. .not. closed, 'nothing for no points')
     from = random_vector(random)
     along = random_vector(random)
     points = reshape([(from + real(mod(3*i, 5), wp)*along, i=1, 5)], [3, 5])   ! places 3 1 4 2 0
-    call find_shape(points(:, :1), tolerance, order, closed)
+    call find_shape(points(:, :1), tolerance, no_rails, order, closed)
     call test%is_true(size(order) == 0, 'nothing for one')
-    call find_shape(points, tolerance, order, closed)
+    call find_shape(points, tolerance, no_rails, order, closed)
     call test%is_true(.not. closed .and. size(order) == 2, 'a bar for points of a line')
     if (size(order) == 2) call test%is_true(minval(order) == 3 .and. maxval(order) == 5, 'between the outermost')
   end subroutine few_points
@@ -56,7 +58,7 @@ contains
         points(3, i) = 0.0_wp
         points(:, i) = matmul(r, points(:, i))
       end do
-      call find_shape(points(:, :n), tolerance, order, closed)
+      call find_shape(points(:, :n), tolerance, no_rails, order, closed)
       call test%is_true(closed .and. size(order) >= 3, 'a plate around points of a plane')
       if (size(order) < 3) cycle
       normal = cross(points(:, order(2)) - points(:, order(1)), points(:, order(3)) - points(:, order(2)))
@@ -83,7 +85,7 @@ contains
     do i = 1, 12
       points(:, i) = random_vector(random)
     end do
-    call find_shape(points, tolerance, order, closed)
+    call find_shape(points, tolerance, no_rails, order, closed)
     call test%is_true(.not. closed .and. size(order) == 22, 'eleven bars for twelve points in space')
     group = [(i, i=1, 12)]
     do i = 1, size(order) - 1, 2
@@ -91,6 +93,23 @@ contains
     end do
     call test%is_true(all(group == group(1)), 'which hold together')
   end subroutine points_in_space
+
+  !> A long rail and a pin between its ends: the rail stays in one piece, the pin hangs on one of them.
+  subroutine rails(test)
+    type(tester_type), intent(inout) :: test
+    real(wp) :: points(3, 4)
+    integer, allocatable :: order(:)
+    logical :: closed
+
+    points = reshape([0.0_wp, 0.0_wp, 0.0_wp, 5.0_wp, 1.0_wp, 0.0_wp, 5.0_wp, 2.0_wp, 0.0_wp, 9.0_wp, 0.0_wp, 0.0_wp], [3, 4])
+    call find_shape(points, tolerance, reshape([1, 4], [2, 1]), order, closed)
+    call test%is_true(.not. closed .and. size(order) == 6, 'three bars for a rail and two pins')
+    if (size(order) == 6) then
+      call test%is_true(all(order(:2) == [1, 4]), 'the rail')
+      call test%is_true(all(order(3:4) == [4, 2]), 'the pin at its nearer end')
+      call test%is_true(all(order(5:6) == [2, 3]), 'and the other one at that')
+    end if
+  end subroutine rails
 
   subroutine same_points(test)
     type(tester_type), intent(inout) :: test

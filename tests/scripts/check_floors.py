@@ -54,6 +54,10 @@ def main():
     checks = Checks()
     found = check(checks, os.path.join(TREE, 'src'))
     checks.true(len(found) > 10, 'the sources were found')
+    for path, pattern in (('src/CMakeLists.txt', r'^add_subdirectory\((\w+)\)'), ('docs/architecture.md', r'^   (\w+) {2,}\w')):
+        with open(os.path.join(TREE, path), encoding='utf-8') as file:
+            told = re.findall(pattern, file.read(), re.M)
+        checks.equal(told if path.startswith('src') else told[::-1], FLOORS, f'{path} tells the same floors in this order')
     checks.finish()
 
 

@@ -24,6 +24,15 @@ def available():
     return True
 
 
+def random_keys(chance, count):
+    """Keys, of which some are likely ones and the rest any byte, but for those that stop the terminal itself, and
+    Ctrl-C and Ctrl-D, which end."""
+    kept = [byte for byte in range(256) if byte not in b'\x03\x04\x11\x13\x1a\x1c']
+    likely = [b'\x1b[A', b'\x1b[B', b'\x1b[D', b'\x1b[3~', b'\t', b'\r', b'\x12', b'\x16', b'\x1b', 'é中'.encode(), b'p', b'\x7f',
+              b'\x19']
+    return b''.join(chance.choice(likely) if chance.random() < 0.4 else bytes([chance.choice(kept)]) for _ in range(count))
+
+
 class Terminal:
     """A program that has a terminal of 80 x 24 as its controlling one. `seen` is all that was shown."""
 
@@ -105,4 +114,4 @@ class Terminal:
         return re.sub(r'\x1b(\[[0-9;?]*[A-Za-z]|[()].|[=>])', '', self.seen).replace('\r', '')
 
 
-__all__ = ['Terminal', 'available', 'signal']
+__all__ = ['Terminal', 'available', 'random_keys', 'signal']

@@ -1,0 +1,195 @@
+!> How time and memory grow with the number of links: ladders of four-bars, and open chains.
+!>
+!> usage: bench_growth ladder|chain N FILE
+!> Writes the data file of the mechanism, reads it again, and prints one row: N, links, seconds to read, seconds to plan,
+!> microseconds a position (ladder only), microseconds an evaluation of the motion, megabytes of memory at most.
+program bench_growth
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_clock, only: seconds
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_kinematic_run, only: assemble_start
+  use mech9_dynamic_run, only: assemble_initial_state
+  use mech9_bench_support, only: read_data_file, stop_at, median, argument
+  implicit none
+
+  !> Repetitions for a median.
+  integer, parameter :: passes = 5
+
+  call run()
+contains
+
+  subroutine run()
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(error_type), allocatable :: err
+    real(wp) :: clock, reading, planning, position, evaluation
+    integer :: n, status
+    character(len=:), allocatable :: word
+
+    word = argument(2)
+    read (word, *, iostat=status) n
+    if (status /= 0 .or. n < 1) then
+      write (error_unit, '(a)') 'usage: bench_growth ladder|chain N FILE'
+      stop 1
+    end if
+    if (argument(1) == 'ladder') then
+      call write_ladder(argument(3), n)
+    else
+      call write_chain(argument(3), n)
+    end if
+    clock = seconds()
+    call read_data_file(argument(3), argument(1) == 'ladder', mechanism)
+    reading = seconds() - clock
+    clock = seconds()
+    if (argument(1) == 'ladder') then
+      call assemble_start(mechanism, plan, start, err)
+    else
+      call assemble_initial_state(mechanism, plan, start, err)
+    end if
+    planning = seconds() - clock
+    call stop_at(err, argument(1))
+    position = 0.0_wp
+    if (argument(1) == 'ladder') then
+      call time_positions(mechanism, plan, start, position)
+      start%dq(plan%independent) = mechanism%initial_velocity(plan%independent)
+    end if
+    call time_evaluations(mechanism, plan, start, evaluation)
+    print '(2i8,2f12.5,2f14.4,f10.1)', n, plan%n_links, reading, planning, position, evaluation, peak_memory()
+  end subroutine run
+
+  !> Parallelograms side by side: N + 1 uprights of 1 m, N couplers, the first upright driven.
+  subroutine write_ladder(path, n)
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: n
+    integer :: unit, i, status
+
+    open (newunit=unit, file=path, action='write', status='replace', iostat=status)
+    if (status /= 0) stop 1
+    write (unit, '(a)') '&mechanism title=''ladder'', links='//to_text(2*n + 2)//', coordinates='//to_text(3*n + 1)//' /', &
+      '&structure cq=1 /'
+    do i = 0, n
+      call write_pair(unit, i + 1, 1, i + 2, i, 0)
+    end do
+    do i = 1, n
+      call write_pair(unit, n + 2*i, i + 1, n + 2 + i, i - 1, 1)
+      call write_pair(unit, n + 2*i + 1, i + 2, n + 2 + i, i, 1)
+    end do
+    do i = 0, n
+      write (unit, '(a)') '&body link='//to_text(i + 2)//', mass=1, centre='//to_text(i)// &
+        ',0.5,0, inertia=0.08,0,0.08,0,0,0 /'
+    end do
+    write (unit, '(a)') '&drive coordinate=1, kind=''polynomial'', coefficients=0,-1 /', &
+      '&initial coordinate=1, position=0, velocity=-1 /', '&gravity acceleration=0,-9.81,0 /', '&time end=1, intervals=100 /'
+    close (unit)
+  end subroutine write_ladder
+
+  subroutine write_pair(unit, coordinate, reference, moving, x, y)
+    integer, intent(in) :: unit, coordinate, reference, moving, x, y
+
+    write (unit, '(a)') '&pair coordinate='//to_text(coordinate)//', links='//to_text(reference)//','//to_text(moving)// &
+      ', kind=''revolute'', point='//to_text(x)//','//to_text(y)//',0, axis=0,0,1 /'
+  end subroutine write_pair
+
+  !> Links of 1 m and 1 kg in a row, turning about x and y by turns.
+  subroutine write_chain(path, n)
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: n
+    integer :: unit, i, status
+    character(len=5) :: axis
+
+    open (newunit=unit, file=path, action='write', status='replace', iostat=status)
+    if (status /= 0) stop 1
+    write (unit, '(a)') '&mechanism title=''chain'', links='//to_text(n + 1)//', coordinates='//to_text(n)//' /', &
+      '&structure cq='//to_text([(i, i=1, n)], ',')//' /'
+    do i = 1, n
+      axis = merge('1,0,0', '0,1,0', modulo(i, 2) == 1)
+      write (unit, '(a)') '&pair coordinate='//to_text(i)//', links='//to_text(i)//','//to_text(i + 1)// &
+        ', kind=''revolute'', point=0,0,'//to_text(i - 1)//', axis='//axis//' /', &
+        '&initial coordinate='//to_text(i)//', position=0.1, velocity=0.1 /', &
+        '&body link='//to_text(i + 1)//', mass=1, centre=0,0,'//to_text(i - 0.5_wp)//', inertia=0.08,0.08,0,0,0,0 /'
+    end do
+    write (unit, '(a)') '&gravity acceleration=0,0,-9.81 /', '&time end=1, intervals=100 /'
+    close (unit)
+  end subroutine write_chain
+
+  !> Median time of a position with velocities and accelerations [us].
+  subroutine time_positions(mechanism, plan, start, time)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    real(wp), intent(out) :: time
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: each(passes), begin
+    integer :: pass, i, positions
+
+    ! a few thousandths of a turn between positions, and work enough for the clock
+    positions = max(20, min(300, 100000/plan%n_links))
+    do pass = 1, passes
+      call start_tracking(mechanism, plan, start, 0.0_wp, tracker, err)
+      call stop_at(err, 'ladder')
+      begin = seconds()
+      do i = 1, positions
+        call advance(mechanism, plan, tracker, 0.003_wp*i, err)
+        if (allocated(err)) exit
+      end do
+      each(pass) = (seconds() - begin)/positions
+      call stop_at(err, 'ladder')
+    end do
+    time = 1.0e6_wp*median(each)
+  end subroutine time_positions
+
+  !> Median time of one evaluation of the motion [us].
+  subroutine time_evaluations(mechanism, plan, start, time)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    real(wp), intent(out) :: time
+    type(motion_system_type), allocatable :: system
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: y(:), rates(:)
+    real(wp) :: each(passes), begin
+    integer :: pass, i, evaluations
+
+    allocate (system)
+    call set_motion_system(mechanism, plan, start, system, err)
+    call stop_at(err, 'the motion')
+    y = system%vector()
+    allocate (rates(size(y)), source=0.0_wp)
+    evaluations = max(10, min(3000, 200000/plan%n_links))
+    do pass = 1, passes
+      begin = seconds()
+      do i = 1, evaluations
+        call system%rate(0.0_wp, y, rates, err)
+        if (allocated(err)) exit
+      end do
+      each(pass) = (seconds() - begin)/evaluations
+      call stop_at(err, 'the motion')
+    end do
+    time = 1.0e6_wp*median(each)
+  end subroutine time_evaluations
+
+  !> The most memory that this process has had [MB]; 0 where the system does not tell.
+  real(wp) function peak_memory()
+    character(len=80) :: line
+    integer :: unit, status
+
+    peak_memory = 0.0_wp
+    open (newunit=unit, file='/proc/self/status', action='read', status='old', iostat=status)
+    do while (status == 0)
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0 .or. line(:6) /= 'VmHWM:') cycle
+      read (line(7:index(line, 'kB') - 1), *) peak_memory
+      peak_memory = peak_memory/1024.0_wp
+    end do
+    close (unit, iostat=status)
+  end function peak_memory
+end program bench_growth

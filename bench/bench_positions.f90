@@ -1,0 +1,169 @@
+!> Time per position of driven mechanisms, against the closed form of the four-bar linkage in the same run.
+!>
+!> usage: bench_positions TREE full|quick
+!> Prints a line of names and a row for each mechanism: its name, microseconds a position for closing the chains
+!> alone and with velocities, accelerations and one point, and the ratios of both to the closed form.
+program bench_positions
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_clock, only: seconds
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block
+  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs
+  use mech9_motion, only: point_motion
+  use mech9_kinematic_run, only: assemble_start
+  use mech9_closed_four_bar, only: four_bar_position, four_bar_motion
+  use mech9_bench_support, only: read_data_file, stop_at, median, argument
+  implicit none
+  call run()
+contains
+
+  subroutine run()
+    character(len=:), allocatable :: tree
+    integer :: passes, positions
+    real(wp) :: closed(2)
+
+    tree = argument(1)
+    passes = merge(3, 15, argument(2) == 'quick')
+    positions = merge(500, 10000, argument(2) == 'quick')
+    print '(a)', 'mechanism closing_us motion_us closing_ratio motion_ratio error'
+    call time_closed_form(passes, positions, closed)
+    print '(a,2f12.5,2f10.2,a)', 'closed_form', closed, 1.0, 1.0, ' 0'
+    call time_mechanism('four_bar', tree//'/bench/data/four_bar.nml', passes, positions, closed)
+    call time_mechanism('six_bar', tree//'/bench/data/six_bar.nml', passes, positions, closed)
+    call time_mechanism('fig1', tree//'/examples/fig1/fig1.nml', passes, positions, closed)
+    call time_mechanism('rsur', tree//'/examples/rsur/rsur.nml', passes, positions, closed)
+    call time_mechanism('stewart_gough', tree//'/examples/stewart_gough/stewart_gough.nml', passes, positions/4, closed)
+  end subroutine run
+
+  !> Median times of the closed form [us]: position, and position, velocity and acceleration.
+  subroutine time_closed_form(passes, positions, times)
+    integer, intent(in) :: passes, positions
+    real(wp), intent(out) :: times(2)
+    real(wp) :: each(2, passes), begin, angle, point(2), velocity(2), acceleration(2), total
+    integer :: pass, i
+
+    total = 0.0_wp
+    do pass = 1, passes
+      begin = seconds()
+      do i = 0, positions - 1
+        angle = 2.0_wp*acos(-1.0_wp)*i/positions
+        call four_bar_position(angle, point)
+        total = total + point(1)
+      end do
+      each(1, pass) = seconds() - begin
+      begin = seconds()
+      do i = 0, positions - 1
+        angle = 2.0_wp*acos(-1.0_wp)*i/positions
+        call four_bar_motion(angle, 10.0_wp, point, velocity, acceleration)
+        total = total + acceleration(1)
+      end do
+      each(2, pass) = seconds() - begin
+    end do
+    times = [median(each(1, :)), median(each(2, :))]/positions*1.0e6_wp
+    ! the sum is used, so that the loops are not optimised away
+    if (total > huge(total)) times = 0.0_wp
+  end subroutine time_closed_form
+
+  subroutine time_mechanism(name, path, passes, positions, closed)
+    character(len=*), intent(in) :: name, path
+    integer, intent(in) :: passes, positions
+    real(wp), intent(in) :: closed(2)   !< times of the closed form [us]
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(error_type), allocatable :: err
+    real(wp) :: each(2, passes), error
+    integer :: pass
+
+    call read_data_file(path, .true., mechanism)
+    mechanism%time%intervals = positions
+    call assemble_start(mechanism, plan, start, err)
+    call stop_at(err, name)
+    do pass = 1, passes
+      call time_closing(mechanism, plan, start, each(1, pass))
+      call time_motion(mechanism, plan, start, name == 'four_bar', each(2, pass), error)
+    end do
+    each = each/positions*1.0e6_wp
+    print '(a,2f12.5,2f10.2,es10.2)', name, median(each(1, :)), median(each(2, :)), median(each(1, :))/closed(1), &
+      median(each(2, :))/closed(2), error
+  end subroutine time_mechanism
+
+  !> Positions alone: extrapolated through the last three, then closed by Newton's method. The branch is not watched.
+  subroutine time_closing(mechanism, plan, start, time)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    real(wp), intent(out) :: time   !< [s]
+    type(block_work_type) :: work(size(plan%blocks))
+    type(state_type) :: state
+    type(newton_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    real(wp), dimension(plan%n_coordinates) :: first, second, third
+    real(wp) :: begin
+    integer :: b, i
+
+    do b = 1, size(work)
+      work(b) = new_block_work(plan%blocks(b))
+    end do
+    state = start
+    first = start%q
+    second = first
+    third = first
+    begin = seconds()
+    do i = 1, mechanism%time%intervals
+      state%q = 3.0_wp*(first - second) + third
+      state%t = mechanism%time%time(i)
+      call set_inputs(mechanism, state%t, state%q, state%dq, state%ddq, err)
+      do b = 1, size(plan%blocks)
+        call close_block(plan, plan%blocks(b), state, work(b), outcome, err)
+        if (.not. outcome%converged) stop 1
+      end do
+      third = second
+      second = first
+      first = state%q
+      ! the first two positions have no three before them
+      if (i == 1) third = second
+    end do
+    time = seconds() - begin
+  end subroutine time_closing
+
+  !> Positions, velocities, accelerations of all coordinates and of the last point, the branch watched.
+  subroutine time_motion(mechanism, plan, start, compare, time, error)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    logical, intent(in) :: compare         !< with the closed form, after the clock has stopped
+    real(wp), intent(out) :: time          !< [s]
+    real(wp), intent(out) :: error         !< of the accelerations against the largest one; 0 where not compared
+    type(tracker_type) :: tracker
+    type(error_type), allocatable :: err
+    real(wp) :: begin, motions(3, 3, 0:mechanism%time%intervals), exact(2, 3), largest
+    integer :: i
+
+    call start_tracking(mechanism, plan, start, mechanism%time%start, tracker, err)
+    call stop_at(err, mechanism%title)
+    associate (point => mechanism%points(size(mechanism%points)))
+      call point_motion(plan, tracker%state, point, motions(:, 1, 0), motions(:, 2, 0), motions(:, 3, 0))
+      begin = seconds()
+      do i = 1, mechanism%time%intervals
+        call advance(mechanism, plan, tracker, mechanism%time%time(i), err)
+        if (allocated(err)) exit
+        call point_motion(plan, tracker%state, point, motions(:, 1, i), motions(:, 2, i), motions(:, 3, i))
+      end do
+      time = seconds() - begin
+    end associate
+    call stop_at(err, mechanism%title)
+    error = 0.0_wp
+    if (.not. compare) return
+    largest = 0.0_wp
+    do i = 0, mechanism%time%intervals
+      call four_bar_motion(10.0_wp*mechanism%time%time(i), 10.0_wp, exact(:, 1), exact(:, 2), exact(:, 3))
+      error = max(error, maxval(abs(motions(:2, 3, i) - exact(:, 3))))
+      largest = max(largest, maxval(abs(exact(:, 3))))
+    end do
+    error = error/largest
+  end subroutine time_motion
+end program bench_positions

@@ -1,0 +1,214 @@
+!> Work and precision of integrated motions: wall time and evaluations of the motion against the error at the end, for
+!> all methods of integration over tolerances from 1e-3 to 1e-13.
+!>
+!> usage: bench_precision TREE PROBLEM full|quick
+!> Prints a line of names and a row for each method and tolerance that came to the end. The error is the largest difference of
+!> coordinates or of a point's position [rad, m] from tests/reference; where there is no reference, from a run at 1e-13
+!> by another method.
+program bench_precision
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type
+  use mech9_clock, only: seconds
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_integration_methods, only: integration_methods
+  use mech9_integrator, only: integration_statistics_type
+  use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
+  use mech9_bench_support, only: read_data_file, stop_at, median, argument
+  implicit none
+
+  !> A motion, and where its true end stands.
+  type :: problem_type
+    character(len=14) :: name
+    character(len=56) :: data_file
+    character(len=36) :: reference     !< empty: none
+    real(wp) :: end                    !< [s]
+    character(len=24) :: columns       !< of the results, in the order of the reference's columns after the time
+  end type problem_type
+
+  type(problem_type), parameter :: problems(5) = [ &
+    problem_type('andrews', 'examples/andrews/andrews.nml', 'a03_andrews_ivp.csv', 0.03_wp, 'q1 q2 q3 q4 q5 q6 q7'), &
+    problem_type('governor', 'examples/flyball_governor/flyball_governor.nml', 'a05_flyball.csv', 10.0_wp, 'q2'), &
+    problem_type('two_windows', 'examples/n_four_bar/n_four_bar_2.nml', 'a02_nfourbar_N2.csv', 10.0_wp, 'B0.x B0.y'), &
+    problem_type('bricard', 'examples/bricard/bricard.nml', 'a04_bricard.csv', 9.0_wp, 'P3.x P3.y P3.z'), &
+    problem_type('slider_crank', 'tests/reference/dynamics_spatial_slider_crank.nml', '', 1.0_wp, 'q1 q5 q7')]
+
+  !> A run that took longer than this ends its method's list: tighter tolerances would take longer still [s].
+  real(wp), parameter :: patience = 2.0_wp
+  !> Runs are repeated for a median until they have taken so long together [s].
+  real(wp), parameter :: long_enough = 0.05_wp
+  integer, parameter :: most_repetitions = 9
+
+  call run()
+contains
+
+  subroutine run()
+    type(mechanism_type) :: mechanism
+    real(wp), allocatable :: exact(:), other(:)
+    integer :: p, m
+    logical :: quick
+
+    do p = size(problems), 1, -1
+      if (problems(p)%name == argument(2)) exit
+    end do
+    if (p == 0) then
+      write (error_unit, '(a)') 'no problem of that name'
+      stop 1
+    end if
+    quick = argument(3) == 'quick'
+    call read_data_file(argument(1)//'/'//trim(problems(p)%data_file), .false., mechanism)
+    mechanism%time%end = problems(p)%end
+    ! the reference holds times from the start on: a quick run ends early
+    if (quick) mechanism%time%end = problems(p)%end/20
+    if (problems(p)%reference /= '') then
+      call read_reference(argument(1)//'/tests/reference/'//trim(problems(p)%reference), mechanism%time%end, exact)
+      other = exact
+    else
+      call tight_run(mechanism, problems(p), 'prince-dormand', exact)
+      call tight_run(mechanism, problems(p), 'verner', other)
+    end if
+    print '(a)', 'method tolerance error seconds evaluations steps'
+    do m = 1, size(integration_methods)
+      if (integration_methods(m)%name == 'prince-dormand') then
+        call time_method(mechanism, problems(p), trim(integration_methods(m)%name), other, quick)
+      else
+        call time_method(mechanism, problems(p), trim(integration_methods(m)%name), exact, quick)
+      end if
+    end do
+  end subroutine run
+
+  subroutine tight_run(mechanism, problem, method, values)
+    type(mechanism_type), intent(inout) :: mechanism
+    type(problem_type), intent(in) :: problem
+    character(len=*), intent(in) :: method
+    real(wp), allocatable, intent(out) :: values(:)
+    type(error_type), allocatable :: err
+    type(integration_statistics_type) :: counts
+    real(wp) :: time
+
+    call set_method(mechanism, method, 1.0e-13_wp)
+    call integrate(mechanism, problem, values, counts, time, err)
+    call stop_at(err, 'the run at 1e-13 by '//method)
+  end subroutine tight_run
+
+  subroutine set_method(mechanism, method, tolerance)
+    type(mechanism_type), intent(inout) :: mechanism
+    character(len=*), intent(in) :: method
+    real(wp), intent(in) :: tolerance
+
+    mechanism%solver%method = method
+    mechanism%solver%relative_tolerance = tolerance
+    mechanism%solver%absolute_tolerance = tolerance
+  end subroutine set_method
+
+  !> The rows of one method.
+  subroutine time_method(mechanism, problem, method, exact, quick)
+    type(mechanism_type), intent(inout) :: mechanism
+    type(problem_type), intent(in) :: problem
+    character(len=*), intent(in) :: method
+    real(wp), intent(in) :: exact(:)
+    logical, intent(in) :: quick
+    type(error_type), allocatable :: err
+    type(integration_statistics_type) :: counts
+    real(wp), allocatable :: values(:)
+    real(wp) :: times(most_repetitions), tolerance
+    integer :: power, n
+
+    do power = 3, 13, merge(5, 1, quick)
+      tolerance = 10.0_wp**(-power)
+      call set_method(mechanism, method, tolerance)
+      n = 0
+      do
+        n = n + 1
+        call integrate(mechanism, problem, values, counts, times(n), err)
+        if (allocated(err) .or. quick .or. n == most_repetitions .or. sum(times(:n)) > long_enough) exit
+      end do
+      if (allocated(err)) then
+        write (error_unit, '(5a,es7.0,2a)') trim(problem%name), ', ', method, ',', ' tolerance', tolerance, ': ', err%message
+        cycle
+      end if
+      print '(a,2es12.3,es14.5,2i10)', method, tolerance, maxval(abs(values - exact(:size(values)))), median(times(:n)), &
+        counts%rate_evaluations, counts%steps
+      if (times(n) > patience) exit
+    end do
+  end subroutine time_method
+
+  !> One run from start to end: the values there, and the time it took besides reading and planning.
+  subroutine integrate(mechanism, problem, values, counts, time, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(problem_type), intent(in) :: problem
+    real(wp), allocatable, intent(out) :: values(:)
+    type(integration_statistics_type), intent(out) :: counts
+    real(wp), intent(out) :: time   !< [s]
+    type(error_type), allocatable, intent(out) :: err
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(dynamic_run_type) :: run
+    real(wp), allocatable :: row(:)
+    real(wp) :: begin
+
+    time = 0.0_wp
+    call assemble_initial_state(mechanism, plan, start, err)
+    if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err)
+    if (.not. allocated(err)) then
+      allocate (row(run%columns%count), source=0.0_wp)
+      begin = seconds()
+      call run%row_at(mechanism%time%start, row, err)
+      if (.not. allocated(err)) call run%row_at(mechanism%time%end, row, err)
+      time = seconds() - begin
+      call pick(run%columns%names(:run%columns%count), row, problem%columns, values)
+      counts = run%statistics()
+    end if
+    call run%close()
+  end subroutine integrate
+
+  !> The columns of these names.
+  subroutine pick(names, row, wanted, values)
+    type(string_type), intent(in) :: names(:)
+    real(wp), intent(in) :: row(:)
+    character(len=*), intent(in) :: wanted            !< names separated by blanks
+    real(wp), allocatable, intent(out) :: values(:)
+    integer :: at, next, i
+
+    allocate (values(0))
+    at = 1
+    do while (at <= len_trim(wanted))
+      next = at + index(wanted(at:)//' ', ' ') - 1
+      do i = 1, size(names)
+        if (names(i)%text == wanted(at:next - 1)) values = [values, row(i)]
+      end do
+      at = next + 1
+    end do
+  end subroutine pick
+
+  !> The numbers after the time in the row of a time, from lines separated by commas below a line of names. Rows at rounded times
+  !> are found within a millionth.
+  subroutine read_reference(path, time, values)
+    character(len=*), intent(in) :: path
+    real(wp), intent(in) :: time
+    real(wp), allocatable, intent(out) :: values(:)
+    character(len=2000) :: line
+    integer :: unit, status, i
+    real(wp) :: found
+
+    open (newunit=unit, file=path, action='read', status='old', iostat=status)
+    do while (status == 0)
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      if (verify(line(1:1), '0123456789') /= 0) cycle
+      read (line, *) found
+      if (abs(found - time) > 1.0e-6_wp*time) cycle
+      i = count([(line(i:i) == ',', i=1, len_trim(line))])
+      allocate (values(i))
+      read (line, *) found, values
+      exit
+    end do
+    close (unit, iostat=status)
+    if (allocated(values)) return
+    write (error_unit, '(3a,g0)') 'no row in ', path, ' at t = ', time
+    stop 1
+  end subroutine read_reference
+end program bench_precision

@@ -1,0 +1,65 @@
+!> What the benchmarks share: reading a mechanism, and an end that tells why. Uses the base and the input floor.
+module mech9_bench_support
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_document, only: document_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_parser, only: read_document
+  use mech9_reader, only: read_mechanism
+  implicit none
+  private
+  public :: read_data_file, stop_at, median, argument
+
+contains
+
+  !> A mechanism from its data file; ends the program where something is wrong with it.
+  subroutine read_data_file(path, needs_drives, mechanism)
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: needs_drives
+    type(mechanism_type), intent(out) :: mechanism
+    type(document_type) :: document
+    type(diagnostics_type) :: diagnostics
+
+    call read_document(path, document, diagnostics)
+    call read_mechanism(document, needs_drives, mechanism, diagnostics)
+    if (.not. diagnostics%failed()) return
+    call diagnostics%report(error_unit)
+    stop 1
+  end subroutine read_data_file
+
+  !> End the program with the words of an error; does nothing when all is well.
+  subroutine stop_at(err, place)
+    type(error_type), allocatable, intent(in) :: err
+    character(len=*), intent(in) :: place
+
+    if (.not. allocated(err)) return
+    write (error_unit, '(3a)') place, ': ', err%message
+    stop 1
+  end subroutine stop_at
+
+  !> The middle one of some numbers.
+  pure real(wp) function median(numbers)
+    real(wp), intent(in) :: numbers(:)
+    integer :: i, below
+
+    do i = 1, size(numbers)
+      median = numbers(i)
+      below = count(numbers < median)
+      if (below <= (size(numbers) - 1)/2 .and. count(numbers <= median) > (size(numbers) - 1)/2) return
+    end do
+    median = 0.0_wp
+  end function median
+
+  !> Word i of the command line.
+  function argument(i) result(word)
+    integer, intent(in) :: i
+    character(len=:), allocatable :: word
+    integer :: length
+
+    call get_command_argument(i, length=length)
+    allocate (character(len=length) :: word)
+    if (length > 0) call get_command_argument(i, word)
+  end function argument
+end module mech9_bench_support

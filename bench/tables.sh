@@ -1,0 +1,135 @@
+# The text of docs/benchmarks.md, from what bench/run measured. Uses its $work, $top, $programs, $mode, $problems and words.
+
+machine() {
+  local model cores
+  model=$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1)
+  cores=$(nproc)
+  echo "${model:-a processor without a name}, $cores cores; $(uname -sr)"
+}
+
+# name, median times and ratios of each mechanism
+position_table() {
+  cat <<'EOT'
+| mechanism | links, coordinates | chains closed [µs] | ratio | with velocities, accelerations and a point [µs] | ratio |
+| --- | --- | --- | --- | --- | --- |
+EOT
+  awk '
+    BEGIN {
+      name["closed_form"] = "four-bar, closed form"; size["closed_form"] = ""
+      name["four_bar"] = "four-bar"; size["four_bar"] = "4, 4"
+      name["six_bar"] = "six-bar"; size["six_bar"] = "6, 7"
+      name["fig1"] = "Fig. 1"; size["fig1"] = "6, 7"
+      name["rsur"] = "spatial R-S-U-R"; size["rsur"] = "7, 7"
+      name["stewart_gough"] = "Stewart-Gough platform"; size["stewart_gough"] = "32, 36"
+    }
+    NR > 1 { printf "| %s | %s | %.3f | %.1f | %.3f | %.1f |\n", name[$1], size[$1], $2, $4, $3, $5 }
+  ' "$work/positions.dat"
+}
+
+# the least time of any run of a method whose error is below a bound
+precision_table() {
+  cat <<'EOT'
+| method | 1e-4 | 1e-6 | 1e-8 | 1e-10 | least error |
+| --- | --- | --- | --- | --- | --- |
+EOT
+  awk '
+    NR > 1 {
+      if (!($1 in least)) { order[++n] = $1; least[$1] = $3 }
+      if ($3 < least[$1]) least[$1] = $3
+      for (p = 4; p <= 10; p += 2)
+        if ($3 <= 10 ^ -p && (!(($1, p) in time) || $4 < time[$1, p])) { time[$1, p] = $4; work[$1, p] = $5 }
+    }
+    END {
+      for (i = 1; i <= n; i++) {
+        printf "| %s |", order[i]
+        for (p = 4; p <= 10; p += 2)
+          if ((order[i], p) in time) printf " %.3g ms, %d |", 1000 * time[order[i], p], work[order[i], p]
+          else printf " - |"
+        printf " %.1e |\n", least[order[i]]
+      }
+    }
+  ' "$work/$1.dat"
+}
+
+growth_table() {
+  cat <<'EOT'
+| N | links | read [s] | plan [s] | a position [µs] | a link [µs] | an evaluation [µs] | a link [µs] | memory [MB] |
+| --- | --- | --- | --- | --- | --- | --- | --- | --- |
+EOT
+  awk '
+    NR > 1 {
+      position = $5 > 0 ? sprintf("%.2f | %.3f", $5, $5 / $2) : "- | -"
+      printf "| %d | %d | %.3f | %.3f | %s | %.2f | %.3f | %.1f |\n", $1, $2, $3, $4, position, $6, $6 / $2, $7
+    }
+  ' "$work/$1.dat"
+}
+
+write_tables() {
+  local problem
+  cat <<EOT
+# Benchmarks
+
+Measured by \`bench/run\`, which builds the programs with every instruction of the machine, runs them and writes this page.
+$([ $mode = full ] || echo "This was a quick run: its figures mean little.")
+
+- machine: $(machine)
+- build: $(build_words)
+
+Times are medians on one core. Other machines have other times: what carries over are the ratios.
+
+## Time per position
+
+Driven mechanisms over one cycle. The four-bar linkage (0.40, 0.15, 0.35, 0.30 m) is also written by hand in closed form, for this
+one mechanism only (\`bench/closed_four_bar.f90\`); ratios are to that. The six-bar is the same four-bar with two
+links more. *Chains closed* is Newton's method alone, from positions extrapolated; the other column is what \`mech9k\` computes of a
+position besides writing it, the branch watched.
+
+$(position_table)
+
+Largest difference of the four-bar's accelerations from the closed form, against the largest acceleration:
+$(awk '$1 == "four_bar" { print $6 }' "$work/positions.dat").
+
+## Work and precision
+
+Wall time of an integration and evaluations of the motion against the error at its end, over the tolerances 1e-3 to 1e-13. Errors
+are against references in extended precision in \`tests/reference\`; of the spatial slider-crank, against a run at
+1e-13 by another method. The tables show the shortest time in which a method came below an error, and its evaluations.
+EOT
+  for problem in $problems; do
+    echo
+    echo "### ${words[$problem]}"
+    echo
+    [ ! -f "$output/pictures/bench_$problem.svg" ] || echo "![${words[$problem]}](pictures/bench_$problem.svg)"
+    echo
+    precision_table "$problem"
+    if [ -s "$work/$problem.failed" ]; then
+      echo
+      echo "Runs that did not come to the end:"
+      echo
+      sed 's/^/- /' "$work/$problem.failed"
+    fi
+  done
+  cat <<EOT
+
+## Growth
+
+$([ ! -f "$output/pictures/bench_growth.svg" ] || echo "![Growth with the number of links](pictures/bench_growth.svg)")
+
+Ladders of N parallelograms side by side, 2 N + 2 links, the first upright driven:
+
+$(growth_table ladder)
+
+Open chains of N links of 1 m and 1 kg, turning about x and y by turns, all coordinates independent:
+
+$(growth_table chain)
+EOT
+}
+
+build_words() {
+  local program=$programs/../bin/mech9k
+  if [ -x "$program" ]; then
+    "$program" --version | paste -sd ';' | sed 's/;/; /g'
+  else
+    echo "unknown"
+  fi
+}

@@ -1,0 +1,144 @@
+!> Watching the Jacobian of a block from step to step: can it have been singular on the way?
+!> Uses kinds, balance, plan, state, solver, closure.
+module mech9_watch
+  use mech9_kinds, only: wp
+  use mech9_balance, only: balance
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_solver, only: block_work_type, least_pivot
+  use mech9_closure, only: closure_jacobian
+  implicit none
+  private
+  public :: watch_type, new_watch, factorize_trial, watch_step, keep, nearness, is_near
+
+  !> Change of the Jacobian against its least pivot, as a sum of squares, that needs no closer look.
+  real(wp), parameter :: harmless_change = 0.25_wp
+  !> Change of the Jacobian, divided by the Jacobian: below 1 no singular matrix lies between; the
+  !> rest is room for what lies beside the straight way.
+  real(wp), parameter :: trusted_change = 0.5_wp
+  !> A measure of steps that are too long without a measure.
+  real(wp), parameter :: hopeless = 1.0e30_wp
+
+  !> Near a singular position: the least pivot is below this part of the largest it was.
+  real(wp), parameter :: near = 0.03_wp
+
+  !> What is known of a block's Jacobian: at the departure and at the end of the step on trial.
+  type :: watch_type
+    real(wp), allocatable :: jacobian(:, :), trial_jacobian(:, :)
+    real(wp), allocatable :: change(:, :)                      !< scratch
+    integer :: sign = 1, trial_sign = 1                        !< of the determinant of a square one
+    real(wp) :: pivot = 1.0_wp, trial_pivot = 1.0_wp           !< the least
+    real(wp) :: largest_pivot = 0.0_wp                         !< largest least pivot of any position so far
+  end type watch_type
+
+contains
+
+  !> A watch on a block; nothing is known yet.
+  pure function new_watch(block) result(watch)
+    type(block_type), intent(in) :: block
+    type(watch_type) :: watch
+
+    allocate (watch%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
+    allocate (watch%trial_jacobian, source=watch%jacobian)
+    allocate (watch%change(size(block%unknowns), size(block%unknowns)), source=0.0_wp)
+  end function new_watch
+
+  !> Put the block's Jacobian at the position in `state` on trial, and factorize it.
+  subroutine factorize_trial(plan, block, state, work, watch)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(inout) :: watch
+
+    if (size(block%unknowns) == 0) return
+    call closure_jacobian(plan, block, state, work%column_of, watch%trial_jacobian)
+    work%equations%a = watch%trial_jacobian
+    call work%equations%factorize()
+    watch%trial_pivot = least_pivot(work)
+    watch%trial_sign = work%equations%determinant_sign()
+  end subroutine factorize_trial
+
+  !> Factorize the block's Jacobian at the end of a step and judge whether a singular one lies between.
+  subroutine watch_step(plan, block, state, work, watch, worst)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(inout) :: watch
+    real(wp), intent(inout) :: worst
+    real(wp) :: change
+
+    call factorize_trial(plan, block, state, work, watch)
+    if (.not. watch%trial_pivot > 0.0_wp) then
+      worst = hopeless
+      return
+    end if
+    change = length_of(watch%trial_jacobian, watch%jacobian)/(harmless_change*watch%trial_pivot)
+    ! the closer look is worth its while where it may allow longer steps
+    if (change > 0.5_wp) change = min(change, relative_change(work, watch)/trusted_change)
+    worst = max(worst, change)
+    if (watch%trial_sign /= watch%sign) worst = max(worst, 2.0_wp)
+  end subroutine watch_step
+
+  !> Root of the sum of squares of the differences of two matrices.
+  pure real(wp) function length_of(a, b)
+    real(wp), intent(in) :: a(:, :), b(:, :)
+    integer :: i, j
+
+    length_of = 0.0_wp
+    do j = 1, size(a, 2)
+      do i = 1, size(a, 1)
+        length_of = length_of + (a(i, j) - b(i, j))**2
+      end do
+    end do
+    length_of = sqrt(length_of)
+  end function length_of
+
+  !> The change of the Jacobian in a step divided by the Jacobian at its end, as a sum of squares in the units of
+  !> the coordinates that make it least; hopeless where that is singular.
+  real(wp) function relative_change(work, watch) result(change)
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(inout) :: watch
+    integer :: j
+
+    change = hopeless
+    if (work%equations%rank() < work%equations%n) return
+    do j = 1, work%equations%n
+      work%right = watch%trial_jacobian(:, j) - watch%jacobian(:, j)
+      call work%equations%solve(work%right, work%change)
+      watch%change(:, j) = work%change
+    end do
+    call balance(watch%change)
+    change = norm2(watch%change)
+  end function relative_change
+
+  !> The Jacobians on trial become those of the departure.
+  pure subroutine keep(watches)
+    type(watch_type), intent(inout) :: watches(:)
+    integer :: b
+
+    do b = 1, size(watches)
+      associate (watch => watches(b))
+        watch%jacobian = watch%trial_jacobian
+        watch%sign = watch%trial_sign
+        watch%pivot = watch%trial_pivot
+        watch%largest_pivot = max(watch%largest_pivot, watch%pivot)
+      end associate
+    end do
+  end subroutine keep
+
+  !> Whether a block is near a singular position.
+  pure logical function is_near(watch)
+    type(watch_type), intent(in) :: watch
+
+    is_near = watch%pivot < near*watch%largest_pivot
+  end function is_near
+
+  !> Least pivot of the trial against the largest it was.
+  pure real(wp) function nearness(watch)
+    type(watch_type), intent(in) :: watch
+
+    nearness = watch%trial_pivot/max(watch%largest_pivot, tiny(nearness))
+  end function nearness
+end module mech9_watch

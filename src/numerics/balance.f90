@@ -1,0 +1,35 @@
+!> How large a matrix is whatever the units of its coordinates. Uses kinds.
+module mech9_balance
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: balance
+
+  !> Sweeps over all coordinates; the first ones bring nearly all.
+  integer, parameter :: sweeps = 3
+  !> A coordinate is scaled by no more than this at once.
+  real(wp), parameter :: largest_scale = 1.0e4_wp
+
+contains
+
+  !> Scale the coordinates of a square matrix A to D^-1 A D, D a diagonal matrix, so that rows and columns
+  !> outside the diagonal become alike (Osborne). The eigenvalues stay, the root of the sum of squares falls
+  !> towards the least one that units of the coordinates can give it.
+  pure subroutine balance(a)
+    real(wp), intent(inout) :: a(:, :)
+    real(wp) :: row, column, scale
+    integer :: sweep, i
+
+    do sweep = 1, sweeps
+      do i = 1, size(a, 1)
+        row = sum(a(i, :)**2) - a(i, i)**2
+        column = sum(a(:, i)**2) - a(i, i)**2
+        if (.not. row + column > 0.0_wp) cycle
+        scale = largest_scale
+        if (row < column*largest_scale**4) scale = max(1.0_wp/largest_scale, sqrt(sqrt(row/column)))
+        a(i, :) = a(i, :)/scale
+        a(:, i) = a(:, i)*scale
+      end do
+    end do
+  end subroutine balance
+end module mech9_balance

@@ -1,0 +1,95 @@
+"""The benchmarks, in their quick form: they run, and their figures are there and can be true. Times are not judged.
+
+usage: bench.py FOLDER     (with the bench programs)
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as xml
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import TREE, Checks
+
+checks = Checks()
+METHODS = ['prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf']
+
+
+def tables_of(text):
+    """{heading: rows of cells} of a page in Markdown; a heading with two tables holds both."""
+    found, heading = {}, ''
+    for line in text.splitlines():
+        if line.startswith('#'):
+            heading = line.lstrip('# ')
+        elif line.startswith('|') and not line.startswith('| ---'):
+            found.setdefault(heading, []).append([cell.strip() for cell in line.strip('|').split('|')])
+    return found
+
+
+def check_positions(rows):
+    names = [row[0] for row in rows[1:]]
+    checks.equal(names, ['four-bar, closed form', 'four-bar', 'six-bar', 'Fig. 1', 'spatial R-S-U-R',
+                         'Stewart-Gough platform'], 'the mechanisms')
+    for row in rows[1:]:
+        times = float(row[2]), float(row[4])
+        checks.true(0.001 < times[0] < 1e5 and 0.001 < times[1] < 1e5, f'{row[0]}: times above zero', row)
+    closed = [float(cell) for cell in rows[1][2:]]
+    for row in rows[2:]:
+        for k in (0, 2):
+            # times stand there with three decimals
+            ratio = float(row[2 + k]) / closed[k]
+            checks.near(float(row[3 + k]) / ratio, 1.0, 0.05 + 0.0006 / closed[k], f'{row[0]}: the ratio is that of the times')
+
+
+def check_precision(heading, rows):
+    checks.equal([row[0] for row in rows[1:]], METHODS, f'{heading}: all methods')
+    for row in rows[1:]:
+        least = float(row[-1])
+        # the loosest bound, over a twentieth of the motion
+        checks.true(0 <= least < 1e-4, f'{heading}, {row[0]}: errors below 1e-4', row)
+        cells = [cell for cell in row[1:-1] if cell != '-']
+        checks.true(cells and all(re.fullmatch(r'[\d.e+-]+ ms, \d+', cell) for cell in cells),
+                    f'{heading}, {row[0]}: times and evaluations', row)
+
+
+def check_growth(rows):
+    titles = [i for i, row in enumerate(rows) if row[0] == 'N']
+    checks.equal(len(titles), 2, 'ladders and chains')
+    for first, last, links in ((titles[0] + 1, titles[1], lambda n: 2 * n + 2), (titles[1] + 1, len(rows), lambda n: n + 1)):
+        checks.true(last - first >= 3, 'three sizes at least')
+        for row in rows[first:last]:
+            checks.equal(int(row[1]), links(int(row[0])), f'links of N = {row[0]}')
+            checks.true(float(row[6]) > 0 and float(row[8]) >= 0, f'N = {row[0]}: an evaluation takes time', row)
+        checks.true(float(rows[last - 1][6]) > float(rows[first][6]), 'more links take longer', rows[first:last])
+
+
+programs = os.path.abspath(sys.argv[1])
+with tempfile.TemporaryDirectory() as folder:
+    done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--quick', '--programs', programs, '--output', folder],
+                          capture_output=True, text=True, timeout=250)
+    if checks.equal(done.returncode, 0, 'bench/run --quick'):
+        with open(os.path.join(folder, 'benchmarks.md'), encoding='utf-8') as file:
+            page = file.read()
+        tables = tables_of(page)
+        checks.true('quick run' in page, 'the page says that it was a quick run')
+        check_positions(tables['Time per position'])
+        error = float(re.search(r'largest acceleration:\n(\S+)\.\n', page).group(1))
+        # round-off times the conditioning of a chain
+        checks.true(error < 1e-10, 'the accelerations of the four-bar are those of the closed form', error)
+        problems = [heading for heading in tables if heading not in ('Time per position', 'Growth')]
+        checks.equal(len(problems), 5, 'five problems')
+        for heading in problems:
+            check_precision(heading, tables[heading])
+        check_growth(tables['Growth'])
+        pictures = re.findall(r'\((pictures/\S+\.svg)\)', page)
+        if shutil.which('gnuplot'):
+            checks.equal(len(pictures), 6, 'a picture for each problem and one of the growth')
+        for picture in pictures:
+            xml.parse(os.path.join(folder, picture))
+    else:
+        print(done.stdout, done.stderr)
+done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--nonsense'], capture_output=True, text=True, timeout=60)
+checks.true(done.returncode == 2 and 'bench/run [--quick]' in done.stderr, 'an unknown option', done.stderr)
+checks.finish()

@@ -1,0 +1,265 @@
+"""The HDF5 file against the table of the same run, against the data file, and as its readers see it.
+
+usage: hdf5_results.py MECH9K MECH9D VERSION
+
+What stands in both must agree to the last bit: both are written from the same rows.
+"""
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import REFERENCE, TREE, Checks, read_table, run
+
+FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
+DYNAMIC_FIG1 = os.path.join(REFERENCE, 'dynamics_fig1.nml')
+SLIDER = os.path.join(REFERENCE, 'kinematics_slider_crank.nml')
+FOUR_BARS = os.path.join(TREE, 'examples', 'n_four_bar', 'n_four_bar_2.nml')
+USAGE, DATA, FILE = 2, 3, 8
+
+try:
+    import h5py
+except ImportError:
+    print('h5py is not installed (Debian: python3-h5py): nothing is tested')
+    sys.exit(0)
+
+
+class Session:
+    """Both programs, in a folder of their own."""
+
+    def __init__(self, folder, mech9k, mech9d):
+        self.folder, self.checks = folder, Checks()
+        self.mech9k, self.mech9d = os.path.abspath(mech9k), os.path.abspath(mech9d)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def both(self, program, data, *options):
+        """Run with --table and --hdf5; gives the table and the path of the HDF5 file."""
+        done = run(program, data, '--table', 'run.dat', '--hdf5', 'run.h5', *options, folder=self.folder)
+        self.checks.equal(done.returncode, 0, f'{os.path.basename(data)} runs; stderr: {done.stderr}')
+        with open(self.path('run.dat'), encoding='utf-8') as file:
+            return read_table(file.read()), self.path('run.h5')
+
+
+def text(data_set):
+    return data_set.asstr()[()]
+
+
+def is_scale(data_set):
+    return h5py.h5ds.is_scale(data_set.id)
+
+
+def same(checks, values, expected, why):
+    checks.true(np.shape(values) == np.shape(expected) and np.array_equal(values, expected), why)
+
+
+def check_rows(checks, table, file, why):
+    """Every column of the table stands in the file, bit for bit."""
+    used = {'t'}
+    same(checks, file['time'][:], table['t'], f'{why}: time')
+    for name in ('q', 'dq', 'ddq'):
+        for i, number in enumerate(file['coordinate'][:]):
+            same(checks, file[name][:, i], table[f'{name}{number}'], f'{why}: {name}{number}')
+            used.add(f'{name}{number}')
+    if 'point' in file:
+        for i, point in enumerate(text(file['point'])):
+            for name, order in (('position', ''), ('velocity', 'v'), ('acceleration', 'a')):
+                for k, axis in enumerate(text(file['axis'])):
+                    column = f'{point}.{order}{axis}'
+                    same(checks, file[name][:, i, k], table[column], f'{why}: {column}')
+                    used.add(column)
+    for column in set(table) - used:
+        same(checks, file[column.replace('.', '_')][:], table[column], f'{why}: {column}')
+
+
+def check_form(checks, file, why):
+    """Each quantity has a name in words, a unit, and a scale for each dimension; all grow."""
+    rows = file['time'].shape[0]
+    checks.true(is_scale(file['time']), f'{why}: time is a dimension scale')
+    for name, item in file.items():
+        if not isinstance(item, h5py.Dataset):
+            continue
+        checks.true(isinstance(item.attrs.get('long_name'), str), f'{why}: {name} has a long_name')
+        if not is_scale(item):
+            checks.true(all(len(dim) == 1 for dim in item.dims), f'{why}: {name} has a scale on each dimension')
+            for dim, size in zip(item.dims, item.shape):
+                checks.equal(len(dim[0]), size, f'{why}: the scales of {name} have its sizes')
+        if item.dtype.kind == 'f':
+            checks.true(isinstance(item.attrs.get('units'), str), f'{why}: {name} has units')
+            checks.true(item.maxshape[0] is None and item.shape[0] == rows, f'{why}: {name} grows with time')
+            checks.true(item.chunks is not None, f'{why}: {name} is chunked')
+
+
+def test_fig1(session, version):
+    checks = session.checks
+    table, path = session.both(session.mech9k, FIG1)
+    with h5py.File(path, 'r') as file, open(FIG1, encoding='utf-8') as data:
+        check_rows(checks, table, file, 'Fig. 1')
+        check_form(checks, file, 'Fig. 1')
+        checks.equal(file['q'].attrs['units'], 'rad', 'the unit of angles')
+        checks.equal(file['ddq'].attrs['units'], 'rad/s^2', 'the unit of their accelerations')
+        checks.equal(file['velocity'].attrs['units'], 'm/s', 'the unit of velocities')
+        where = file['provenance']
+        checks.equal(text(where['data']), data.read(), 'the data file stands in it as it is')
+        checks.equal(text(where['program']), 'mech9k', 'the program')
+        checks.equal(text(where['version']), version, 'its version')
+        checks.equal(text(where['data_file']), FIG1, 'the name of the data file')
+        checks.equal(text(where['command_line']), f'mech9k {FIG1} --table run.dat --hdf5 run.h5', 'the command line')
+        for library in ('HDF5 1.', 'SUNDIALS ', 'LAPACK 3.'):
+            checks.true(library in text(where['libraries']), f'the version of {library}', text(where['libraries']))
+        checks.true('GCC' in text(where['compiler']), 'the compiler', text(where['compiler']))
+        structure = file['structure']
+        # the paper's own Fig. 1, nrw with its fifth number mended
+        checks.equal(list(structure['nrg']), [1, 2, 3, 4, 1, 1, 6, 5, 3], 'nrg of the paper')
+        checks.equal(list(structure['nws']), [0, 5, 4, 7, 6, 0, 1, 2, 3], 'nws of the paper')
+        checks.equal(list(structure['rdw']), [1, 1, 0, 0, 0, 1, 0, 0, 0], 'rdw of the paper')
+        checks.equal(list(structure['nrw']), [0, 0, 0, 0, 1, 1, 1, 1, 2], 'nrw of the paper')
+        c = [[0, 5, 0, 6, 0, 1], [5, 0, 4, 0, 0, 0], [0, 4, 0, 7, 3, 0], [6, 0, 7, 0, 0, 0], [0, 0, 3, 0, 0, 2],
+             [1, 0, 0, 0, 2, 0]]
+        same(checks, structure['c'][:], np.array(c), 'the coincidence matrix of the paper')
+        checks.equal(list(structure['independent']), [0, 0, 0, 0, 1, 0, 0], 'the independent coordinate')
+        for k, links in enumerate(structure['links'][:]):
+            checks.equal(c[links[0] - 1][links[1] - 1], k + 1, f'the links of pair {k + 1}')
+        found = file['diagnostics']
+        checks.equal(found['positions'][()], len(table['t']), 'the number of positions')
+        checks.equal(found['largest_closure'][()], np.max(table['closure']), 'the largest closure')
+        checks.equal(found['largest_closure'].attrs['units'], 'm', 'and its unit')
+        checks.equal(found['exit_code'][()], 0, 'the exit code')
+
+
+def test_units(session):
+    """Coordinates of two kinds, angles in degrees."""
+    checks = session.checks
+    table, path = session.both(session.mech9k, SLIDER, '--set', "mechanism.angle_unit='deg'")
+    with h5py.File(path, 'r') as file:
+        check_rows(checks, table, file, 'slider-crank')
+        check_form(checks, file, 'slider-crank')
+        units, kinds = list(text(file['coordinate_unit'])), list(text(file['coordinate_kind']))
+        checks.equal(units, ['m' if kind == 'prismatic' else 'deg' for kind in kinds], 'each coordinate has its unit')
+        checks.true('prismatic' in kinds and 'revolute' in kinds, 'there are two kinds')
+        checks.equal(set(file['q'].attrs['units'].split(' or ')), {'deg', 'm'}, 'the units of all of them')
+
+
+def test_dynamics(session):
+    checks = session.checks
+    table, path = session.both(session.mech9d, DYNAMIC_FIG1)
+    with h5py.File(path, 'r') as file:
+        check_rows(checks, table, file, 'Fig. 1 in motion')
+        check_form(checks, file, 'Fig. 1 in motion')
+        same(checks, file['E_kinetic'][:] + file['E_potential'][:], file['E_total'][:], 'the energies add up')
+        a, dq = file['dynamics/coefficients'][:], file['dq'][0, file['dynamics/p'][:] - 1]
+        checks.near(0.5 * dq @ a @ dq, file['E_kinetic'][0], 1e-13, 'the coefficients of motion give the kinetic energy')
+        checks.equal(file['events/time'].shape[0], 0, 'no change of coordinates')
+        checks.true(file['diagnostics/steps'][()] > 0 and text(file['diagnostics/method']) != '', 'how it was integrated')
+    table, path = session.both(session.mech9d, FOUR_BARS)
+    with h5py.File(path, 'r') as file:
+        check_rows(checks, table, file, 'two four-bars')
+        times, independent = file['events/time'][:], file['events/independent'][:]
+        checks.true(len(times) == len(independent) and np.all(np.diff(times) >= 0), 'events in their order')
+        checks.true(np.all((independent >= 1) & (independent <= len(file['coordinate']))), 'coordinates of events')
+
+
+def test_compression(session):
+    checks = session.checks
+    many = ('--set', 'time.intervals=20000')
+    table, path = session.both(session.mech9k, FIG1, *many)
+    plain = os.path.getsize(path)
+    table, path = session.both(session.mech9k, FIG1, *many, '--set', 'output.compression=4')
+    with h5py.File(path, 'r') as file:
+        check_rows(checks, table, file, 'compressed')
+        checks.equal(file['q'].compression_opts, 4, 'compressed as asked for')
+    checks.true(os.path.getsize(path) < plain, 'a compressed file is smaller', f'{os.path.getsize(path)} of {plain}')
+
+
+def test_readers(session):
+    """xarray, h5dump and gnuplot read what was written; those that are not installed are left out."""
+    checks = session.checks
+    table, path = session.both(session.mech9k, FIG1)
+    try:
+        import xarray
+        import h5netcdf  # noqa: F401
+        with xarray.open_dataset(path, engine='h5netcdf') as data:
+            same(checks, data['q'].sel(coordinate=5).values, table['q5'], 'xarray: a coordinate by its number')
+            same(checks, data['position'].sel(point='P', axis='y').values, table['P.y'], 'xarray: a point by its name')
+            same(checks, data['q'].coords['time'].values, table['t'], 'xarray: time belongs to it')
+            checks.equal(data['closure'].attrs['units'], 'm', 'xarray: units')
+        for group in ('structure', 'diagnostics', 'provenance'):
+            with xarray.open_dataset(path, engine='h5netcdf', group=group) as data:
+                checks.true(len(data.variables) > 0, f'xarray: the group {group}')
+    except ImportError as missing:
+        print(f'left out, {missing.name} is not installed: xarray (Debian: python3-xarray, python3-h5netcdf)')
+    if shutil.which('h5dump'):
+        done = run('h5dump', '-d', '/time', '-y', '-w', '0', '-m', '%.17g', path)
+        numbers = [float(word) for word in done.stdout.split('DATA {')[1].split('}')[0].replace(',', ' ').split()]
+        same(checks, numbers, table['t'], 'h5dump: time')
+        done = run('h5dump', '-H', path)
+        checks.equal(done.returncode, 0, 'h5dump: all of it')
+    else:
+        print('left out: h5dump is not installed (Debian: hdf5-tools)')
+
+
+def test_failures(session):
+    """Failures are told in one line with the path and the reason, and end with the code for files."""
+    checks = session.checks
+
+    def fails(why, code, path, *words, options=(), before=None):
+        command = [session.mech9k, FIG1, '--hdf5', path, '--quiet', '--set', "output.table=''", *options]
+        done = subprocess.run(command, cwd=session.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              timeout=120, preexec_fn=before)
+        checks.equal(done.returncode, code, f'{why}: exit code; stderr: {done.stderr}')
+        for word in words:
+            checks.true(word in done.stderr, f'{why}: says {word}', done.stderr)
+        checks.true('HDF5-DIAG' not in done.stderr and 'acktrace' not in done.stderr, f'{why}: nothing else', done.stderr)
+        checks.equal(len(done.stderr.strip().splitlines()), 1, f'{why}: in one line: {done.stderr}')
+
+    fails('a folder', FILE, session.folder, session.folder, 'directory')
+    fails('no such folder', FILE, 'nowhere/x.h5', 'nowhere/x.h5', 'No such file or directory')
+    fails('no name', FILE, '-', "'-'")
+    if os.path.exists('/dev/full'):
+        fails('a full disk', FILE, '/dev/full', '/dev/full', 'No space left')
+    if os.geteuid() != 0:
+        os.mkdir(session.path('closed'), 0o500)
+        fails('no permission', FILE, 'closed/x.h5', 'closed/x.h5', 'Permission denied')
+
+    def small_files():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (400000, 400000))
+
+    fails('a disk that fills up on the way', FILE, 'x.h5', 'x.h5', 'File too large',
+          options=('--set', 'time.intervals=100000'), before=small_files)
+    fails('table and HDF5 in one file', USAGE, 'x', 'cannot both', options=('--table', 'x'))
+    fails('nothing written', USAGE, 'x.h5', 'contradicts', options=('--no-write',))
+    done = run(session.mech9k, FIG1, '--hdf5', 'x.h5', '--set', 'output.compression=10', folder=session.folder)
+    checks.true(done.returncode == DATA and '0 (none) to 9' in done.stderr, 'more compression than there is', done.stderr)
+
+
+def test_data_file_names_it(session):
+    checks = session.checks
+    done = run(session.mech9k, FIG1, '--set', "output.hdf5='named.h5'", '--set', "output.table=''", folder=session.folder)
+    checks.true(done.returncode == 0 and os.path.exists(session.path('named.h5')), '&output hdf5= names the file', done.stderr)
+    checks.equal(done.stdout, '', 'with a file of results, none go to standard output')
+    checks.true('named.h5' in done.stderr, 'the file is told', done.stderr)
+
+
+def main():
+    mech9k, mech9d, version = sys.argv[1:4]
+    with tempfile.TemporaryDirectory() as folder:
+        session = Session(folder, mech9k, mech9d)
+        test_fig1(session, version)
+        test_units(session)
+        test_dynamics(session)
+        test_compression(session)
+        test_readers(session)
+        test_failures(session)
+        test_data_file_names_it(session)
+    session.checks.finish()
+
+
+main()

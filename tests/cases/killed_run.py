@@ -1,0 +1,92 @@
+"""A run killed outright, at any moment, leaves an HDF5 file that opens and holds right rows.
+
+usage: killed_run.py MECH9K [RUNS]
+
+The run is of Fig. 1, driven through millions of positions. Each file is held against the rows of a run that
+was not killed, at the times that both have: positions of two runs differ by the round-off of one closed chain.
+"""
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import POSITION, REFERENCE, Checks, run
+
+FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
+# a run that nobody waits for; rows are made known to the file every second, the first ones at once
+INTERVALS, LONGEST = 50_000_000, 2.6
+
+try:
+    import h5py
+except ImportError:
+    print('h5py is not installed (Debian: python3-h5py): nothing is tested')
+    sys.exit(0)
+
+
+def killed_after(program, folder, seconds):
+    """The file that a run leaves when it is killed after so many seconds; None where it has not begun."""
+    path = os.path.join(folder, 'killed.h5')
+    if os.path.exists(path):
+        os.remove(path)
+    process = subprocess.Popen([os.path.abspath(program), FIG1, '--hdf5', path, '--quiet', '--set', "output.table=''",
+                                '--set', f'time.intervals={INTERVALS}'], cwd=folder)
+    time.sleep(seconds)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    return path if os.path.exists(path) else None
+
+
+def check_file(checks, path, seconds):
+    """The file opens; its rows go on without a gap from the start; gives how many there are."""
+    why = f'killed after {seconds:.3f} s'
+    try:
+        with h5py.File(path, 'r') as file:
+            rows = {name: item.shape[0] for name, item in file.items()
+                    if isinstance(item, h5py.Dataset) and item.maxshape[:1] == (None,)}
+            checks.true(len(set(rows.values())) == 1, f'{why}: all quantities have as many rows', rows)
+            n = rows['time']
+            times = file['time'][:]
+            start, end = 0.0, 1.0
+            if n:
+                checks.near(times, start + (end - start) * np.arange(n) / INTERVALS, 1e-15, f'{why}: times')
+            for name in rows:
+                checks.true(np.all(np.isfinite(file[name][-1000:])), f'{why}: the last rows of {name} are there')
+            checks.true(n == 0 or np.all(file['closure'][:] <= 1e-12), f'{why}: every row is of closed chains')
+            checks.true(file['provenance/data'].shape == (), f'{why}: provenance')
+            return n, file['q'][-1] if n else None
+    except OSError as error:
+        checks.true(False, f'{why}: the file opens and can be read', error)
+        return 0, None
+
+
+def main():
+    program, runs = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 4
+    checks = Checks()
+    random.seed(20)
+    most = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for i in range(runs):
+            seconds = LONGEST if i == 0 else random.uniform(0.3, LONGEST)
+            path = killed_after(program, folder, seconds)
+            if not path:
+                continue
+            n, q = check_file(checks, path, seconds)
+            most = max(most, n)
+            if n:
+                t = (n - 1) / INTERVALS
+                done = run(program, FIG1, '--hdf5', 'whole.h5', '--quiet', '--set', "output.table=''",
+                           '--set', f'time.end={t!r}', '--set', 'time.intervals=100', folder=folder)
+                checks.equal(done.returncode, 0, f'the run up to there; stderr: {done.stderr}')
+                with h5py.File(os.path.join(folder, 'whole.h5'), 'r') as whole:
+                    checks.near(q, whole['q'][-1], POSITION, f'killed after {seconds:.3f} s: the last row')
+    checks.true(most > 1000, 'many rows were there when a run was killed', most)
+    checks.finish()
+
+
+main()

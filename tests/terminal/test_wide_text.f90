@@ -1,0 +1,72 @@
+!> Tests of text as bytes and as code points: encodings from the tables of Unicode, and there and back.
+program test_wide_text
+  use mech9_wide_text, only: to_wide, to_bytes, code_point, unknown_character
+  use mech9_testing, only: tester_type
+  implicit none
+  call run_tests()
+contains
+
+  subroutine run_tests()
+    type(tester_type) :: tester
+
+    call test_known(tester)
+    call test_round_trip(tester)
+    call test_no_text(tester)
+    call tester%finish()
+  end subroutine run_tests
+
+  !> One character of each length, and the first and the last of each.
+  subroutine test_known(tester)
+    type(tester_type), intent(inout) :: tester
+
+    call one(tester, [65], 65, 'A')
+    call one(tester, [195, 169], int(z'E9'), 'e with an acute')
+    call one(tester, [228, 184, 173], int(z'4E2D'), 'the middle')
+    call one(tester, [240, 159, 166, 128], int(z'1F980'), 'a crab')
+    call one(tester, [194, 128], int(z'80'), 'the first of two bytes')
+    call one(tester, [223, 191], int(z'7FF'), 'the last of two bytes')
+    call one(tester, [224, 160, 128], int(z'800'), 'the first of three bytes')
+    call one(tester, [239, 191, 191], int(z'FFFF'), 'the last of three bytes')
+    call one(tester, [240, 144, 128, 128], int(z'10000'), 'the first of four bytes')
+    call one(tester, [244, 143, 191, 191], int(z'10FFFF'), 'the last of all')
+  end subroutine test_known
+
+  subroutine one(tester, bytes, point, why)
+    type(tester_type), intent(inout) :: tester
+    integer, intent(in) :: bytes(:), point
+    character(len=*), intent(in) :: why
+    character(len=size(bytes)) :: text
+    integer :: i
+
+    do i = 1, size(bytes)
+      text(i:i) = char(bytes(i))
+    end do
+    call tester%is_true(code_point(text) == point, why//': its code point')
+    call tester%is_true(to_bytes([point]) == text, why//': its bytes')
+  end subroutine one
+
+  !> Every code point, but for the halves of pairs, which are no characters.
+  subroutine test_round_trip(tester)
+    type(tester_type), intent(inout) :: tester
+    integer :: point, wrong
+
+    wrong = 0
+    do point = 1, int(z'10FFFF')
+      if (point >= int(z'D800') .and. point <= int(z'DFFF')) cycle
+      if (code_point(to_bytes([point])) /= point) wrong = wrong + 1
+    end do
+    call tester%is_true(wrong == 0, 'every character there and back')
+  end subroutine test_round_trip
+
+  subroutine test_no_text(tester)
+    type(tester_type), intent(inout) :: tester
+    integer, allocatable :: points(:)
+
+    points = to_wide('a'//char(255)//'b'//char(195))
+    call tester%is_true(size(points) == 5 .and. all(points(:4) == [97, unknown_character, 98, unknown_character]), &
+                        'each byte that is no text becomes one unknown character')
+    call tester%is_true(points(5) == 0, 'and a zero ends it, as C wants it')
+    call tester%is_true(size(to_wide('')) == 1, 'nothing is a zero alone')
+    call tester%is_true(code_point('') == unknown_character, 'no bytes are no character')
+  end subroutine test_no_text
+end program test_wide_text
