@@ -97,7 +97,8 @@ def anchor(heading):
 
 
 def check_links(checks, path, text):
-    for target, part in LINK.findall(re.sub(r'```.*?```', '', text, flags=re.S)):
+    text = re.sub(r'```.*?```', '', text, flags=re.S)
+    for target, part in LINK.findall(text) + [(source, '') for source in re.findall(r'<img src="([^"]+)"', text)]:
         there = os.path.normpath(os.path.join(os.path.dirname(path), target)) if target else path
         if checks.true(os.path.exists(there), f'the link {target} leads to something') and part and there.endswith('.md'):
             with open(there, encoding='utf-8') as file:
