@@ -34,12 +34,10 @@ module mech9_skeleton
     real(wp) :: size = 1.0_wp          !< of the mechanism at the start: diagonal of what encloses it [m]
   end type skeleton_type
 
-  !> Sweeps in which pairs move towards the middle of their links, and the hold of the given point.
-  integer, parameter :: sweeps = 30
-  real(wp), parameter :: hold = 0.02_wp
-  !> A given point is too far off where it is this many sizes from the place in the middle ...
+  !> A given point is too far off where the nearest pair of its links is farther along the axis than the mechanism
+  !> is wide, this many times ...
   real(wp), parameter :: far = 1.5_wp
-  !> ... and this many times farther than those of other pairs are.
+  !> ... and this many times farther than for other pairs.
   real(wp), parameter :: unusual = 4.0_wp
 
 contains
@@ -64,28 +62,22 @@ contains
   subroutine draw_near(film, skeleton)
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(inout) :: skeleton
-    real(wp), allocatable :: given(:, :), directions(:, :), shift(:), away(:)
-    real(wp) :: low(3), high(3), allowed
+    real(wp), dimension(3, size(skeleton%places)) :: given, directions
+    real(wp) :: shift(size(skeleton%places)), widest, allowed
     integer :: k
 
     associate (places => skeleton%places)
-      allocate (given(3, size(places)), directions(3, size(places)))
       do k = 1, size(places)
         given(:, k) = film%position(1, places(k)%links(1), places(k)%points(:, 1))
         directions(:, k) = film%direction(1, places(k)%links(1), places(k)%axes(:, 1))
       end do
-      allocate (shift(size(places)), source=0.0_wp)
-      call find_middles(skeleton, given, directions, shift)
-      away = pack(abs(shift), places%kind == turning)
-      if (size(away) < 2) return
-      low = huge(low)
-      high = -huge(high)
+      widest = 0.0_wp
+      shift = 0.0_wp
       do k = 1, size(places)
-        if (places(k)%kind /= turning) cycle
-        low = min(low, given(:, k) + shift(k)*directions(:, k))
-        high = max(high, given(:, k) + shift(k)*directions(:, k))
+        if (places(k)%kind == turning) call look_along(skeleton, given, directions(:, k), k, shift(k), widest)
       end do
-      allowed = max(far*norm2(high - low), unusual*median(away))
+      if (count(places%kind == turning) < 2 .or. .not. widest > 0.0_wp) return
+      allowed = max(far*widest, unusual*median(pack(abs(shift), places%kind == turning)))
       do k = 1, size(places)
         if (places(k)%kind /= turning .or. abs(shift(k)) <= allowed) cycle
         places(k)%points = places(k)%points + shift(k)*places(k)%axes
@@ -93,34 +85,32 @@ contains
     end associate
   end subroutine draw_near
 
-  !> How far along its axis each turning pair would have to move to be in the middle of its links' pairs.
-  pure subroutine find_middles(skeleton, given, directions, shift)
+  !> How far along the axis of a turning pair the nearest pair of its links is, in that sense. `widest` grows to the
+  !> distance of the axis from one of them.
+  pure subroutine look_along(skeleton, given, axis, k, along, widest)
     type(skeleton_type), intent(in) :: skeleton
-    real(wp), intent(in) :: given(:, :), directions(:, :)
-    real(wp), intent(inout) :: shift(:)
-    real(wp) :: sum(3), pull
-    integer :: sweep, k, side, link, i, j, count
+    real(wp), intent(in) :: given(:, :), axis(3)
+    integer, intent(in) :: k
+    real(wp), intent(inout) :: along             !< zero where there is none [m]
+    real(wp), intent(inout) :: widest            !< [m]
+    real(wp) :: apart(3), part
+    integer :: side, link, i, j
+    logical :: first
 
-    do sweep = 1, sweeps
-      do k = 1, size(shift)
-        if (skeleton%places(k)%kind /= turning) cycle
-        pull = 0.0_wp
-        do side = 1, 2
-          link = skeleton%places(k)%links(side)
-          sum = 0.0_wp
-          count = 0
-          do i = skeleton%graph%first(link), skeleton%graph%first(link + 1) - 1
-            j = skeleton%graph%pair_at(i)
-            if (j == k .or. skeleton%places(j)%kind /= turning) cycle
-            sum = sum + given(:, j) + shift(j)*directions(:, j)
-            count = count + 1
-          end do
-          if (count > 0) pull = pull + dot_product(sum/count - given(:, k), directions(:, k))
-        end do
-        shift(k) = pull/(2.0_wp + hold)
+    first = .true.
+    do side = 1, 2
+      link = skeleton%places(k)%links(side)
+      do i = skeleton%graph%first(link), skeleton%graph%first(link + 1) - 1
+        j = skeleton%graph%pair_at(i)
+        if (j == k .or. skeleton%places(j)%kind /= turning) cycle
+        apart = given(:, j) - given(:, k)
+        part = dot_product(apart, axis)
+        widest = max(widest, norm2(apart - part*axis))
+        if (first .or. abs(part) < abs(along)) along = part
+        first = .false.
       end do
     end do
-  end subroutine find_middles
+  end subroutine look_along
 
   pure real(wp) function median(values)
     real(wp), intent(in) :: values(:)

@@ -168,6 +168,35 @@ def check_symbols(checks, programs, folder):
             checks.equal(classes.count([name]), count, f'{data}: number of symbols of the kind {name}')
 
 
+FOUR_BAR = """&mechanism title='four-bar', links=4, coordinates=4 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=1,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=3,2,HEIGHT /
+&pair coordinate=4, links=4,1, kind='revolute', axis=0,0,1, point=3,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0,1 /
+"""
+
+
+def check_far_point(checks, programs, folder):
+    """A pair whose point lies far along its axis is the same pair, and is drawn where its links are."""
+    pictures = []
+    for height in ('0', '900'):
+        nml, path = os.path.join(folder, 'far.nml'), os.path.join(folder, 'far.svg')
+        with open(nml, 'w', encoding='utf-8') as file:
+            file.write(FOUR_BAR.replace('HEIGHT', height))
+        run(f'{programs}/mech9k', nml, '--quiet', '--sketch', path, '--view', 'iso')
+        with open(path, encoding='utf-8') as file:
+            pictures.append(file.read())
+    checks.equal(pictures[1], pictures[0], 'a point far off is drawn near')
+    with open(nml, 'w', encoding='utf-8') as file:
+        file.write(FOUR_BAR.replace('HEIGHT', '0.5'))
+    run(f'{programs}/mech9k', nml, '--quiet', '--sketch', path, '--view', 'xz')
+    joints = joints_of(ElementTree.parse(path).getroot())
+    drawn = (joints['q2'] - joints['q3'])[1] / (joints['q4'] - joints['q2'])[0]
+    checks.near(drawn, 0.5 / 2.0, 1e-3, 'one that is near enough stays where it is')
+
+
 def film_of(html):
     """The constant that the script of a page begins with."""
     text = re.search(r'const film = (\{.*?\n\});?\n', html, re.S).group(1)
@@ -357,6 +386,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         check_fig1(checks, programs, folder)
         check_symbols(checks, programs, folder)
+        check_far_point(checks, programs, folder)
         if os.path.exists(f'{programs}/mech9d'):
             check_bricard(checks, programs, folder)
             check_page(checks, programs, folder, 'mech9d', 'double_pendulum', {'A', 'B'})
