@@ -121,6 +121,7 @@ contains
     mechanism%output%sketch = get_text(group, 'sketch')
     mechanism%output%animation = get_text(group, 'animation')
     mechanism%output%view = get_text(group, 'view')
+    mechanism%output%poses = get_logical(group, 'poses')
     mechanism%output%compression = get_integer(group, 'compression')
     if (mechanism%output%compression > 9) &
       call diagnostics%add(span_of(group, 'compression', 1), 'compression goes from 0 (none) to 9 (the smallest file)')

@@ -29,6 +29,7 @@ module mech9_settings
     character(len=:), allocatable :: sketch
     character(len=:), allocatable :: animation
     character(len=:), allocatable :: view     !< of both; empty: the best one
+    logical :: poses = .false.                !< the HDF5 file holds the poses of links
     integer :: compression = 0                !< of the HDF5 file: 0 none to 9 most
     logical :: conditioning = .false.         !< a column of the least singular value
   end type output_settings_type

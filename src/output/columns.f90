@@ -1,5 +1,5 @@
 !> The columns of kinematic results: names, units, and a row of numbers from a state of motion.
-!> Uses kinds, text, mechanism, plan, state, motion.
+!> Uses kinds, text, mechanism, plan, state, motion, poses.
 module mech9_columns
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
@@ -7,6 +7,7 @@ module mech9_columns
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_motion, only: point_motion
+  use mech9_poses, only: poses_type, poses_of
   implicit none
   private
   public :: columns_type, kinematic_columns
@@ -18,9 +19,12 @@ module mech9_columns
     type(string_type), allocatable :: long_names(:)   !< a few words; the name where none were given
     integer :: count = 0
     real(wp), allocatable :: factors(:)     !< (M) from the program's units to those of the results
+    type(poses_type) :: poses               !< columns behind the others, where they are asked for
   contains
     procedure :: append
+    procedure :: width
     procedure :: fill
+    procedure :: fill_poses
   end type columns_type
 
   character, parameter :: directions(3) = ['x', 'y', 'z']
@@ -41,6 +45,7 @@ contains
     allocate (columns%names(1 + 3*size(mechanism%pairs) + 9*size(mechanism%points)))
     allocate (columns%units(size(columns%names)), columns%long_names(size(columns%names)))
     allocate (columns%factors(size(mechanism%pairs)), source=1.0_wp)
+    if (mechanism%output%poses) columns%poses = poses_of(mechanism)
     call columns%append('t', 's')
     do order = 1, 3
       do k = 1, size(mechanism%pairs)
@@ -91,6 +96,23 @@ contains
     grown(:size(texts)) = texts
     call move_alloc(grown, texts)
   end subroutine grow
+
+  !> Numbers in a row, poses included.
+  pure integer function width(self)
+    class(columns_type), intent(in) :: self
+
+    width = self%count + self%poses%width()
+  end function width
+
+  !> The columns of the poses in a row, if there are any.
+  pure subroutine fill_poses(self, plan, state, row)
+    class(columns_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    real(wp), intent(inout) :: row(:)
+
+    if (self%poses%n_links > 0) call self%poses%fill(plan, state, row(self%count + 1:))
+  end subroutine fill_poses
 
   !> The row of a state; `used` numbers are set.
   pure subroutine fill(self, mechanism, plan, state, row, used)

@@ -1,11 +1,12 @@
 !> Results as an HDF5 file: what stands in it is described in docs/results.md. Uses result_sink, hdf5_file,
-!> hdf5_series, columns, mechanism, clock and the base.
+!> hdf5_series, poses, columns, mechanism, clock and the base.
 module mech9_hdf5_sink
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_clock, only: pacer_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_poses, only: poses_type
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type
   use mech9_hdf5_file, only: hdf5_file_type
@@ -16,8 +17,8 @@ module mech9_hdf5_sink
 
   !> How long rows may be unknown to the file [s].
   real(wp), parameter :: longest_wait = 1.0_wp
-  !> Time, coordinates, points, and their derivatives.
-  integer, parameter :: quantities_of_motion = 7
+  !> Time, coordinates, points, and their derivatives; poses.
+  integer, parameter :: quantities_of_motion = 7 + 3
   !> Events that one chunk of their data sets holds.
   integer, parameter :: most_events = 64
   character, parameter :: directions(3) = ['x', 'y', 'z']
@@ -54,12 +55,15 @@ contains
     call self%file%create(path, err)
     if (allocated(err)) return
     scalars = columns%count - 1 - 3*size(mechanism%pairs) - 9*size(mechanism%points)
-    call self%series%start(quantities_of_motion + scalars, columns%count, mechanism%time%intervals + 1, &
+    self%takes_poses = .true.
+    call self%series%start(quantities_of_motion + scalars, columns%width(), mechanism%time%intervals + 1, &
                            mechanism%output%compression)
     call add_quantities(self, mechanism, columns, scalars)
+    if (columns%poses%n_links > 0) call add_poses(self, columns)
     call self%series%create(self%file)
     call add_coordinate_scales(self%file, mechanism, columns)
     if (size(mechanism%points) > 0) call add_point_scales(self%file, mechanism)
+    if (columns%poses%n_links > 0) call add_pose_scales(self%file, columns%poses, size(mechanism%points) > 0)
     call self%series%attach(self%file)
     call self%pacer%start(longest_wait)
     call self%tell(err)
@@ -117,6 +121,55 @@ contains
                          [3, size(mechanism%points)], long_name, unit, ['/time ', '/point', '/axis '])
   end subroutine add_of_points
 
+  !> Poses of links, and the vertices of their drawing.
+  subroutine add_poses(self, columns)
+    class(hdf5_sink_type), intent(inout) :: self
+    type(columns_type), intent(in) :: columns
+    integer :: n, vertices, i
+
+    n = columns%poses%n_links
+    vertices = size(columns%poses%vertex_link)
+    call self%series%add('origin', [(columns%count + i, i=1, 3*n)], [3, n], 'origins U of the links in the fixed frame', &
+                         'm', ['/time', '/link', '/axis'])
+    call self%series%add('rotation', [(columns%count + 3*n + i, i=1, 9*n)], [3, 3, n], &
+                         'rotations A of the links: X = A X'' + U', '1', &
+                         ['/time     ', '/link     ', '/axis     ', '/link_axis'])
+    call self%series%add('vertex', [(columns%count + 12*n + i, i=1, 3*vertices)], [3, vertices], &
+                         'vertices of the drawn links in the fixed frame', 'm', ['/time        ', '/shape/vertex', '/axis        '])
+  end subroutine add_poses
+
+  subroutine add_pose_scales(file, poses, has_axes)
+    type(hdf5_file_type), intent(inout) :: file
+    type(poses_type), intent(in) :: poses
+    logical, intent(in) :: has_axes             !< the axes of the fixed frame are in the file
+    integer :: line_link(size(poses%lines, 2)), i
+
+    line_link = poses%vertex_link(poses%lines(1, :))
+    if (.not. has_axes) call put_axes(file, 'axis', 'axis of the fixed frame')
+    call put_axes(file, 'link_axis', 'axis of the link')
+    call file%put('link', [(i, i=1, poses%n_links)], 'number of the link; 1 is the frame')
+    call file%make_scale('link')
+    call file%put('shape/vertex', [(i, i=0, size(poses%vertex_link) - 1)], 'number of the vertex, from 0')
+    call file%make_scale('shape/vertex')
+    call file%put('shape/vertex_link', poses%vertex_link, 'link that the vertex belongs to')
+    call file%attach_scales('shape/vertex_link', ['/shape/vertex'])
+    call file%put('shape/line', poses%lines - 1, 'the two vertices that a line joins')
+    call file%put('shape/line_link', line_link, 'link that the line belongs to')
+  end subroutine add_pose_scales
+
+  subroutine put_axes(file, name, long_name)
+    type(hdf5_file_type), intent(inout) :: file
+    character(len=*), intent(in) :: name, long_name
+    type(string_type) :: axes(3)
+    integer :: i
+
+    do i = 1, 3
+      axes(i)%text = directions(i)
+    end do
+    call file%put(name, axes, long_name)
+    call file%make_scale(name)
+  end subroutine put_axes
+
   subroutine add_coordinate_scales(file, mechanism, columns)
     type(hdf5_file_type), intent(inout) :: file
     type(mechanism_type), intent(in) :: mechanism
@@ -138,19 +191,15 @@ contains
   subroutine add_point_scales(file, mechanism)
     type(hdf5_file_type), intent(inout) :: file
     type(mechanism_type), intent(in) :: mechanism
-    type(string_type) :: names(size(mechanism%points)), axes(3)
+    type(string_type) :: names(size(mechanism%points))
     integer :: i
 
     do i = 1, size(names)
       names(i)%text = mechanism%points(i)%name
     end do
-    do i = 1, 3
-      axes(i)%text = directions(i)
-    end do
     call file%put('point', names, 'name of the point')
     call file%make_scale('point')
-    call file%put('axis', axes, 'axis of the fixed frame')
-    call file%make_scale('axis')
+    call put_axes(file, 'axis', 'axis of the fixed frame')
     call file%put('point_link', mechanism%points%link, 'link that carries the point')
     call file%attach_scales('point_link', ['/point'])
   end subroutine add_point_scales

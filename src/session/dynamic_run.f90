@@ -128,6 +128,7 @@ contains
       kinetic = kinetic_energy(system%dynamics, system%state)
       potential = potential_energy(system%mechanism, system%plan, system%state, system%work%view)
       row(used + 1:used + 3) = [kinetic, potential, kinetic + potential]
+      call self%columns%fill_poses(system%plan, system%state, row)
       row(used + 4) = largest_closure(system%plan, system%state)
       if (allocated(self%film)) call self%film%take(system%mechanism, system%plan, system%state)
     end associate

@@ -60,16 +60,19 @@ contains
   subroutine write_structure(file, mechanism)
     type(hdf5_file_type), intent(inout) :: file
     type(mechanism_type), intent(in) :: mechanism
-    integer :: k
+    integer :: links(2, size(mechanism%pairs)), k
 
+    do k = 1, size(mechanism%pairs)
+      links(:, k) = [mechanism%pairs(k)%pair%reference, mechanism%pairs(k)%pair%moving]
+    end do
     associate (structure => mechanism%structure, vectors => mechanism%vectors)
       call file%put('structure/end', [1, 2], 'end of a pair: 1 the reference link, 2 the moving link')
       call file%make_scale('structure/end')
-      call file%put('structure/links', structure%links, 'links that each pair joins')
+      call file%put('structure/links', links, 'links that each pair joins')
       call file%attach_scales('structure/links', ['/coordinate   ', '/structure/end'])
       call file%put('structure/independent', merge(1, 0, structure%independent), '1 where the coordinate is independent')
       call file%attach_scales('structure/independent', ['/coordinate'])
-      call write_matrix(file, structure%n_links, structure%links)
+      call write_matrix(file, structure%n_links, links)
       call file%put('structure/position', [(k, k=1, size(vectors%nrg))], 'position in the structural vectors')
       call file%make_scale('structure/position')
       call write_vector(file, 'nrg', vectors%nrg, 'links in the order of the chains')

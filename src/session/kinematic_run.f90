@@ -74,6 +74,7 @@ contains
     end if
     if (allocated(err)) return
     call self%columns%fill(self%mechanism, self%plan, self%tracker%state, row, used)
+    call self%columns%fill_poses(self%plan, self%tracker%state, row)
     row(used + 1) = largest_closure(self%plan, self%tracker%state)
     if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%tracker%state)
     if (self%mechanism%output%conditioning) call find_conditioning(self%tracker, row(used + 2))

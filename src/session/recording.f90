@@ -68,7 +68,7 @@ contains
     real(wp) :: clock
     integer :: next, count
 
-    allocate (rows(source%columns%count, rows_together), source=0.0_wp)
+    allocate (rows(source%columns%width(), rows_together), source=0.0_wp)
     if (present(kept)) &
       call kept%begin(mechanism%title, source%columns%names(:source%columns%count), &
                       source%columns%units(:source%columns%count), mechanism%time%intervals + 1)
@@ -81,7 +81,7 @@ contains
       call compute_rows(source, mechanism, progress, pacer, next, rows, count, stopped)
       call lap(clock, outcome%seconds_solving)
       outcome%rows = outcome%rows + count
-      if (present(kept)) call kept%take(rows(:, :count))
+      if (present(kept)) call kept%take(rows(:source%columns%count, :count))
       call results%write_rows(rows(:, :count), err)
       if (allocated(err)) exit
     end do

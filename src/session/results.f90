@@ -11,6 +11,7 @@ module mech9_results
   use mech9_plot, only: plot_type, default_picture
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
+  use mech9_xdmf, only: new_xdmf
   use mech9_command_line, only: command_line_type
   use mech9_hdf5_record, only: write_provenance, write_structure
   use mech9_version, only: version
@@ -23,6 +24,7 @@ module mech9_results
     character(len=:), allocatable :: table_path     !< '-' is standard output; empty: no table
     character(len=:), allocatable :: hdf5_path      !< empty: no such file
     type(sink_slot_type), allocatable :: sinks(:)
+    integer, private :: n_columns = 0               !< without those of poses
   contains
     procedure :: open => open_results
     procedure :: write_rows
@@ -70,6 +72,7 @@ contains
     integer :: i
 
     allocate (self%sinks(0))
+    self%n_columns = columns%count
     self%table_path = path_of(options, 'table', mechanism%output%table)
     self%hdf5_path = path_of(options, 'hdf5', mechanism%output%hdf5)
     if (self%table_path == '' .and. self%hdf5_path == '' .and. .not. needs_no_table(options)) self%table_path = '-'
@@ -152,17 +155,22 @@ contains
     call file%tell(err)
     call move_alloc(file, sink)
     call append_sink(self%sinks, sink)
+    if (columns%poses%n_links == 0) return
+    allocate (sink, source=new_xdmf(self%hdf5_path, mechanism, columns%poses))
+    call append_sink(self%sinks, sink)
   end subroutine open_hdf5
 
   !> Rows to everyone; the first error ends it.
   subroutine write_rows(self, rows, err)
     class(results_type), intent(inout) :: self
-    real(wp), intent(in) :: rows(:, :)      !< (columns, rows)
+    real(wp), intent(in) :: rows(:, :)      !< (columns, rows), those of poses at the end
     type(error_type), allocatable, intent(out) :: err
     integer :: i
 
     do i = 1, size(self%sinks)
-      call self%sinks(i)%sink%write_rows(rows, err)
+      associate (sink => self%sinks(i)%sink)
+        call sink%write_rows(rows(:merge(size(rows, 1), self%n_columns, sink%takes_poses), :), err)
+      end associate
       if (allocated(err)) return
     end do
   end subroutine write_rows
