@@ -29,7 +29,7 @@ contains
   end function distinct_points
 
   !> The outline of points, no two of which are the same: `closed` around a plate, where they lie in one
-  !> plane; else, or where some are the ends of rails, pairs of points that bars join.
+  !> plane; else, or where all but one lie on a rail, pairs of points that bars join.
   pure subroutine find_shape(points, tolerance, rails, order, closed)
     real(wp), intent(in) :: points(:, :)          !< (3,n)
     real(wp), intent(in) :: tolerance
@@ -59,13 +59,29 @@ contains
       x(1, i) = dot_product(along, points(:, i) - points(:, first))
       x(2, i) = dot_product(cross(normal, along), points(:, i) - points(:, first))
     end do
-    closed = maxval(off) <= tolerance .and. size(rails) == 0
+    closed = maxval(off) <= tolerance .and. beside(points, rails, tolerance) /= 1
     if (closed) then
       order = hull(x)
     else
       order = spanning_bars(points, rails)
     end if
   end subroutine find_shape
+
+  !> How many points do not lie on the first rail; none where there is no rail.
+  pure integer function beside(points, rails, tolerance)
+    real(wp), intent(in) :: points(:, :)
+    integer, intent(in) :: rails(:, :)
+    real(wp), intent(in) :: tolerance
+    real(wp) :: along(3)
+    integer :: i
+
+    beside = 0
+    if (size(rails, 2) == 0) return
+    along = unit(points(:, rails(2, 1)) - points(:, rails(1, 1)))
+    do i = 1, size(points, 2)
+      if (norm2(cross(along, points(:, i) - points(:, rails(1, 1)))) > tolerance) beside = beside + 1
+    end do
+  end function beside
 
   pure integer function farthest(points, from)
     real(wp), intent(in) :: points(:, :), from(3)

@@ -94,16 +94,24 @@ contains
     call test%is_true(all(group == group(1)), 'which hold together')
   end subroutine points_in_space
 
-  !> A long rail and a pin between its ends: the rail stays in one piece, the pin hangs on one of them.
+  !> A long rail and a pin between its ends: the rail stays in one piece, the pin hangs on one of them. Two pins
+  !> in a plane with it make a plate, two that are not make bars.
   subroutine rails(test)
     type(tester_type), intent(inout) :: test
     real(wp) :: points(3, 4)
+    integer, parameter :: rail(2, 1) = reshape([1, 4], [2, 1])
     integer, allocatable :: order(:)
     logical :: closed
 
     points = reshape([0.0_wp, 0.0_wp, 0.0_wp, 5.0_wp, 1.0_wp, 0.0_wp, 5.0_wp, 2.0_wp, 0.0_wp, 9.0_wp, 0.0_wp, 0.0_wp], [3, 4])
-    call find_shape(points, tolerance, reshape([1, 4], [2, 1]), order, closed)
-    call test%is_true(.not. closed .and. size(order) == 6, 'three bars for a rail and two pins')
+    call find_shape(points, tolerance, rail, order, closed)
+    call test%is_true(closed .and. size(order) == 3, 'a plate')
+    points(:, 3) = [7.0_wp, 0.0_wp, 0.0_wp]
+    call find_shape(points, tolerance, rail, order, closed)
+    call test%is_true(.not. closed .and. size(order) == 6, 'three bars for a rail, a pin on it, a pin beside it')
+    points(:, 3) = [5.0_wp, 1.0_wp, 1.0_wp]
+    call find_shape(points, tolerance, rail, order, closed)
+    call test%is_true(.not. closed .and. size(order) == 6, 'three bars for a rail and two pins in space')
     if (size(order) == 6) then
       call test%is_true(all(order(:2) == [1, 4]), 'the rail')
       call test%is_true(all(order(3:4) == [4, 2]), 'the pin at its nearer end')
