@@ -4,7 +4,7 @@
 !> libedit calls back for the prompt, for each key and for completion. What these need travels with the
 !> editor, as its client data: a box of plain Fortran variables. Ctrl-C is a key here and no signal.
 module mech9_libedit_editor
-  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_signed_char, c_ptr, c_null_ptr, c_null_char, c_loc, &
+  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_signed_char, c_char, c_ptr, c_null_ptr, c_null_char, c_loc, &
                                          c_funloc, c_funptr, c_f_pointer, c_associated
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_text, only: string_type
@@ -24,7 +24,9 @@ module mech9_libedit_editor
   integer(c_intptr_t), parameter :: nothing = 0
   !> Answers that are remembered.
   integer(c_intptr_t), parameter :: history_size = 1000
-  character, parameter :: ctrl_c = achar(3)
+  !> Letters of a line at most, as many as the terminal itself would take; libedit draws longer ones ever slower.
+  integer, parameter :: longest_line = 4095
+  character, parameter :: ctrl_c = achar(3), bell = achar(7)
   !> The function for completion as keys are bound to it.
   character(len=*), parameter :: completion_name = 'complete-word'
 
@@ -58,10 +60,8 @@ contains
     class(line_editor_type), intent(inout) :: self
     character(len=*), intent(in) :: program_name
     logical, intent(out) :: ready
-    type(c_ptr) :: answer
 
-    ! characters are shown as the user's terminal has them; numbers stay as they are
-    answer = c_setlocale(lc_ctype, c_null_char)
+    call take_letters_of_user()
     self%input = c_fdopen(c_dup(int(standard_input, c_int)), 'r'//c_null_char)
     self%output = c_fdopen(c_dup(int(standard_error, c_int)), 'w'//c_null_char)
     ready = c_associated(self%input) .and. c_associated(self%output)
@@ -78,6 +78,21 @@ contains
       call self%stop()
     end if
   end subroutine start
+
+  !> Letters are shown as the user's terminal has them; where the user has no preference, all of them.
+  !> Numbers stay as they are.
+  subroutine take_letters_of_user()
+    type(c_ptr) :: name
+    character(kind=c_char), pointer :: letters(:)
+
+    name = c_setlocale(lc_ctype, c_null_char)
+    if (c_associated(name)) then
+      call c_f_pointer(name, letters, [2])
+      ! any name but C
+      if (letters(1) /= 'C' .or. letters(2) /= c_null_char) return
+    end if
+    name = c_setlocale(lc_ctype, 'C.UTF-8'//c_null_char)
+  end subroutine take_letters_of_user
 
   !> Everything that is as we want it, and not as libedit has it.
   subroutine set_up(self)
@@ -185,10 +200,31 @@ contains
     type(box_type), pointer :: box
 
     box => box_of(editor)
-    call read_character(box%bytes, key, box%status)
+    do
+      call read_character(box%bytes, key, box%status)
+      if (box%status /= input_read .or. .not. is_letter(key)) exit
+      if (line_length(editor) < longest_line) exit
+      write (error_unit, '(a)', advance='no') bell
+    end do
     if (box%status == input_read .and. key == iachar(ctrl_c)) box%status = input_interrupted
     get_key = merge(1_c_int, 0_c_int, box%status == input_read)
   end function get_key
+
+  !> Not a key that does something.
+  pure logical function is_letter(key)
+    integer(wide), intent(in) :: key
+
+    is_letter = key >= 32 .and. key /= 127
+  end function is_letter
+
+  !> Letters of the line as it stands.
+  integer function line_length(editor)
+    type(c_ptr), intent(in) :: editor
+    type(line_info_type), pointer :: info
+
+    call c_f_pointer(el_wline(editor), info)
+    line_length = int((info%behind - info%first)/(storage_size(1_wide)/8))
+  end function line_length
 
   !> One UTF-8 character; unknown_character for bytes that are none.
   subroutine read_character(bytes, point, status)

@@ -91,6 +91,9 @@ def test_editing():
     dialogue('letters of several bytes', ['Miądowicz é中' + left + '\x7fü\r'], ['Miądowicz ü中'])
     dialogue('bytes that are no text', [b'a\xffb\xc3(\r'], ['a\ufffdb\ufffd('])
     dialogue('a line longer than the screen', ['x' * 3000 + '\r', up + 'y\r'], ['x' * 3000, 'x' * 3000 + 'y'])
+    dialogue('a line longer than a terminal takes', ['y' * 30000 + '\r', up + '\r'], ['y' * 4095, 'y' * 4095])
+    for locale in ('C', 'POSIX', 'no_SUCH'):
+        dialogue(f'letters of several bytes, LC_ALL={locale}', ['ąé中' + left + '\x7fü\r'], ['ąü中'], LC_ALL=locale)
     dialogue('no command line of the editor', ['\x1bxedit off\r', 'ab' + left + 'c\r'], ['edit off', 'acb'])
 
 
