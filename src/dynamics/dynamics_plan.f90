@@ -18,6 +18,7 @@ module mech9_dynamics_plan
 
   !> A link with mass, in its frame.
   type :: frame_body_type
+    integer :: link = 0
     integer :: frame = 0
     real(wp) :: mass = 0.0_wp             !< [kg]
     real(wp) :: centre(3) = 0.0_wp        !< in the frame [m]
@@ -78,6 +79,7 @@ contains
         if (body%link == 1 .or. .not. (body%mass > 0.0_wp .or. any(abs(body%inertia) > 0.0_wp))) cycle
         n = n + 1
         if (plan%planar%used) dynamics%planar_bodies(n) = planar_body(plan, body)
+        dynamics%bodies(n)%link = body%link
         dynamics%bodies(n)%frame = plan%frame_of(body%link)
         dynamics%bodies(n)%mass = body%mass
         dynamics%bodies(n)%centre = transformed(plan%link_in_frame(body%link), body%centre)
@@ -97,7 +99,7 @@ contains
 
     m = plan%n_coordinates
     allocate (dynamics%first(0:m + 1), source=1)
-    allocate (dynamics%column(0), dynamics%parent_entry(0), dynamics%target_entry(0))
+    allocate (dynamics%column(m), dynamics%parent_entry(m), dynamics%target_entry(m), source=0)
     do b = 1, size(plan%blocks)
       if (size(plan%blocks(b)%unknowns) > 0) then
         call add_closed_block(plan, plan%blocks(b), dynamics)
@@ -108,7 +110,20 @@ contains
         end do
       end if
     end do
+    call resize(dynamics%first(m + 1) - 1, dynamics)
   end subroutine find_columns
+
+  !> Lists of entries of another length, what they hold kept.
+  pure subroutine resize(n, dynamics)
+    integer, intent(in) :: n
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer :: filler(max(0, n - size(dynamics%column)))
+
+    filler = 0
+    dynamics%column = [dynamics%column(:min(n, size(dynamics%column))), filler]
+    dynamics%parent_entry = [dynamics%parent_entry(:min(n, size(dynamics%parent_entry))), filler]
+    dynamics%target_entry = [dynamics%target_entry(:min(n, size(dynamics%target_entry))), filler]
+  end subroutine resize
 
   subroutine add_closed_block(plan, block, dynamics)
     type(plan_type), intent(in) :: plan
@@ -139,14 +154,17 @@ contains
     integer, intent(in) :: s
     integer, intent(in) :: columns(:)
     type(dynamics_plan_type), intent(inout) :: dynamics
-    integer :: i
+    integer :: i, e
 
-    dynamics%first(s) = size(dynamics%column) + 1
+    ! frames come in order
     dynamics%first(s + 1) = dynamics%first(s) + size(columns)
-    dynamics%column = [dynamics%column, columns]
-    dynamics%parent_entry = [dynamics%parent_entry, (entry_of(dynamics, plan%steps(s)%parent, columns(i)), &
-                                                     i=1, size(columns))]
-    dynamics%target_entry = [dynamics%target_entry, (0, i=1, size(columns))]
+    if (dynamics%first(s + 1) - 1 > size(dynamics%column)) &
+      call resize(max(dynamics%first(s + 1) - 1, 2*size(dynamics%column)), dynamics)
+    do i = 1, size(columns)
+      e = dynamics%first(s) + i - 1
+      dynamics%column(e) = columns(i)
+      dynamics%parent_entry(e) = entry_of(dynamics, plan%steps(s)%parent, columns(i))
+    end do
   end subroutine add_frame
 
   subroutine find_target_entries(closing, target, dynamics)

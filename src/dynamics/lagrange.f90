@@ -155,7 +155,7 @@ contains
     end if
     scale = 0.0_wp
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
+      k = block%coordinates(i)
       state%ddq(k) = expected(k)
       scale = max(scale, (state%dq(k)/plan%unit_of(k))**2)
     end do
@@ -164,7 +164,7 @@ contains
     work%right = -work%right
     call work%equations%solve(work%right, work%change, noise=noise_of_rates*scale)
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
+      k = block%coordinates(i)
       state%ddq(k) = state%ddq(k) + work%change(i)*plan%unit_of(k)
     end do
     call spread_accelerations(plan, block%first_step, block%last_step, state)
@@ -319,7 +319,8 @@ contains
     view%t = state%t
     view%q = state%q
     view%dq = state%dq
-    do i = 1, plan%n_links
+    ! link 1 stays where it is
+    do i = 2, plan%n_links
       if (.not. dynamics%load_links(i)) cycle
       call link_motion(plan, state, i, view%links(i)%r, view%links(i)%p, view%links(i)%omega, view%links(i)%v)
     end do

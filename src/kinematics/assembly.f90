@@ -56,10 +56,10 @@ contains
 
     restarts = 0
     if (may_restart) restarts = max(2, min(most_restarts, most_restarted/max(1, size(guess))))
-    guess = state%q(plan%steps(block%unknowns)%coordinate)
+    guess = state%q(block%coordinates)
     do restart = 0, restarts
       do i = 1, size(guess)
-        k = plan%steps(block%unknowns(i))%coordinate
+        k = block%coordinates(i)
         state%q(k) = guess(i)
         if (restart > 0) state%q(k) = guess(i) + plan%unit_of(k)*random%symmetric()*pi*restart/restarts
       end do
@@ -74,10 +74,10 @@ contains
         call unwind(plan, block, guess, state, err)
         return
       end if
-      if (restart == 0) nearest = state%q(plan%steps(block%unknowns)%coordinate)
+      if (restart == 0) nearest = state%q(block%coordinates)
     end do
     outcome = assembly_outcome_type(restarts=restarts)
-    state%q(plan%steps(block%unknowns)%coordinate) = nearest
+    state%q(block%coordinates) = nearest
     call place_frames(plan, block%first_step, block%last_step, state, err)
     if (allocated(err)) return
     call find_worst(plan, block, state, outcome)
@@ -100,11 +100,11 @@ contains
     if (allocated(err)) return
     outcome%closed = lack <= near_enough
     if (outcome%closed) then
-      before = state%q(plan%steps(block%unknowns)%coordinate)
+      before = state%q(block%coordinates)
       call close_block(plan, block, state, work, newton, err)
       if (allocated(err)) return
       if (.not. newton%converged .or. newton%correction > regular_correction) then
-        state%q(plan%steps(block%unknowns)%coordinate) = before
+        state%q(block%coordinates) = before
         call reduce_errors(plan, block, state, work, closed_enough, 1.0e-10_wp, lack, err)
         if (allocated(err)) return
         outcome%closed = lack <= closed_singular
@@ -139,7 +139,7 @@ contains
     do step = 1, most_steps
       if (lack <= enough .or. size(before) == 0) exit
       call damped_change(plan, block, state, damping, damped, right, work)
-      before = state%q(plan%steps(block%unknowns)%coordinate)
+      before = state%q(block%coordinates)
       call apply_change(plan, block, work%change, state)
       call measure(plan, block, state, work, trial_lack, err)
       ! where a user pair has no pose the step was too long, like any other that does not help
@@ -148,7 +148,7 @@ contains
         damping = max(damping*0.2_wp, 1.0e-20_wp)
         lack = trial_lack
       else
-        state%q(plan%steps(block%unknowns)%coordinate) = before
+        state%q(block%coordinates) = before
         call measure(plan, block, state, work, lack, err)
         if (allocated(err)) return
         damping = max(damping, 1.0e-16_wp)*5.0_wp

@@ -42,6 +42,7 @@ contains
 
     block%unknowns = pack([(s, s=block%first_step, block%last_step)], &
                           plan%steps(block%first_step:block%last_step)%dependent)
+    block%coordinates = plan%steps(block%unknowns)%coordinate
     block%equations = sum(plan%closures(block%first_closure:block%last_closure)%rank)
     block%chains = plan%closures(block%first_closure:block%last_closure)%chain
   end subroutine count_block

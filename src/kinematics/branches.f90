@@ -92,7 +92,7 @@ contains
     closed = .true.
     do b = 1, size(blocks)
       do i = 1, size(blocks(b)%unknowns)
-        k = plan%steps(blocks(b)%unknowns(i))%coordinate
+        k = blocks(b)%coordinates(i)
         state%q(k) = state%q(k) + amount*plan%unit_of(k)*random%symmetric()
       end do
       work = new_block_work(blocks(b))

@@ -11,7 +11,7 @@ module mech9_closure
   use mech9_rotation, only: turn, turn_back, combine, cross, rotation_vector
   use mech9_plan, only: plan_type, closure_type, block_type
   use mech9_state, only: state_type, velocity_known
-  use mech9_planar_closure, only: planar_errors, planar_column, planar_rates, planar_bias_rates, planar_gap
+  use mech9_planar_closure, only: planar_errors, planar_columns, planar_rates, planar_bias_rates, planar_gap
   implicit none
   private
   public :: closure_errors, closure_jacobian, closure_column, closure_rates, closing_error, loop_screw, reduced_screw
@@ -45,11 +45,15 @@ contains
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     type(state_type), intent(in) :: state
-    integer, intent(in) :: column_of(:)       !< column of each of the block's steps; 0: not an unknown
+    integer, intent(in), contiguous :: column_of(:)   !< column of each of the block's steps; 0: not an unknown
     real(wp), intent(out), contiguous :: jacobian(:, :)
     integer :: c, i, s, row, column
 
     jacobian = 0.0_wp
+    if (plan%planar%used) then
+      call planar_jacobian(plan, block, state, column_of, jacobian)
+      return
+    end if
     row = 0
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c))
@@ -65,6 +69,24 @@ contains
     end do
   end subroutine closure_jacobian
 
+  !> The same in planar arithmetic.
+  pure subroutine planar_jacobian(plan, block, state, column_of, jacobian)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    integer, intent(in), contiguous :: column_of(:)
+    real(wp), intent(inout), contiguous :: jacobian(:, :)
+    integer :: c
+
+    do c = block%first_closure, block%last_closure
+      associate (path => plan%closures(c)%path)
+        call planar_columns(plan%planar, c, size(path%steps), path%steps, path%signs, block%first_step, block%last_step, &
+                            column_of, state%planar, size(jacobian, 1), size(jacobian, 2), &
+                            3*(c - block%first_closure), jacobian)
+      end associate
+    end do
+  end subroutine planar_jacobian
+
   !> Derivatives of a closure's equations with respect to the coordinate of one step, in its unit.
   pure subroutine closure_column(plan, c, s, sign, state, column)
     type(plan_type), intent(in) :: plan
@@ -74,12 +96,12 @@ contains
     real(wp), intent(out), contiguous :: column(:)
     real(wp) :: arm(3), w(3), v(3), unit
 
-    unit = sign*plan%unit_of(plan%steps(s)%coordinate)
     if (plan%planar%used) then
-      call planar_column(plan%planar, c, s, unit, state%planar, column)
+      call planar_columns(plan%planar, c, 1, [s], [sign], s, s, [1], state%planar, 3, 1, 0, column)
       return
     end if
     associate (place => state%p(:, plan%closures(c)%closing))
+      unit = sign*plan%unit_of(plan%steps(s)%coordinate)
       w = unit*state%axis_w(:, s)
       arm = place - state%p(:, s)
       v = unit*state%axis_v(:, s) + cross(w, arm)

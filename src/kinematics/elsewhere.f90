@@ -113,7 +113,7 @@ contains
 
     work = new_block_work(block)
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
+      k = block%coordinates(i)
       elsewhere%state%q(k) = start%q(k) + amount*plan%unit_of(k)*elsewhere%random%symmetric()
     end do
     call assemble_block(plan, block, elsewhere%state, work, .false., outcome, err)
@@ -173,6 +173,7 @@ contains
     block%first_closure = 1
     block%last_closure = last_closure
     block%unknowns = [(i, i=1, last_step)]
+    block%coordinates = plan%steps(block%unknowns)%coordinate
     block%equations = sum(plan%closures(:last_closure)%rank)
     block%chains = plan%closures(:last_closure)%chain
   end function free_block

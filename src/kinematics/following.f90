@@ -50,7 +50,7 @@ module mech9_following
     real(wp) :: t = 0.0_wp
     real(wp), allocatable :: q(:), dq(:), ddq(:)
     real(wp) :: before = 0.0_wp                 !< distance of the position accepted before it [s]
-    real(wp), allocatable :: higher(:, :)       !< (3,M) factors of h^3, h^4, h^5 of the prediction
+    real(wp), allocatable :: higher(:, :)       !< (M,3) factors of h^3, h^4, h^5 of the prediction
   end type departure_type
 
   !> What follows the branch: state, departure and scratch, and counts for the report.
@@ -97,7 +97,7 @@ contains
     follower%state = assembled
     m = plan%n_coordinates
     allocate (follower%departure%q(m), follower%departure%dq(m), follower%departure%ddq(m), source=0.0_wp)
-    allocate (follower%departure%higher(3, m), source=0.0_wp)
+    allocate (follower%departure%higher(m, 3), source=0.0_wp)
     allocate (follower%work(size(plan%blocks)), follower%watches(size(plan%blocks)))
     do b = 1, size(plan%blocks)
       follower%work(b) = new_block_work(plan%blocks(b))
@@ -290,9 +290,9 @@ contains
     near = 0.0_wp
     if (abs(h) <= longest_prediction*departure%before) near = h
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
-      state%q(k) = departure%q(k) + h*(departure%dq(k) + h*(0.5_wp*departure%ddq(k) + near*(departure%higher(1, k) &
-                   + near*(departure%higher(2, k) + near*departure%higher(3, k)))))
+      k = block%coordinates(i)
+      state%q(k) = departure%q(k) + h*(departure%dq(k) + h*(0.5_wp*departure%ddq(k) + near*(departure%higher(k, 1) &
+                   + near*(departure%higher(k, 2) + near*departure%higher(k, 3)))))
     end do
   end subroutine predict
 
@@ -314,7 +314,7 @@ contains
     move = 0.0_wp
     bend = 0.0_wp
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
+      k = block%coordinates(i)
       move = max(move, abs(state%q(k) - departure%q(k))/plan%unit_of(k))
       bend = max(bend, abs(state%dq(k) - departure%dq(k))/plan%unit_of(k))
     end do
@@ -325,39 +325,54 @@ contains
   !> The trial becomes the place of departure.
   pure subroutine accept(follower)
     type(follower_type), intent(inout) :: follower
-    real(wp) :: h, d0, d1, d2, x, y, z
-    integer :: k
+    real(wp) :: h
 
     follower%steps = follower%steps + 1
     follower%state%known = acceleration_known
     associate (here => follower%state, last => follower%departure)
       h = here%t - last%t
-      do k = 1, size(last%q)
-        ! the polynomial through both positions, about the later one: its terms of third to fifth order at h
-        d0 = last%q(k) - (here%q(k) - h*(here%dq(k) - 0.5_wp*h*here%ddq(k)))
-        d1 = h*(last%dq(k) - here%dq(k) + h*here%ddq(k))
-        d2 = h**2*(last%ddq(k) - here%ddq(k))
-        x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
-        z = x + d1 + 4.0_wp*d0
-        y = d0 + x + z
-        if (abs(z) <= only_round_off*max(1.0_wp, abs(here%q(k)))) then
-          ! without the positions, whose round-off is all there is to the last term
-          z = 0.0_wp
-          y = 0.25_wp*d2 + 0.5_wp*d1
-          x = d1 + d2/3.0_wp
-        end if
-        last%higher(1, k) = x/h**3
-        last%higher(2, k) = y/h**4
-        last%higher(3, k) = z/h**5
-        last%q(k) = here%q(k)
-        last%dq(k) = here%dq(k)
-        last%ddq(k) = here%ddq(k)
-      end do
+      call extrapolate(size(here%q), h, here%q, here%dq, here%ddq, last%q, last%dq, last%ddq, last%higher)
       last%t = here%t
       last%before = abs(h)
     end associate
     call keep(follower%watches)
   end subroutine accept
+
+  !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
+  !> order. The later position takes the place of the earlier one.
+  pure subroutine extrapolate(m, h, q, dq, ddq, last_q, last_dq, last_ddq, higher)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: h
+    real(wp), dimension(m), intent(in) :: q, dq, ddq
+    real(wp), dimension(m), intent(inout) :: last_q, last_dq, last_ddq
+    real(wp), intent(out) :: higher(m, 3)
+    real(wp) :: d0, d1, d2, x, y, z, per_h, per_cube
+    logical :: is_noise
+    integer :: k
+
+    per_h = 1.0_wp/h
+    per_cube = per_h**3
+    do k = 1, m
+      ! the terms at h
+      d0 = last_q(k) - (q(k) - h*(dq(k) - 0.5_wp*h*ddq(k)))
+      d1 = h*(last_dq(k) - dq(k) + h*ddq(k))
+      d2 = h**2*(last_ddq(k) - ddq(k))
+      x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
+      z = x + d1 + 4.0_wp*d0
+      y = d0 + x + z
+      ! without the positions, where their round-off is all there is to the last term
+      is_noise = abs(z) <= only_round_off*max(1.0_wp, abs(q(k)))
+      x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_noise)
+      y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_noise)
+      z = merge(0.0_wp, z, is_noise)
+      higher(k, 1) = x*per_cube
+      higher(k, 2) = y*per_cube*per_h
+      higher(k, 3) = z*per_cube*per_h**2
+      last_q(k) = q(k)
+      last_dq(k) = dq(k)
+      last_ddq(k) = ddq(k)
+    end do
+  end subroutine extrapolate
 
   !> After a step that was given up: the coordinates of the last position again.
   pure subroutine go_back(follower)

@@ -237,8 +237,8 @@ contains
         if (size(block%unknowns) > 0 .and. watches(b)%trial_pivot < near*watches(b)%largest_pivot) then
           call close_where_determined(plan, block, state, work(b), watches(b), err)
           if (allocated(err)) return
-          state%dq(plan%steps(block%unknowns)%coordinate) = dq(plan%steps(block%unknowns)%coordinate)
-          state%ddq(plan%steps(block%unknowns)%coordinate) = ddq(plan%steps(block%unknowns)%coordinate)
+          state%dq(block%coordinates) = dq(block%coordinates)
+          state%ddq(block%coordinates) = ddq(block%coordinates)
           call move_where_determined(plan, block, state, work(b), watches(b))
         else
           call close_block(plan, block, state, work(b), newton, err)
@@ -279,7 +279,7 @@ contains
     type(block_work_type), intent(inout) :: work
     type(watch_type), intent(in) :: watch
 
-    associate (k => plan%steps(block%unknowns)%coordinate)
+    associate (k => block%coordinates)
       call spread_velocities(plan, block%first_step, block%last_step, state)
       call closure_rates(plan, block, state, velocity_known, work%right)
       call solve_where_determined(work, watch)

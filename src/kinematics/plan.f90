@@ -61,6 +61,7 @@ module mech9_plan
     integer, allocatable :: chains(:)          !< numbers of its closed chains, as in nrw
     integer :: equations = 0                   !< rows: sum of the closures' ranks
     integer, allocatable :: unknowns(:)        !< steps of its dependent coordinates
+    integer, allocatable :: coordinates(:)     !< these themselves
   end type block_type
 
   type :: plan_type

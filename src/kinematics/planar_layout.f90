@@ -1,7 +1,8 @@
-!> Second part of the plan: is the mechanism planar, and its plan in the plane. Uses kinds, rotation,
+!> Second part of the plan: is the mechanism planar, and its plan in the plane. Uses kinds, text, rotation,
 !> pose, plan, planar_plan.
 module mech9_planar_layout
   use mech9_kinds, only: wp
+  use mech9_text, only: to_text
   use mech9_rotation, only: identity
   use mech9_pose, only: pose_type, pose_from_axis, default_zero
   use mech9_plan, only: plan_type
@@ -18,7 +19,7 @@ contains
 
   !> Lay out the plan in its plane, if it has one: all axes of revolute pairs along one normal, all of
   !> prismatic pairs across it, and every closed chain bound in all three dimensions of the plane. The ranks
-  !> of the closures must be known. `planar%used` tells.
+  !> of the closures must be known. `planar%used` and `planar%why_not` tell.
   pure subroutine lay_out_in_plane(plan)
     type(plan_type), intent(inout) :: plan
     type(planar_plan_type) :: planar
@@ -26,20 +27,32 @@ contains
     logical :: fits
     integer :: s, c
 
-    if (any(plan%closures%rank /= 3) .or. .not. all(plan%steps%is_screw)) return
+    do c = 1, size(plan%closures)
+      if (plan%closures(c)%rank == 3) cycle
+      plan%planar%why_not = 'the motions of closed chain '//to_text(plan%closures(c)%chain)//' have '// &
+                            to_text(plan%closures(c)%rank)//' dimensions, not 3'
+      return
+    end do
     call find_axes(plan, planar, fits)
+    if (.not. fits) plan%planar%why_not = 'no pair turns'
     if (.not. fits) return
     planar%length = plan%length
     allocate (planar%steps(plan%n_coordinates), planar%closures(size(plan%closures)))
     allocate (planar%height(0:plan%n_coordinates), source=0.0_wp)
     to_frame(:, :, 0) = transpose(planar%axes)
     do s = 1, plan%n_coordinates
-      call lay_out_step(plan, s, planar, to_frame, fits)
-      if (.not. fits) return
+      fits = plan%steps(s)%is_screw
+      if (fits) call lay_out_step(plan, s, planar, to_frame, fits)
+      if (fits) cycle
+      plan%planar%why_not = 'pair '//to_text(plan%steps(s)%coordinate)//' neither turns about the plane''s normal '// &
+                            'nor slides across it'
+      return
     end do
     do c = 1, size(plan%closures)
       call lay_out_closure(plan, c, to_frame, planar, fits)
-      if (.not. fits) return
+      if (fits) cycle
+      plan%planar%why_not = 'closed chain '//to_text(plan%closures(c)%chain)//' does not close in a plane'
+      return
     end do
     allocate (planar%link_in_frame(plan%n_links))
     do s = 1, plan%n_links

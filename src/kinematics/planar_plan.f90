@@ -34,6 +34,7 @@ module mech9_planar_plan
 
   type :: planar_plan_type
     logical :: used = .false.
+    character(len=:), allocatable :: why_not           !< in words, where it is not
     real(wp) :: axes(3, 3) = identity                  !< turns components in the plane's axes into those of frame 0
     logical :: upright = .true.                        !< these are the same
     real(wp) :: length = 1.0_wp                        !< the mechanism's size [m]

@@ -55,6 +55,7 @@ contains
 
     block = free_block(plan, plan%n_coordinates, size(plan%closures))
     block%unknowns = pack([(s, s=1, plan%n_coordinates)], plan%steps%dependent)
+    block%coordinates = plan%steps(block%unknowns)%coordinate
     work = new_block_work(block)
     from = state%q(plan%independent)
     way = target(plan%independent) - from

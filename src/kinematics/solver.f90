@@ -127,7 +127,7 @@ contains
     integer :: i, k
 
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
+      k = block%coordinates(i)
       state%q(k) = state%q(k) + change(i)*plan%unit_of(k)
     end do
   end subroutine apply_change
@@ -144,7 +144,7 @@ contains
 
     if (present(remainder)) remainder = 0.0_wp
     do i = 1, size(block%unknowns)
-      state%dq(plan%steps(block%unknowns(i))%coordinate) = 0.0_wp
+      state%dq(block%coordinates(i)) = 0.0_wp
     end do
     call spread_velocities(plan, block%first_step, block%last_step, state)
     if (block%equations == 0) return
@@ -156,7 +156,7 @@ contains
       call work%equations%solve(work%right, work%change)
     end if
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
+      k = block%coordinates(i)
       state%dq(k) = work%change(i)*plan%unit_of(k)
     end do
     call spread_velocities(plan, block%first_step, block%last_step, state)
@@ -172,7 +172,7 @@ contains
     integer :: i, k
 
     do i = 1, size(block%unknowns)
-      state%ddq(plan%steps(block%unknowns(i))%coordinate) = 0.0_wp
+      state%ddq(block%coordinates(i)) = 0.0_wp
     end do
     call spread_accelerations(plan, block%first_step, block%last_step, state)
     if (size(block%unknowns) == 0) return
@@ -180,7 +180,7 @@ contains
     work%right = -work%right
     call work%equations%solve(work%right, work%change)
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
+      k = block%coordinates(i)
       state%ddq(k) = work%change(i)*plan%unit_of(k)
     end do
     call spread_accelerations(plan, block%first_step, block%last_step, state)

@@ -204,9 +204,9 @@ contains
     integer, intent(in) :: b
     integer :: i, k
 
-    fastest = plan%steps(plan%blocks(b)%unknowns(1))%coordinate
+    fastest = plan%blocks(b)%coordinates(1)
     do i = 2, size(plan%blocks(b)%unknowns)
-      k = plan%steps(plan%blocks(b)%unknowns(i))%coordinate
+      k = plan%blocks(b)%coordinates(i)
       if (abs(follower%departure%dq(k))/plan%unit_of(k) > abs(follower%departure%dq(fastest))/plan%unit_of(fastest)) &
         fastest = k
     end do

@@ -74,7 +74,7 @@ contains
     do i = 1, ways%count
       ways%rates(:, i) = particular + roots(i)*vt(n, :)
       where (abs(ways%rates(:, i)) <= round_off*maxval(abs(ways%rates(:, i)))) ways%rates(:, i) = 0.0_wp
-      ways%rates(:, i) = ways%rates(:, i)*plan%unit_of(plan%steps(block%unknowns)%coordinate)
+      ways%rates(:, i) = ways%rates(:, i)*plan%unit_of(block%coordinates)
     end do
   end subroutine find_ways
 
@@ -101,7 +101,7 @@ contains
     integer :: i, k
 
     do i = 1, size(block%unknowns)
-      k = plan%steps(block%unknowns(i))%coordinate
+      k = block%coordinates(i)
       state%dq(k) = rates(i)*plan%unit_of(k)
       state%ddq(k) = 0.0_wp
     end do

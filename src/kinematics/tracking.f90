@@ -115,7 +115,7 @@ contains
     else if (ways%count == 0) then
       text = text//', which it cannot leave'
     else
-      tracker%state%dq(plan%steps(block%unknowns)%coordinate) = ways%rates(:, 1)
+      tracker%state%dq(block%coordinates) = ways%rates(:, 1)
       call spread_velocities(plan, block%first_step, block%last_step, tracker%state)
       return
     end if
@@ -134,7 +134,7 @@ contains
       if (way > 1) text = text//' or '
       do i = 1, size(block%unknowns)
         if (i > 1) text = text//', '
-        text = text//'dq'//to_text(plan%steps(block%unknowns(i))%coordinate)//' = '//to_text(ways%rates(i, way), 5)
+        text = text//'dq'//to_text(block%coordinates(i))//' = '//to_text(ways%rates(i, way), 5)
       end do
     end do
     text = text//' (rad/s, m/s)'
@@ -378,7 +378,7 @@ contains
     integer :: k
 
     mine = .false.
-    mine(plan%steps(block%unknowns)%coordinate) = .true.
+    mine(block%coordinates) = .true.
     coordinates = pack([(k, k=1, plan%n_coordinates)], mine)
   end function coordinates_of
 

@@ -53,7 +53,7 @@ contains
 
     if (size(block%unknowns) == 0) return
     call closure_jacobian(plan, block, state, work%column_of, watch%trial_jacobian)
-    work%equations%a = watch%trial_jacobian
+    call copy(size(watch%trial_jacobian), watch%trial_jacobian, work%equations%a)
     call work%equations%factorize()
     watch%trial_pivot = least_pivot(work)
     watch%trial_sign = work%equations%determinant_sign()
@@ -74,26 +74,35 @@ contains
       worst = hopeless
       return
     end if
-    change = length_of(watch%trial_jacobian, watch%jacobian)/(harmless_change*watch%trial_pivot)
+    change = distance(size(watch%jacobian), watch%trial_jacobian, watch%jacobian)/(harmless_change*watch%trial_pivot)
     ! the closer look is worth its while where it may allow longer steps
     if (change > 0.5_wp) change = min(change, relative_change(work, watch)/trusted_change)
     worst = max(worst, change)
     if (watch%trial_sign /= watch%sign) worst = max(worst, 2.0_wp)
   end subroutine watch_step
 
-  !> Root of the sum of squares of the differences of two matrices.
-  pure real(wp) function length_of(a, b)
-    real(wp), intent(in) :: a(:, :), b(:, :)
-    integer :: i, j
+  ! Over arrays of known shape: no look at allocation, no strides.
 
-    length_of = 0.0_wp
-    do j = 1, size(a, 2)
-      do i = 1, size(a, 1)
-        length_of = length_of + (a(i, j) - b(i, j))**2
-      end do
+  !> Root of the sum of squares of the differences.
+  pure real(wp) function distance(n, a, b)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: a(n), b(n)
+    integer :: i
+
+    distance = 0.0_wp
+    do i = 1, n
+      distance = distance + (a(i) - b(i))**2
     end do
-    length_of = sqrt(length_of)
-  end function length_of
+    distance = sqrt(distance)
+  end function distance
+
+  pure subroutine copy(n, from, to)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: from(n)
+    real(wp), intent(out) :: to(n)
+
+    to = from
+  end subroutine copy
 
   !> The change of the Jacobian in a step divided by the Jacobian at its end, as a sum of squares in the units of
   !> the coordinates that make it least; hopeless where that is singular.
@@ -120,7 +129,7 @@ contains
 
     do b = 1, size(watches)
       associate (watch => watches(b))
-        watch%jacobian = watch%trial_jacobian
+        call copy(size(watch%jacobian), watch%trial_jacobian, watch%jacobian)
         watch%sign = watch%trial_sign
         watch%pivot = watch%trial_pivot
         watch%largest_pivot = max(watch%largest_pivot, watch%pivot)

@@ -12,19 +12,20 @@ module mech9_householder
 contains
 
   !> QR with column pivoting of any small matrix.
-  pure subroutine householder(m, n, a, pivot, tau, norms)
+  pure subroutine householder(m, n, a, pivot, tau, sign_of_det, norms)
     integer, intent(in) :: m, n
     real(wp), intent(inout) :: a(m, n)     !< the factors afterwards
     integer, intent(out) :: pivot(n)       !< column of the matrix at each place
     real(wp), intent(out) :: tau(n)        !< of the reflections
+    integer, intent(out) :: sign_of_det    !< of a square matrix: -1 or 1
     real(wp), intent(out) :: norms(n)      !< scratch
 
     if (m == 3 .and. n == 3) then
-      call factorize_3(a, pivot, tau, norms)
+      call factorize_3(a, pivot, tau, sign_of_det, norms)
     else if (m == 6 .and. n == 6) then
-      call factorize_6(a, pivot, tau, norms)
+      call factorize_6(a, pivot, tau, sign_of_det, norms)
     else
-      call factorize(m, n, a, pivot, tau, norms)
+      call factorize(m, n, a, pivot, tau, sign_of_det, norms)
     end if
   end subroutine householder
 
@@ -59,17 +60,17 @@ contains
     end if
   end subroutine back_substitute
 
-  pure subroutine factorize(m, n, a, pivot, tau, norms)
+  pure subroutine factorize(m, n, a, pivot, tau, sign_of_det, norms)
     integer, intent(in) :: m, n
     include 'factorization.inc'
   end subroutine factorize
 
-  pure subroutine factorize_3(a, pivot, tau, norms)
+  pure subroutine factorize_3(a, pivot, tau, sign_of_det, norms)
     integer, parameter :: m = 3, n = 3
     include 'factorization.inc'
   end subroutine factorize_3
 
-  pure subroutine factorize_6(a, pivot, tau, norms)
+  pure subroutine factorize_6(a, pivot, tau, sign_of_det, norms)
     integer, parameter :: m = 6, n = 6
     include 'factorization.inc'
   end subroutine factorize_6

@@ -25,6 +25,7 @@ module mech9_least_squares
     real(wp), allocatable, private :: tau(:)
     real(wp), allocatable, private :: reciprocal(:)   !< of the pivots that are not lost in round-off
     integer, private :: safe_rank = 0           !< columns that are independent beyond round-off
+    integer, private :: sign_of_det = 1         !< where the loops of our own are used
     real(wp), allocatable, private :: norms(:)
     real(wp), allocatable, private :: work(:)
   contains
@@ -58,7 +59,7 @@ contains
     integer :: info, j
 
     if (self%n < lapack_from) then
-      call householder(self%m, self%n, self%a, self%pivot, self%tau, self%norms)
+      call householder(self%m, self%n, self%a, self%pivot, self%tau, self%sign_of_det, self%norms)
     else
       self%pivot = 0
       call dgeqp3(self%m, self%n, self%a, self%m, self%pivot, self%tau, self%work, size(self%work), info)
@@ -218,6 +219,10 @@ contains
 
     sign = 1
     if (self%m /= self%n) return
+    if (self%n < lapack_from) then
+      sign = self%sign_of_det
+      return
+    end if
     do j = 1, self%n
       if (self%a(j, j) < 0.0_wp) sign = -sign
       if (abs(self%tau(j)) > 0.0_wp) sign = -sign   ! a reflection

@@ -1,5 +1,5 @@
 !> Structure and plan in words, for --structure, --check and --plan. Uses text, structure, mechanism,
-!> plan, mobility_report, planning.
+!> plan, mobility_report, planning, dynamics_plan.
 module mech9_plan_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text, some_of
@@ -8,6 +8,7 @@ module mech9_plan_text
   use mech9_plan, only: plan_type, block_type
   use mech9_mobility_report, only: mobility_report_type
   use mech9_planning, only: chain_names
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
   implicit none
   private
   public :: print_structure, print_mobility, print_mobility_report, print_plan
@@ -145,13 +146,14 @@ contains
     type(plan_type), intent(in) :: plan
     integer :: b, c, i
 
+    call print_arithmetic(unit, plan)
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))
         write (unit, '(a)') 'block '//to_text(b)//': links '// &
           to_text(plan%steps(block%first_step:block%last_step)%link)
         if (size(block%unknowns) > 0) then
           write (unit, '(a)') '  solved for: '// &
-            to_text([(plan%steps(block%unknowns(i))%coordinate, i=1, size(block%unknowns))])//' from '// &
+            to_text([(block%coordinates(i), i=1, size(block%unknowns))])//' from '// &
             to_text(block%equations)//' equations'
         else
           write (unit, '(a)') '  nothing to solve: an open chain'
@@ -171,5 +173,43 @@ contains
         ': the user procedure in plain values is called '//to_text(mechanism%pairs(i)%pair%user_calls())// &
         ' times a position or more, for its derivatives'
     end do
+    if (size(mechanism%bodies) > 0) call print_dynamics_plan(unit, mechanism, plan)
   end subroutine print_plan
+
+  !> Planar or spatial, and why.
+  subroutine print_arithmetic(unit, plan)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    real(wp) :: normal(3)
+
+    if (plan%planar%used) then
+      normal = plan%planar%axes(:, 3)
+      write (unit, '(a)') 'planar arithmetic: all pairs turn about or slide across the direction ('// &
+        to_text(normal(1), 6)//', '//to_text(normal(2), 6)//', '//to_text(normal(3), 6)//')'
+    else if (allocated(plan%planar%why_not)) then
+      write (unit, '(a)') 'spatial arithmetic: '//plan%planar%why_not
+    end if
+  end subroutine print_arithmetic
+
+  !> What Lagrange's equations leave out.
+  subroutine print_dynamics_plan(unit, mechanism, plan)
+    integer, intent(in) :: unit
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type) :: dynamics
+    logical :: has_mass(plan%n_links), idle(plan%n_links)
+    integer :: i
+
+    call make_dynamics_plan(mechanism, plan, dynamics)
+    has_mass = .false.
+    do i = 1, size(dynamics%bodies)
+      has_mass(dynamics%bodies(i)%link) = .true.
+    end do
+    ! link 1 does not move
+    has_mass(1) = .true.
+    idle = .not. dynamics%carries(plan%frame_of)
+    idle(1) = .false.
+    call print_kind(unit, .not. has_mass, 'without mass, no terms of inertia: links ')
+    call print_kind(unit, idle, 'no mass, load or later chain depends on their motion, left out: links ')
+  end subroutine print_dynamics_plan
 end module mech9_plan_text

@@ -66,7 +66,7 @@ contains
       associate (block => plan%blocks(b))
         call json%begin_object()
         call add_integers(json, 'unknowns', &
-                          [(plan%steps(block%unknowns(i))%coordinate, i=1, size(block%unknowns))])
+                          [(block%coordinates(i), i=1, size(block%unknowns))])
         call json%add('equations', block%equations)
         call json%add('chains', block%last_closure - block%first_closure + 1)
         call json%end_object()

@@ -18,7 +18,7 @@ module mech9_loaded_mechanisms
   implicit none
   private
   public :: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops
-  public :: without_loads, add_body, add_load, add_point_masses
+  public :: without_loads, load_everything, add_body, add_load, add_point_masses
 
 contains
 

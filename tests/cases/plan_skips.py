@@ -1,0 +1,77 @@
+"""What --plan says is left out, and that leaving it out changes no result.
+
+usage: plan_skips.py MECH9D
+"""
+import os
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, run, table_of
+
+# a crank-rocker with a massless coupler; on its rocker turns one more link about its mass centre
+FOUR_BAR = """
+&mechanism links=5, coordinates=5 /
+&structure cq=1, 5 /
+&pair coordinate=1, links=1,2, kind='revolute', point={o}, axis={normal} /
+&pair coordinate=2, links=2,3, kind='revolute', point={a}, axis={normal} /
+&pair coordinate=3, links=3,4, kind='revolute', point={b}, axis={normal} /
+&pair coordinate=4, links=1,4, kind='revolute', point={c}, axis={normal} /
+&pair coordinate=5, links=4,5, kind='revolute', point={b}, axis={last} /
+&initial coordinate=1, position=0, velocity=1 /
+&initial coordinate=5, position=0, velocity=0 /
+&body link=2, mass=1, centre={a}, inertia=0.1,0.1,0.1,0,0,0 /
+&body link=4, mass=2, centre={b}, inertia=0.1,0.1,{zz},0,0,0 /
+&body link=5, mass=1, centre={b}, inertia={inertia},0,0,0 /
+&gravity acceleration={g} /
+&time start=0, end=0.5, intervals=5 /
+&solver relative_tolerance=1e-11, absolute_tolerance=1e-11 /
+"""
+IN_XY = dict(normal='0,0,1', last='0,0,1', o='0,0,0', a='0.3,0.2,0', b='1.2,0.8,0', c='1.1,0,0', inertia='0.05,0.05,0.1', zz='0.1', g='0,-9.81,0')
+# the same in the plane x = 0: x, y, z have become y, z, x
+IN_YZ = dict(normal='1,0,0', last='1,0,0', o='0,0,0', a='0,0.3,0.2', b='0,1.2,0.8', c='0,1.1,0', inertia='0.1,0.05,0.05', zz='0.1', g='0,0,-9.81')
+# the last axis lies in the plane: the link beyond it turns with the rocker, which has so much less inertia
+ACROSS = {**IN_XY, 'last': '0,1,0', 'inertia': '0.05,0.1,0.05', 'zz': '0.05'}
+# tolerances of 1e-11 a step, some dozen steps
+TOLERANCE = 1e-9
+
+
+def main():
+    checks = Checks()
+    program = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'case.nml')
+
+        def write(values):
+            with open(path, 'w', encoding='utf-8') as file:
+                file.write(FOUR_BAR.format(**values))
+
+        def plan_of(values):
+            write(values)
+            done = run(program, path, '--plan', folder=folder)
+            checks.equal(done.returncode, 0, 'a plan is printed')
+            return done.stdout
+
+        flat = plan_of(IN_XY)
+        checks.true('planar arithmetic' in flat and '(0, 0, 1)' in flat, 'planar, and its normal', flat)
+        checks.true('without mass, no terms of inertia: links 3\n' in flat, 'the massless link', flat)
+        checks.true('left out: links' in flat and 'links 3\n' in flat.split('left out:')[-1], 'its motion is not needed', flat)
+        checks.true('planar arithmetic' in plan_of(IN_YZ), 'planar in another plane')
+        across = plan_of(ACROSS)
+        checks.true('spatial arithmetic: pair 5 ' in across, 'the pair that has another axis is named', across)
+
+        tables = []
+        for values in IN_XY, IN_YZ, ACROSS:
+            write(values)
+            tables.append(table_of(program, path))
+        checks.true(abs(tables[0]['q1'][-1]) > 0.1, 'it moves')
+        for k in range(1, 5):
+            for order in '', 'd', 'dd':
+                name = f'{order}q{k}'
+                checks.near(tables[1][name], tables[0][name], TOLERANCE, f'{name}: one plane and another')
+                checks.near(tables[2][name], tables[0][name], TOLERANCE, f'{name}: planar and spatial')
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,183 @@
+!> Planar arithmetic gives what spatial arithmetic gives, to round-off, whatever the plane; and it is used where
+!> all pairs of a mechanism have one plane, and only there.
+program test_planar_arithmetic
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_random_geometry, only: random_rotation
+  use mech9_point, only: point_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_motion, only: point_motion
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations
+  use mech9_energy, only: kinetic_energy, potential_energy
+  use mech9_sample_mechanisms, only: general_loop
+  use mech9_mechanism_families, only: axis_type, home_mechanism, planar_axes
+  use mech9_loaded_mechanisms, only: loaded_fig1, five_bar, open_chain, load_everything
+  use mech9_testing, only: tester_type
+  implicit none
+
+  !> All that an evaluation of the motion gives.
+  type :: result_type
+    logical :: planar = .false.
+    real(wp) :: conditioning = 1.0_wp
+    real(wp), allocatable :: q(:), dq(:), ddq(:)
+    real(wp), allocatable :: points(:, :)
+    real(wp), allocatable :: coefficients(:, :), velocity_terms(:), forces(:)
+    real(wp) :: energies(2) = 0.0_wp
+  end type result_type
+
+  type(tester_type) :: test
+
+  call known_mechanisms()
+  call any_plane()
+  call no_plane()
+  call test%finish()
+
+contains
+
+  subroutine known_mechanisms()
+    type(mechanism_type) :: mechanism
+
+    call loaded_fig1(5, mechanism)
+    call compare(mechanism, .true., 'two chains one after the other')
+    call loaded_fig1(1, mechanism)
+    call compare(mechanism, .true., 'two chains together')
+    call five_bar(mechanism)
+    call compare(mechanism, .true., 'two freedoms')
+  end subroutine known_mechanisms
+
+  !> Two loops with sliding pairs and an open end, in the plane z = 0 and turned into any other, the links
+  !> at different heights, a pair given either way round.
+  subroutine any_plane()
+    integer, parameter :: links(2, 8) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 3, 5, 6, 5, 6, 1, 5, 7], [2, 8])
+    type(mechanism_type) :: mechanism
+    type(random_type) :: random
+    type(axis_type) :: axes(8)
+    real(wp) :: turn(3, 3), side
+    integer :: trial, k, slide_each
+
+    do trial = 1, 12
+      slide_each = mod(trial, 4)
+      if (slide_each == 1) slide_each = 5
+      axes = planar_axes(8, slide_each, random)
+      turn = random_rotation(random)
+      do k = 1, 8
+        axes(k)%point(3) = random%symmetric()
+        ! against the normal as well as along it
+        side = random%symmetric()
+        if (.not. axes(k)%slides) axes(k)%along = sign(1.0_wp, side)*axes(k)%along
+        if (trial <= 4) cycle
+        axes(k)%point = matmul(turn, axes(k)%point)
+        axes(k)%along = matmul(turn, axes(k)%along)
+      end do
+      call home_mechanism(7, links, axes, [1, 8], mechanism)
+      call load_everything(random, mechanism)
+      call compare(mechanism, .true., 'any plane')
+    end do
+  end subroutine any_plane
+
+  !> Axes that have no plane in common, by as little as may be meant.
+  subroutine no_plane()
+    type(mechanism_type) :: mechanism
+    type(random_type) :: random
+    type(axis_type) :: axes(3)
+
+    call open_chain(mechanism)
+    call compare(mechanism, .false., 'a spatial chain')
+    axes = planar_axes(3, 3, random)
+    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], mechanism)
+    call load_everything(random, mechanism)
+    call compare(mechanism, .true., 'an open planar chain')
+    axes(2)%along(1) = 1.0e-9_wp
+    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], mechanism)
+    call load_everything(random, mechanism)
+    call compare(mechanism, .false., 'an axis that is not quite along the normal')
+    axes(2)%along(1) = 0.0_wp
+    axes(3)%along = [1.0_wp, 0.0_wp, 1.0e-9_wp]
+    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], mechanism)
+    call load_everything(random, mechanism)
+    call compare(mechanism, .false., 'a way that is not quite across the normal')
+    call general_loop(mechanism)
+    call load_everything(random, mechanism)
+    call compare(mechanism, .false., 'a spatial loop')
+  end subroutine no_plane
+
+  !> Both arithmetics on one mechanism. Each number is a sum of some dozens of terms, and what is solved for
+  !> is known to round-off over the conditioning of the chains, accelerations to that once more.
+  subroutine compare(mechanism, is_planar, why)
+    type(mechanism_type), intent(inout) :: mechanism
+    logical, intent(in) :: is_planar
+    character(len=*), intent(in) :: why
+    type(result_type) :: flat, space
+    real(wp) :: tolerance
+
+    if (allocated(mechanism%points)) deallocate (mechanism%points)
+    allocate (mechanism%points(1))
+    mechanism%points(1) = point_type('P', mechanism%structure%n_links, [0.3_wp, -0.2_wp, 0.5_wp])
+    call evaluate(mechanism, .false., why, flat)
+    call evaluate(mechanism, .true., why, space)
+    call test%is_true((flat%planar .eqv. is_planar) .and. .not. space%planar, why//': is it planar')
+    call test%near(flat%conditioning, space%conditioning, 1.0e-12_wp, why//': conditioning')
+    tolerance = 1.0e-14_wp/space%conditioning
+    call test%is_true(tolerance < 1.0e-12_wp, why//': well conditioned')
+    call check(flat%q, space%q, tolerance, why//': positions')
+    call check(flat%dq, space%dq, tolerance, why//': rates')
+    tolerance = 10.0_wp*tolerance
+    call check(flat%ddq, space%ddq, tolerance, why//': accelerations')
+    call check(reshape(flat%points, [9]), reshape(space%points, [9]), tolerance, why//': a point')
+    call check(reshape(flat%coefficients, [size(flat%coefficients)]), &
+               reshape(space%coefficients, [size(space%coefficients)]), tolerance, why//': coefficients of motion')
+    call check(flat%velocity_terms, space%velocity_terms, tolerance, why//': velocity terms')
+    call check(flat%forces, space%forces, tolerance, why//': generalized forces')
+    call check(flat%energies, space%energies, tolerance, why//': energies')
+  end subroutine compare
+
+  !> The motion of a mechanism at its start, with some rates.
+  subroutine evaluate(mechanism, in_space, why, result)
+    type(mechanism_type), intent(in) :: mechanism
+    logical, intent(in) :: in_space
+    character(len=*), intent(in) :: why
+    type(result_type), intent(out) :: result
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(error_type), allocatable :: err
+    integer :: i
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err, in_space)
+    call test%no_error(err, why//': plan')
+    if (allocated(err)) return
+    call make_dynamics_plan(mechanism, plan, dynamics)
+    work = new_lagrange_work(plan, dynamics)
+    state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, size(plan%independent))]
+    call find_motion(mechanism, plan, dynamics, state, work, err)
+    call test%no_error(err, why//': motion')
+    if (allocated(err)) return
+    call complete_accelerations(plan, dynamics, work, state)
+    result%planar = plan%planar%used
+    do i = 1, size(work%blocks)
+      result%conditioning = min(result%conditioning, work%blocks(i)%equations%conditioning())
+    end do
+    result%q = state%q
+    result%dq = state%dq
+    result%ddq = state%ddq
+    result%coefficients = work%coefficients
+    result%velocity_terms = work%velocity_terms
+    result%forces = work%forces
+    allocate (result%points(3, 3))
+    call point_motion(plan, state, mechanism%points(1), result%points(:, 1), result%points(:, 2), result%points(:, 3))
+    result%energies = [kinetic_energy(dynamics, state), potential_energy(mechanism, plan, state, work%view)]
+  end subroutine evaluate
+
+  subroutine check(numbers, expected, tolerance, why)
+    real(wp), intent(in) :: numbers(:), expected(:), tolerance
+    character(len=*), intent(in) :: why
+
+    call test%near(maxval(abs(numbers - expected))/max(1.0_wp, maxval(abs(expected))), 0.0_wp, tolerance, why)
+  end subroutine check
+end program test_planar_arithmetic
