@@ -149,7 +149,7 @@ contains
       text = 'The two runs have no time in common.'//eol
       return
     end if
-    text = 'Compared at the '//to_text(comparison%times)//' times that both runs have: '
+    text = 'Compared at '//to_text(comparison%times)//' common times: '
     if (size(comparison%columns) == 0) then
       text = text//'all columns are the same, '
       if (comparison%alike == 0) text = text//'to the last bit.'//eol

@@ -139,7 +139,7 @@ def test_failed_run(session):
     checks.true('dead point' in said[1], 'a rocker too short for a full turn is told', said[1])
     rows = re.search(r'the last 1 of (\d+) rows', said[2])
     checks.true(rows and 0 < int(rows.group(1)) < 101, 'the results up to there are shown', said[2])
-    checks.true(f'Compared at the {rows.group(1)} times' in said[3], 'and compared', said[3])
+    checks.true(f'Compared at {rows.group(1)} common times' in said[3], 'and compared', said[3])
     said, _ = session.after_run(long, 'run', 'show 1', 'compare', 'done', code=5)
     checks.true('assembled' in said[1], 'a rocker that reaches nothing is told', said[1])
     checks.true('no results' in said[2] and 'no results' in said[3], 'there is nothing to look at', said[2:4])
@@ -175,6 +175,19 @@ def test_interrupted(session):
         session.checks.equal(terminal.ends(), 130, 'its exit code tells that the run was interrupted')
 
 
+def test_simple_terminal(session):
+    """80 x 24, no colour wanted, and a cursor that only goes on: nothing but letters, in lines that fit."""
+    with Terminal([session.program, '--edit', 'fig1.nml'], folder=session.folder, term='dumb', NO_COLOR='1') as terminal:
+        for prompt, line in (('right: ', ''), ('[both]: ', ''), (']: ', ''), (PROMPT, 'show'), (PROMPT, 'plot q1'), (PROMPT, '?'),
+                             (PROMPT, 'time end = 2'), (PROMPT, 'run'), (PROMPT, 'compare'), (PROMPT, 'done')):
+            session.checks.true(terminal.expect(prompt), f'dumb terminal: asks {prompt!r}', terminal.seen)
+            terminal.type(line + '\r')
+        session.checks.equal(terminal.ends(), 0, 'dumb terminal: to the end')
+        session.checks.true('\x1b' not in terminal.seen, 'dumb terminal: no sequences', repr(terminal.seen))
+        long = [line for line in terminal.plain().split('\n') if len(line) > 80]
+        session.checks.equal(long, [], 'dumb terminal: every line fits')
+
+
 def main():
     checks = Checks()
     kinematics, dynamics = sys.argv[1:3]
@@ -186,6 +199,8 @@ def main():
     if available():
         with Session(checks, kinematics, 'fig1') as session:
             test_interrupted(session)
+        with Session(checks, kinematics, 'fig1') as session:
+            test_simple_terminal(session)
     else:
         print('no pseudo-terminals here: Ctrl-C was not typed')
     checks.finish()
