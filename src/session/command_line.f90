@@ -299,10 +299,25 @@ contains
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (options%has('no-write') .and. (options%has('table') .or. options%has('hdf5') .or. options%has('plot'))) then
       call raise(err, exit_usage, '--no-write contradicts --table, --hdf5 and --plot')
+    else if (options%has('animate') .and. answer_wanted(options) /= '') then
+      call raise(err, exit_usage, '--animate shows a run, and --'//answer_wanted(options)//' makes none; leave one of them out')
     else if (options%converses()) then
       call judge_conversation(program_name, options, err)
     end if
   end subroutine judge
+
+  !> The first of the options that answer without a run; empty where none is given.
+  pure function answer_wanted(options) result(name)
+    type(command_line_type), intent(in) :: options
+    character(len=:), allocatable :: name
+    character(len=*), parameter :: answers(*) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'graph']
+    integer :: i
+
+    name = ''
+    do i = size(answers), 1, -1
+      if (options%has(trim(answers(i)))) name = trim(answers(i))
+    end do
+  end function answer_wanted
 
   !> Whether a conversation is asked for, instead of work on a data file as it is.
   pure logical function converses(self)

@@ -347,6 +347,8 @@ def check_refusals(checks, programs, folder):
             (['--sketch', 'a.svg', '--view', '0,0,0'], 2, 'is no view'),
             (['--sketch', 'a.svg', '--view', 'xx'], 2, 'is no view'),
             (['--sketch', 'a.svg', '--set', "output.view='1,2'"], 3, 'is no view'),
+            (['--animate', 'a.html', '--check'], 2, '--check makes none'),
+            (['--animate', 'a.html', '--range'], 2, '--range makes none'),
             (['--animate', 'a.mp4'], 2, '.html, .svg or .gif'),
             (['--set', "output.animation='a'"], 3, '.html, .svg or .gif'),
             (['--sketch', 'nowhere/a.svg'], 8, 'nowhere/a.svg'),
