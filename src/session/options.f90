@@ -39,7 +39,7 @@ module mech9_options
     option_type('graph', needed_argument, 'FILE', any_text, .false., both, &
                 'draw links, pairs and blocks as a graph: .dot, .svg, .png or .pdf'), &
     option_type('table', needed_argument, 'PATH', any_text, .false., both, &
-                'write the table there; - is standard output; a name in .csv: with commas'), &
+                'write the table there; - is standard output; .csv: with commas'), &
     option_type('hdf5', needed_argument, 'PATH', any_text, .false., both, &
                 'write the results as an HDF5 file there'), &
     option_type('plot', needed_argument, '[TARGET:]NAMES', any_text, .true., both, &
