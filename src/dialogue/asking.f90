@@ -10,7 +10,7 @@ module mech9_asking
   use mech9_answer, only: read_answer, yes_or_no
   use mech9_draft, only: draft_type, integer_of
   use mech9_draft_check, only: problem_with
-  use mech9_outline, only: drop_empty_guesses
+  use mech9_outline, only: ways, drop_empty_guesses
   use mech9_interview, only: most_parts
   use mech9_questions, only: question_type, entry_name, is_seldom, label_of, ask_item, ask_seldom, ask_way
   use mech9_question_words, only: default_type, default_of, prompt_of, heading_of, gist_of, help_of, words_for, &
@@ -264,7 +264,6 @@ contains
     class(conversation_type), intent(inout) :: conversation
     character(len=*), intent(in) :: line
     character(len=:), allocatable :: way
-    character(len=7), parameter :: ways(3) = [character(len=7) :: 'pairs', 'matrix', 'vectors']
 
     way = lower(line(:min(len(line), 20)))
     if (way == '') way = trim(conversation%interview%outline%way)

@@ -103,7 +103,9 @@ contains
       text = text//' q'//to_text(k)//' = '//to_text(start%q(k)/unit)
       if (k < size(mechanism%pairs)) text = text//','
     end do
-    call conversation%say(text//'. (Another assembly? Go back and give guesses.)')
+    text = text//'.'
+    if (size(plan%closures) > 0) text = text//' (Another assembly? Go back and give guesses.)'
+    call conversation%say(text)
     call report_mobility(mechanism, plan, start, report)
     call print_mobility_report(error_unit, plan, report)
   end subroutine tell_start

@@ -1,5 +1,5 @@
 !> A conversation as it stands, and how it is led: what is said and heard, kept in a file, and common to all
-!> questions. Uses error, line_input, draft_file, interview, paragraph, question_words, summary.
+!> questions. Uses error, line_input, draft, draft_file, interview, paragraph, question_words, summary.
 module mech9_conversation
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
@@ -8,7 +8,6 @@ module mech9_conversation
   use mech9_line_input, only: line_input_type, line_read
   use mech9_draft, only: draft_type
   use mech9_interview, only: interview_type
-  use mech9_questions, only: label_of
   use mech9_draft_file, only: save_draft, stem_of_title, free_draft_path
   use mech9_paragraph, only: print_paragraph
   use mech9_summary, only: print_summary
@@ -100,7 +99,7 @@ contains
       call self%say('(What you type is kept in '//self%draft_path//'.)')
     end if
     associate (interview => self%interview)
-      call save_draft(interview%draft, self%draft_path, label_of(interview%due()), self%program_name, err)
+      call save_draft(interview%draft, self%draft_path, interview%bookmark(), self%program_name, err)
     end associate
     if (.not. allocated(err)) return
     self%cannot_keep = .true.

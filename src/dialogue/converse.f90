@@ -50,7 +50,7 @@ contains
     class(task_type), intent(in) :: task
     type(command_line_type), intent(in) :: options
     integer, intent(out) :: code
-    character(len=:), allocatable :: path, label
+    character(len=:), allocatable :: path, bookmark
     type(draft_type) :: draft
     type(diagnostics_type) :: diagnostics
 
@@ -61,12 +61,12 @@ contains
     conversation%data_path = ''
     conversation%heading = ''
     call draft%clear()
-    label = ''
+    bookmark = ''
     path = options%argument('resume')
     if (path == '') path = options%argument('edit')
     if (path == '') path = options%file
     if (path /= '') then
-      call load_draft(path, most_parts, draft, label, diagnostics)
+      call load_draft(path, most_parts, draft, bookmark, diagnostics)
       if (diagnostics%failed()) then
         call diagnostics%report(error_unit)
         code = diagnostics%code()
@@ -76,13 +76,13 @@ contains
       conversation%data_path = path_without_draft(path)
       conversation%may_overwrite = path == conversation%data_path
       ! a data file stays as it is until the end; what was interrupted goes on in its own file
-      if (label /= '') conversation%draft_path = path
+      if (bookmark /= '') conversation%draft_path = path
     end if
     call greet(conversation, task%program_name, path)
     call conversation%interview%start(task%program_name, draft)
     if (path /= '') then
       conversation%interview%at = size(conversation%interview%questions)
-      call conversation%interview%go_to(label)
+      call conversation%interview%open_at(bookmark)
     end if
   end subroutine begin
 

@@ -22,11 +22,11 @@ module mech9_draft_file
 
 contains
 
-  !> Write a draft as a data file. With the label of a question it is one that goes on there.
-  subroutine save_draft(draft, path, label, program_name, err)
+  !> Write a draft as a data file. With a bookmark it is one that goes on there.
+  subroutine save_draft(draft, path, bookmark, program_name, err)
     type(draft_type), intent(in) :: draft
     character(len=*), intent(in) :: path
-    character(len=*), intent(in) :: label          !< empty: the data file is finished
+    character(len=*), intent(in) :: bookmark       !< empty: the data file is finished
     character(len=*), intent(in) :: program_name
     type(error_type), allocatable, intent(out) :: err
     type(error_type), allocatable :: at_close
@@ -35,7 +35,7 @@ contains
     character(len=:), allocatable :: remark
 
     remark = ''
-    if (label /= '') remark = mark//label//' ('//program_name//' --resume '//path//')'
+    if (bookmark /= '') remark = mark//bookmark//' ('//program_name//' --resume '//path//')'
     call write_draft(draft, remark, written)
     call file%open(path, err)
     if (allocated(err)) return
@@ -44,18 +44,17 @@ contains
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine save_draft
 
-  !> Read a data file as a draft. `label` is that of the question at which it goes on; empty where it does
-  !> not tell. What cannot be read stands in the diagnostics.
-  subroutine load_draft(path, most_parts, draft, label, diagnostics)
+  !> Read a data file as a draft, and its bookmark, empty where it has none. What cannot be read stands in the diagnostics.
+  subroutine load_draft(path, most_parts, draft, bookmark, diagnostics)
     character(len=*), intent(in) :: path
     integer, intent(in) :: most_parts              !< links, or coordinates, that a conversation can hold
     type(draft_type), intent(out) :: draft
-    character(len=:), allocatable, intent(out) :: label
+    character(len=:), allocatable, intent(out) :: bookmark
     type(diagnostics_type), intent(inout) :: diagnostics
     type(document_type) :: document
     integer :: first, last
 
-    label = ''
+    bookmark = ''
     call read_document(path, document, diagnostics)
     call draft_from_document(document, draft)
     if (max(draft%number('mechanism', 1, 'links'), draft%number('mechanism', 1, 'coordinates'), &
@@ -66,7 +65,7 @@ contains
     if (first == 0) return
     first = first + len(mark) + 1
     last = index(document%source%text(first:), ' (')
-    if (last > 0) label = document%source%text(first:first + last - 2)
+    if (last > 0) bookmark = document%source%text(first:first + last - 2)
   end subroutine load_draft
 
   !> Remove a file; whether it was there or not does not matter.

@@ -1,6 +1,7 @@
-!> A draft from an existing data file: what it says and the comments above its groups. Uses text, source,
+!> A draft from an existing data file: what it says and the comments above its groups. Uses error, text, source,
 !> document, checker, lookup, matrix_items, draft, diagnostics.
 module mech9_draft_source
+  use mech9_error, only: place_type
   use mech9_text, only: to_text, join, string_type
   use mech9_source, only: source_type
   use mech9_document, only: document_type, group_type, item_type, value_type, value_bad
@@ -23,6 +24,7 @@ contains
     type(draft_type), intent(out) :: draft
     type(document_type) :: checked
     type(diagnostics_type) :: ignored
+    character(len=:), allocatable :: comment
     integer :: i, number
 
     call draft%clear()
@@ -33,19 +35,23 @@ contains
     do i = 1, size(checked%groups)
       call take_group(checked, checked%groups(i), draft)
     end do
-    if (size(checked%groups) > 0) draft%head = comment_above(document%source, checked%groups(1)%span%first, .true.)
+    if (size(checked%groups) == 0) return
+    call find_comment(document%source, checked%groups(1)%span%first, .true., comment)
+    draft%head = comment
   end subroutine draft_from_document
 
   pure subroutine take_group(document, group, draft)
     type(document_type), intent(in) :: document
     type(group_type), intent(in) :: group
     type(draft_type), intent(inout) :: draft
+    character(len=:), allocatable :: comment
     integer :: i, place, number
 
     call draft%add(group%name)
     place = draft%count_of(group%name)
     number = draft%find(group%name, place)
-    draft%groups(number)%comment = comment_above(document%source, group%span%first, .false.)
+    call find_comment(document%source, group%span%first, .false., comment)
+    draft%groups(number)%comment = comment
     if (group%name == 'structure') call take_matrix(document, group, draft)
     do i = 1, size(group%items)
       associate (item => group%items(i))
@@ -89,53 +95,49 @@ contains
     text = join(words, ', ')
   end function values_text
 
-  !> The comment lines right above a byte; with `to_the_top` those above a blank line over them.
-  pure function comment_above(source, byte, to_the_top) result(comment)
+  !> The comment lines right above a byte; with `to_the_top` those that stand over them, above a blank line.
+  pure subroutine find_comment(source, byte, to_the_top, comment)
     type(source_type), intent(in) :: source
     integer, intent(in) :: byte
     logical, intent(in) :: to_the_top
-    character(len=:), allocatable :: comment
-    integer :: line, first, last, top
+    character(len=:), allocatable, intent(out) :: comment
+    type(place_type) :: position
+    integer :: line, first, last
 
-    comment = ''
-    associate (position => source%place(byte))
-      top = position%line
-    end associate
-    do line = top - 1, 1, -1
+    position = source%place(byte)
+    line = position%line - 1
+    do while (line >= 1)
       call source%line_bounds(line, first, last)
       if (.not. is_comment(source%text(first:last))) exit
-      top = line
+      line = line - 1
     end do
     if (to_the_top) then
-      if (line < 1) return
-      top = 1
-      last = line
+      call take_lines(source, 1, line, comment)
     else
-      associate (position => source%place(byte))
-        last = position%line - 1
-      end associate
+      call take_lines(source, line + 1, position%line - 1, comment)
     end if
-    comment = lines_of(source, top, last)
-  end function comment_above
+  end subroutine find_comment
 
-  !> Comment lines and blank ones; none where something else stands among them.
-  pure function lines_of(source, from, to) result(text)
+  !> Comment lines and blank ones, without a blank one at the end; none where something else stands among them.
+  pure subroutine take_lines(source, from, to, text)
     type(source_type), intent(in) :: source
     integer, intent(in) :: from, to
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(out) :: text
     integer :: line, first, last
 
     text = ''
     do line = from, to
       call source%line_bounds(line, first, last)
-      if (source%text(first:last) /= '' .and. .not. is_comment(source%text(first:last))) then
+      if (len_trim(source%text(first:last)) == 0) then
+        if (line < to) text = text//line_end
+      else if (is_comment(source%text(first:last))) then
+        text = text//source%text(first:last)//line_end
+      else
         text = ''
         return
       end if
-      if (line == to .and. source%text(first:last) == '') exit
-      text = text//source%text(first:last)//line_end
     end do
-  end function lines_of
+  end subroutine take_lines
 
   pure logical function is_comment(line)
     character(len=*), intent(in) :: line

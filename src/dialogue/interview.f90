@@ -2,14 +2,14 @@
 !> Uses text, grammar, structure, draft, draft_check, outline, questions, question_words.
 module mech9_interview
   use mech9_text, only: to_text
-  use mech9_grammar, only: group_table, find_item_rows
+  use mech9_grammar, only: group_table, item_table, find_item_rows
   use mech9_structure, only: structure_type
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_draft, only: draft_type, plain_name
   use mech9_draft_check, only: fault_type, read_draft_structure
-  use mech9_outline, only: outline_type, new_outline, make_groups, drop_foreign
+  use mech9_outline, only: outline_type, ways, new_outline, make_groups, drop_foreign
   use mech9_questions, only: question_type, make_questions, label_of, find_question, entry_name, &
-                             ask_item, check_structure, check_start, check_all
+                             is_seldom, ask_item, check_structure, check_start, check_all
   use mech9_question_words, only: is_lacking
   implicit none
   private
@@ -40,6 +40,8 @@ module mech9_interview
     procedure :: correct
     procedure :: note
     procedure :: unnote
+    procedure :: bookmark
+    procedure :: open_at
   end type interview_type
 
 contains
@@ -207,4 +209,34 @@ contains
     call self%draft%take_away(trim(group_table(question%group_row)%name), question%place, entry_name(question))
     call self%refresh(label_of(question))
   end subroutine unnote
+  !> What must be known beside the draft to go on with it: the question that is due, the way of the
+  !> structure, and the seldom names that are asked for: "pair(1).axis; pairs; pair.zero pair.moving_point".
+  pure function bookmark(self) result(text)
+    class(interview_type), intent(in) :: self
+    character(len=:), allocatable :: text
+    integer :: row
+
+    text = label_of(self%questions(self%at))//'; '//trim(self%outline%way)//';'
+    do row = 1, size(item_table)
+      if (is_seldom(self%outline, item_table(row)) .and. self%outline%asked(row)) &
+        text = text//' '//trim(item_table(row)%group)//'.'//trim(item_table(row)%name)
+    end do
+  end function bookmark
+
+  !> Go on where a bookmark says, as far as it means anything.
+  pure subroutine open_at(self, text)
+    class(interview_type), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    integer :: first, second, row
+
+    first = index(text, ';')
+    if (first == 0) return
+    second = first + index(text(first + 1:)//';', ';')
+    if (any(ways == adjustl(text(first + 1:second - 1)))) self%outline%way = adjustl(text(first + 1:second - 1))
+    do row = 1, size(item_table)
+      if (index(text(second:)//' ', ' '//trim(item_table(row)%group)//'.'//trim(item_table(row)%name)//' ') > 0) &
+        self%outline%asked(row) = .true.
+    end do
+    call self%refresh(text(:first - 1))
+  end subroutine open_at
 end module mech9_interview

@@ -7,12 +7,15 @@ module mech9_outline
   use mech9_draft, only: draft_type, plain_name, unquoted
   implicit none
   private
-  public :: outline_type, new_outline, make_groups, drop_empty_guesses, drop_foreign, kind_in
+  public :: outline_type, ways, new_outline, make_groups, drop_empty_guesses, drop_foreign, kind_in
 
-  !> How the structure is given.
+  !> How the structure can be given: the links of each pair, the rows of the coincidence matrix, the second set.
+  character(len=7), parameter :: ways(3) = [character(len=7) :: 'pairs', 'matrix', 'vectors']
+
+  !> What is known beside the draft.
   type :: outline_type
     character(len=6) :: program_name = ''
-    character(len=7) :: way = 'pairs'                       !< pairs, matrix or vectors
+    character(len=7) :: way = ways(1)                       !< one of `ways`
     logical :: asked(size(item_table)) = .false.            !< seldom names that are asked for
     logical :: guesses = .false.                            !< dependent coordinates at the start are asked for
     logical :: structure_known = .false.

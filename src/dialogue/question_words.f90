@@ -1,10 +1,11 @@
 !> Questions in words: headings, prompts, what Enter answers, and the help on each; all from the table of
-!> names. Uses text, grammar, data_help, draft, outline, questions.
+!> names. Uses text, grammar, data_help, draft, topics, outline, questions.
 module mech9_question_words
   use mech9_text, only: to_text, string_type
   use mech9_grammar, only: group_table, item_table, rows_of_group, words_of
   use mech9_data_help, only: values_text, default_text
   use mech9_draft, only: draft_type, unquoted
+  use mech9_topics, only: groups_of_topic
   use mech9_outline, only: outline_type, kind_in
   use mech9_questions, only: question_type, entry_name, is_seldom, ask_item, ask_seldom, ask_way, &
                              ask_guesses
@@ -45,12 +46,12 @@ contains
         default%text = ''''//table_file//''''
       else if (is_needed(question, draft, outline)) then
         default%text = likely_value(question, draft)
+      else if (row%needed) then
+        default%shown = 'none'         ! of a group that can be left out
       else if (index(row%default, '(') /= 1 .and. row%default /= '''''') then
         default%shown = unquoted(trim(row%default))
-      else if (.not. row%needed) then
-        default%shown = default_text(row)
       else
-        default%shown = 'none'
+        default%shown = default_text(row)
       end if
       default%noted = default%text /= '' .and. .not. draft%has(group, question%place, name)
       if (default%text /= '') default%shown = unquoted(default%text)
@@ -174,6 +175,8 @@ contains
 
     associate (row => item_table(question%row))
       text = '  '//trim(row%name)
+      if (.not. group_table(question%group_row)%repeats .and. size(groups_of_topic(question%topic)) > 1) &
+        text = '  '//trim(row%group)//', '//trim(row%name)
       if (question%line > 0) text = '  row '//to_text(question%line)//' of c'
       if (row%group == 'pair' .and. row%name == 'links') &
         text = '  links of pair '//draft%value('pair', question%place, 'coordinate')
@@ -288,7 +291,7 @@ contains
         if (unit /= '') unit = ' ('//unit//')'
         text = 'if not given: '//default_text(row)
         if (is_needed(question, draft, outline)) text = 'must be given'
-        text = gist_of(question)//line_end//'Takes '//values_text(row)//unit//'; '//text//'.'//line_end// &
+        text = gist_of(question)//line_end//'Values: '//values_text(row)//unit//'; '//text//'.'//line_end// &
                'For example: '//unquoted(trim(row%example))
       end associate
     end select

@@ -1,0 +1,243 @@
+"""Whole conversations with mech9k and mech9d: through pipes and at a terminal, with wrong answers, steps back,
+corrections, interruptions and resumptions; the saved data files repeat the tables to the last bit.
+
+usage: conversation.py MECH9K MECH9D
+"""
+import os
+import shutil
+import signal
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import dialogue_scripts as scripts
+from dialogue import Terminal, answers_of, has_terminals, piped, prompts_in_order
+from mech9_cases import TREE, Checks, run
+
+DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
+EXAMPLE = {'fig_1': os.path.join(TREE, 'examples', 'fig1', 'fig1.nml'),
+           'simple_pendulum': os.path.join(TREE, 'examples', 'pendulum', 'pendulum.nml')}
+
+
+def rows_of(path):
+    """The lines of a table that are no comments, as they are written."""
+    with open(path, encoding='utf-8') as file:
+        return [line for line in file if not line.startswith('#')]
+
+
+def text_of(path):
+    with open(path, encoding='utf-8') as file:
+        return file.read()
+
+
+class Talks:
+    """Leads conversations, each in an empty folder, and counts the checks."""
+
+    def __init__(self, mech9k, mech9d):
+        self.mech9k, self.mech9d, self.checks = os.path.abspath(mech9k), os.path.abspath(mech9d), Checks()
+
+    def sound(self, text, why):
+        trouble = ('Backtrace', 'Fortran runtime error', 'SIGSEGV', 'AddressSanitizer', 'runtime error:')
+        self.checks.true(not any(word in text for word in trouble), f'{why}: no crash', text[-2000:])
+
+    def pipe(self, program, steps, why, code=DONE, arguments=(), folder=None):
+        """A conversation through a pipe, all of whose prompts come in order."""
+        done = piped(program, *arguments, folder=folder, answers=answers_of(steps))
+        self.checks.true(done.returncode == code, f'{why}: exit code {code}', f'it was {done.returncode}\n{done.stderr}')
+        self.checks.true(prompts_in_order(done.stderr, steps) is None, f'{why}: every prompt comes in its turn',
+                         f'{prompts_in_order(done.stderr, steps)} is missing\n{done.stderr}')
+        self.checks.true(max(map(len, done.stderr.splitlines())) < 80, f'{why}: lines fit 80 columns',
+                         max(done.stderr.splitlines(), key=len))
+        self.sound(done.stderr, why)
+        return done
+
+    def same_as_example(self, folder, program, stem, why):
+        """The table of the conversation, of its data file run again, and of the example are the same."""
+        again = os.path.join(folder, 'again.dat')
+        for path in (os.path.join(folder, stem + '.nml'), EXAMPLE[stem]):
+            done = run(program, path, '--table', again, '--quiet', folder=folder)
+            self.checks.true(done.returncode == DONE and done.stderr == '', f'{why}: {path} runs', done.stderr)
+            table = os.path.join(folder, stem + '.dat')
+            self.checks.true(os.path.exists(table) and rows_of(table) == rows_of(again),
+                             f'{why}: the table of {path} is the same to the last bit')
+        self.checks.true(not any(name.endswith('.draft.nml') for name in os.listdir(folder)),
+                         f'{why}: no draft is left', os.listdir(folder))
+
+
+def through_pipes(talks):
+    for name, steps in (('pairs', scripts.FIG1), ('the matrix', scripts.FIG1_BY_MATRIX),
+                        ('the second set', scripts.FIG1_BY_VECTORS), ('errors', scripts.with_errors(scripts.FIG1))):
+        with tempfile.TemporaryDirectory() as folder:
+            why = f'Fig. 1 by {name}'
+            talks.pipe(talks.mech9k, steps, why, folder=folder)
+            talks.same_as_example(folder, talks.mech9k, 'fig_1', why)
+    with tempfile.TemporaryDirectory() as folder:
+        talks.pipe(talks.mech9d, scripts.PENDULUM, 'the pendulum', folder=folder)
+        talks.same_as_example(folder, talks.mech9d, 'simple_pendulum', 'the pendulum')
+
+
+def cut_off_anywhere(talks):
+    """An input that ends after any answer leaves a file from which the conversation goes on, to the
+    same data file."""
+    for program, steps, stem in ((talks.mech9k, scripts.FIG1, 'fig_1'),
+                                 (talks.mech9k, scripts.FIG1_BY_MATRIX, 'fig_1'),
+                                 (talks.mech9d, scripts.PENDULUM, 'simple_pendulum')):
+        with tempfile.TemporaryDirectory() as folder:
+            talks.pipe(program, steps, 'uninterrupted', folder=folder)
+            expected = text_of(os.path.join(folder, stem + '.nml'))
+        for cut in range(1, len(steps) - 2, 4):
+            with tempfile.TemporaryDirectory() as folder:
+                draft = stem + '.draft.nml'
+                done = piped(program, folder=folder, answers=answers_of(steps[:cut]))
+                talks.checks.true(done.returncode == INTERRUPTED and f'--resume\n  {draft}' in done.stderr.replace(
+                    f'--resume {draft}', f'--resume\n  {draft}'), f'cut after {cut}: the draft is named', done.stderr)
+                talks.pipe(program, steps[cut:], f'{stem} cut after {cut} answers and resumed', folder=folder,
+                           arguments=('--resume', draft))
+                path = os.path.join(folder, stem + '.nml')
+                talks.checks.true(os.path.exists(path) and text_of(path) == expected,
+                                  f'{stem} cut after {cut} answers: the same data file')
+
+
+def at_a_terminal(talks):
+    """The same at a terminal, with and without an editor of lines."""
+    for term in ('dumb', 'xterm'):
+        for program, steps, stem in ((talks.mech9k, scripts.with_errors(scripts.FIG1), 'fig_1'),
+                                     (talks.mech9d, scripts.PENDULUM, 'simple_pendulum')):
+            with tempfile.TemporaryDirectory() as folder:
+                why = f'{stem} at a terminal ({term})'
+                terminal = Terminal(program, folder=folder, term=term)
+                missing = terminal.play(steps)
+                code = terminal.end()
+                talks.checks.true(missing is None, f'{why}: every prompt comes', f'{missing!r}\n{terminal.text()[-1500:]}')
+                talks.checks.equal(code, DONE, f'{why}: exit code')
+                talks.sound(terminal.text(), why)
+                if term == 'dumb':
+                    talks.checks.true(b'\x1b' not in terminal.heard, f'{why}: plain text')
+                talks.same_as_example(folder, program, stem, why)
+
+
+def interrupted_at_a_terminal(talks):
+    """Ctrl-C, Ctrl-D and a closed window each leave a draft that can be resumed."""
+    half = len(scripts.FIG1)//2
+    for how in ('\x03', '\x04', 'closed', 'quit\n'):
+        with tempfile.TemporaryDirectory() as folder:
+            terminal = Terminal(talks.mech9k, folder=folder)
+            missing = terminal.play(scripts.FIG1[:half])
+            talks.checks.true(missing is None and terminal.wait_for(scripts.FIG1[half][0]), 'half of Fig. 1', terminal.text())
+            if how == 'closed':
+                code = terminal.hang_up()
+                talks.checks.true(code in (INTERRUPTED, -signal.SIGHUP), 'a closed terminal ends it', code)
+            else:
+                terminal.type(how)
+                code = terminal.end()
+                talks.checks.equal(code, DONE if how == 'quit\n' else INTERRUPTED, f'{how!r}: exit code')
+                talks.checks.true('--resume' in terminal.text(), f'{how!r}: says how to go on', terminal.text()[-500:])
+            talks.checks.equal(os.listdir(folder), ['fig_1.draft.nml'], f'{how!r}: the draft is there')
+            terminal = Terminal(talks.mech9k, '--resume', 'fig_1.draft.nml', folder=folder)
+            missing = terminal.play(scripts.FIG1[half:])
+            talks.checks.true(missing is None, f'{how!r}: resumed', f'{missing!r}\n{terminal.text()[-1500:]}')
+            talks.checks.equal(terminal.end(), DONE, f'{how!r}: resumed to the end')
+            talks.same_as_example(folder, talks.mech9k, 'fig_1', f'{how!r}, then resumed')
+
+
+def structure_and_start(talks):
+    """Structures and starts that cannot be are shown as soon as they are complete, and can be mended."""
+    apart = [(p, '2 4' if p == 'links of pair 1' else a) for p, a in scripts.MECHANISM + scripts.BY_PAIRS]
+    apart = [(p, '2 4' if p == 'links of pair 2' else a) for p, a in apart]
+    mended = apart + [('link 6 is not connected to link 1', '4'), ('links of pair 1 [2, 4]', '1 6'),
+                      ('is not connected', '5') if False else ('1 =5= 2 -4- 3 -7- 4 -6- 1', 'no')]
+    with tempfile.TemporaryDirectory() as folder:
+        done = talks.pipe(talks.mech9k, mended, 'a link apart', INTERRUPTED, folder=folder)
+        talks.checks.true('1 = 7 - 2 x 3 in a plane' in done.stderr, 'mobility by the count', done.stderr)
+    # two independent coordinates where one is right: corrected after the geometry
+    steps = [(p, '5 6' if p == 'cq: ' else a) for p, a in scripts.MECHANISM + scripts.BY_PAIRS + scripts.pairs(False)]
+    steps += [('Drive of coordinate 5', ''), ('coefficients', '0.5 6'), ('Drive of coordinate 6', ''),
+              ('coefficients', '1.8'), ('guesses', ''), ('the mobility is 1', ''), ('cq [5, 6]', '5'), ('drive 6', 'P')]
+    with tempfile.TemporaryDirectory() as folder:
+        done = talks.pipe(talks.mech9k, steps, 'too many independent coordinates', INTERRUPTED, folder=folder)
+        talks.checks.true('Put together at the start' in done.stderr, 'put together after the correction', done.stderr)
+        talks.checks.true('drive coordinate=6' not in text_of(os.path.join(folder, 'fig_1.draft.nml')),
+                          'the drive of a dependent coordinate is gone')
+
+
+def edited_files(talks):
+    """Data files opened with --edit and saved are the same mechanism; an answer can be changed by its number
+    or name, groups added and removed."""
+    for name in ('fig1', 'andrews', 'bricard'):
+        folder_of = os.path.join(TREE, 'examples', name)
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copy(os.path.join(folder_of, name + '.nml'), folder)
+            program = talks.mech9k if name == 'fig1' else talks.mech9d
+            steps = [('Enter if all is right', ''), ('[both]', 'save'), (f'data file [{name}.nml]', 'copy.nml')]
+            talks.pipe(program, steps, f'--edit {name}', arguments=('--edit', name + '.nml'), folder=folder)
+            tables = []
+            for path in (name + '.nml', 'copy.nml'):
+                run(program, path, '--table', path + '.dat', '--set', 'time.intervals=5', '--quiet', folder=folder)
+                tables.append(rows_of(os.path.join(folder, path + '.dat')))
+            talks.checks.true(tables[0] == tables[1], f'--edit {name}: the same table from the copy')
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(EXAMPLE['simple_pendulum'], os.path.join(folder, 'p.nml'))
+        steps = [('Enter if all is right', 'time end'), ('end (s) [10.0]', '2'), ('all is right', 'add load'),
+                 ('load 1, kind', 'coordinate'), ('coordinate: ', '1'), ('force', ''), ('stiffness', ''), ('rest', ''),
+                 ('damping', '0.5'), ('all is right', 'add body'), ('body 2, link', '1'), ('mass', '3'), ('centre', ''),
+                 ('inertia', ''), ('all is right', 'remove body 2'), ('Removed', 'remove point 1'), ('Removed', '?'),
+                 ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
+                 ('no answer that can be changed', 'add nothing'), ('What can be added: body, load, point', ''),
+                 ('[both]', 'save'), ('data file [p.nml]', '/'), ('', ''), ]
+        talks.pipe(talks.mech9d, steps, 'changes', arguments=('--edit', 'p.nml'), folder=folder)
+        text = text_of(os.path.join(folder, 'p.nml'))
+        for part in ('end=2', "&load kind='coordinate', coordinate=1, damping=0.5 /", 'planar pendulum of the IFToMM',
+                     '! At q1 = 0 the bar points along -x'):
+            talks.checks.true(part in text, f'changes: {part} is in the file', text)
+        for part in ('&point', 'mass=3'):
+            talks.checks.true(part not in text, f'changes: {part} is not in the file', text)
+        # without an answer nothing is written, and an existing file is overwritten only on request
+        done = talks.pipe(talks.mech9d, [('all is right', 'quit')], 'quit', arguments=('--edit', 'p.nml'), folder=folder)
+        talks.checks.equal(sorted(os.listdir(folder)), ['p.nml'], 'nothing changed, nothing kept')
+        steps = [('title [', 'P'), *[(p, a) for p, a in scripts.PENDULUM_TO_THE_END[1:]], ('all is right', ''), ('[both]', 'save'),
+                 ('data file [p.nml]', ''), ('exists; overwrite it [no]', ''), ('data file [p.nml]', 'q.nml')]
+        talks.pipe(talks.mech9d, steps, 'a file that exists', folder=folder)
+        talks.checks.true(text_of(os.path.join(folder, 'p.nml')) == text, 'it is as it was')
+
+
+def refusals(talks):
+    with tempfile.TemporaryDirectory() as folder:
+        for arguments, code, said in ((('--edit', 'nowhere.nml'), FILE, 'there is no such file'),
+                                      (('--resume', 'a.nml', '--edit', 'a.nml'), USAGE, 'more than one data file'),
+                                      (('--dialogue', '--check'), USAGE, 'no data file is given'),
+                                      (('--check',), USAGE, 'no data file is given'),
+                                      ((), USAGE, 'no data file is given and nothing was answered')):
+            done = piped(talks.mech9k, *arguments, folder=folder, answers='')
+            talks.checks.true(done.returncode == code and said in done.stderr, f'{arguments}: {said}', done)
+            talks.sound(done.stderr, str(arguments))
+        with open(os.path.join(folder, 'bad.nml'), 'w', encoding='utf-8') as file:
+            file.write("&mechanism links=6, title='open /\n")
+        done = piped(talks.mech9k, '--edit', 'bad.nml', folder=folder, answers='')
+        talks.checks.true(done.returncode == DATA and 'bad.nml:1:' in done.stderr, 'a file that cannot be read', done)
+        with open(os.path.join(folder, 'large.nml'), 'w', encoding='utf-8') as file:
+            file.write('&mechanism links=2000000000, coordinates=2000000000 /\n')
+        done = piped(talks.mech9k, '--edit', 'large.nml', folder=folder, answers='')
+        talks.checks.true(done.returncode == DATA and 'too many to speak of' in done.stderr, 'too large a file', done)
+        # a folder in which nothing can be kept
+        closed = os.path.join(folder, 'closed')
+        done = piped(talks.mech9k, '--resume', 'bad.nml/x', folder=folder, answers='')
+        talks.checks.equal(done.returncode, FILE, f'{closed}: no file')
+
+
+def main():
+    talks = Talks(*sys.argv[1:3])
+    through_pipes(talks)
+    structure_and_start(talks)
+    edited_files(talks)
+    refusals(talks)
+    cut_off_anywhere(talks)
+    if has_terminals():
+        at_a_terminal(talks)
+        interrupted_at_a_terminal(talks)
+    else:
+        print('skipped: no pseudo-terminals here')
+    talks.checks.finish()
+
+
+if __name__ == '__main__':
+    main()
