@@ -82,7 +82,9 @@ contains
     conversation%topic = question%topic
     conversation%heading = ''
     write (error_unit, '(/,a)') '-- '//trim(topics(question%topic)%title)//' --'
-    if (topics(question%topic)%opening /= '') call conversation%say(trim(topics(question%topic)%opening))
+    if (topics(question%topic)%opening /= '' .and. .not. conversation%opened(question%topic)) &
+      call conversation%say(trim(topics(question%topic)%opening))
+    conversation%opened(question%topic) = .true.
   end subroutine announce_topic
 
   !> What stands above the prompt, and the prompt.

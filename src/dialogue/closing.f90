@@ -47,7 +47,7 @@ contains
     case ('?', 'help')
       call conversation%say(correction_help)
     case ('back')
-      conversation%topic = 0
+      conversation%summed_up = .false.
       call conversation%interview%back(done)
     case default
       call change(conversation, line)
@@ -64,11 +64,12 @@ contains
     type(fault_type), allocatable :: faults(:)
 
     associate (draft => conversation%interview%draft)
-      if (conversation%topic /= huge(1)) then
+      if (.not. conversation%summed_up) then
         write (error_unit, '(/,a)') '-- Summary --'
         call print_summary(error_unit, draft)
       end if
-      conversation%topic = huge(1)
+      conversation%summed_up = .true.
+      conversation%topic = 0
       call read_draft(draft, conversation%draft_path, needs_drives, mechanism, written, diagnostics)
     end associate
     call faults_of(diagnostics, written, faults)

@@ -7,6 +7,7 @@ module mech9_conversation
   use mech9_grammar, only: item_table
   use mech9_line_input, only: line_input_type, line_read
   use mech9_draft, only: draft_type
+  use mech9_topics, only: topics
   use mech9_interview, only: interview_type
   use mech9_draft_file, only: save_draft, stem_of_title, free_draft_path
   use mech9_paragraph, only: print_paragraph
@@ -30,6 +31,8 @@ module mech9_conversation
     logical :: may_overwrite = .false.               !< that file is the one being edited
     logical :: cannot_keep = .false.                 !< the draft could not be written, and this was told
     integer :: topic = 0                             !< whose title was shown last
+    logical :: opened(size(topics)) = .false.        !< topics that were explained already
+    logical :: summed_up = .false.                   !< all answers were shown at the end
     character(len=:), allocatable :: heading         !< shown last
     logical :: told(size(item_table)) = .false.      !< names that were explained already
   contains

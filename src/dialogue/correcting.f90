@@ -6,7 +6,7 @@ module mech9_correcting
   use mech9_grammar, only: group_table, find_group_row
   use mech9_draft, only: integer_of
   use mech9_draft_check, only: fault_type
-  use mech9_questions, only: label_of
+  use mech9_questions, only: label_of, find_question, ask_item
   use mech9_question_words, only: is_lacking
   use mech9_summary, only: entry_with_number, number_of_entry, named_entry, title_of
   use mech9_conversation, only: conversation_type, going
@@ -55,7 +55,7 @@ contains
 
     words = correction_words()
     call find_first(conversation, faults, first, missing)
-    proposal = otherwise
+    proposal = otherwise(index(otherwise, '.') + 1:)
     if (missing > 0) proposal = label_of(conversation%interview%questions(missing))
     if (first > 0) proposal = to_text(first)
     call conversation%listen('  number to change, or go (on as it is) ['//proposal//']: ', words, line)
@@ -74,12 +74,29 @@ contains
       else if (missing > 0) then
         call begin_correction(conversation, missing)
       else
-        call conversation%interview%go_to(otherwise)
+        call take_otherwise(conversation, otherwise)
       end if
     case default
       call change(conversation, line)
     end select
   end subroutine offer_correction
+
+  !> Guesses are asked for in their turn; to anything else the conversation comes back from here.
+  subroutine take_otherwise(conversation, label)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: label
+    integer :: number
+
+    number = find_question(conversation%interview%questions, label)
+    if (number == 0) then
+      call conversation%say('Which one? list shows the numbers of the answers.')
+    else if (number < conversation%interview%at .and. conversation%interview%questions(number)%kind /= ask_item) then
+      conversation%interview%return_to = ''
+      conversation%interview%at = number
+    else
+      call begin_correction(conversation, number)
+    end if
+  end subroutine take_otherwise
 
   function correction_words() result(words)
     type(string_type) :: words(6)

@@ -72,6 +72,15 @@ contains
     logical :: ok
 
     if (.not. any([(group%items(i)%name == 'c', i=1, size(group%items))])) return
+    if (all([(group%items(i)%name /= 'c' .or. is_row(group%items(i)), i=1, size(group%items))])) then
+      ! also where some are still missing
+      do i = 1, size(group%items)
+        if (group%items(i)%name == 'c') &
+          call draft%give('structure', 1, 'c('//to_text(group%items(i)%subscripts(1)%first)//',:)', &
+                          values_text(document%source%text, group%items(i)%values))
+      end do
+      return
+    end if
     call ignored%add_source(document%source, number)
     call read_matrix(group, 0, matrix, ok, ignored)
     if (.not. ok) return
@@ -79,6 +88,16 @@ contains
       call draft%give('structure', 1, 'c('//to_text(i)//',:)', to_text(matrix%c(i, :)))
     end do
   end subroutine take_matrix
+
+  !> Whether an item is a whole row of the matrix: c(2,:).
+  pure logical function is_row(item)
+    type(item_type), intent(in) :: item
+
+    is_row = .false.
+    if (size(item%subscripts) == 2) &
+      is_row = .not. item%subscripts(1)%section .and. item%subscripts(2)%section .and. &
+               item%subscripts(2)%first == 0 .and. item%subscripts(2)%last == 0
+  end function is_row
 
   !> Values as they are written, with commas between.
   pure function values_text(source_text, values) result(text)

@@ -36,7 +36,6 @@ module mech9_interview
     procedure :: refresh
     procedure :: step
     procedure :: back
-    procedure :: go_to
     procedure :: correct
     procedure :: note
     procedure :: unnote
@@ -152,16 +151,6 @@ contains
       return
     end do
   end subroutine back
-
-  !> Make the question with a label due; the one that is due stays so where there is none.
-  pure subroutine go_to(self, label)
-    class(interview_type), intent(inout) :: self
-    character(len=*), intent(in) :: label
-    integer :: found
-
-    found = find_question(self%questions, label)
-    if (found > 0) self%at = found
-  end subroutine go_to
 
   !> Ask for an entry of the draft, then return to the question that is due now. `found` is false where
   !> this program has no question about it.

@@ -1,9 +1,10 @@
 !> All that a draft says as a list of numbered answers, and words that mean one of them. Uses text, grammar,
-!> draft, topics.
+!> draft, paragraph, topics.
 module mech9_summary
   use mech9_text, only: to_text, lower
   use mech9_grammar, only: group_table, find_group_row, words_of
   use mech9_draft, only: draft_type, integer_of, unquoted
+  use mech9_paragraph, only: print_paragraph
   use mech9_topics, only: is_numbered
   implicit none
   private
@@ -33,12 +34,12 @@ contains
           piece = '  ['//to_text(number)//'] '//entry%name//' '//unquoted(entry%text)
         end associate
         if (len(line) + len(piece) > line_width .and. len(line) > indent) then
-          write (unit, '(a)') line
+          call print_paragraph(unit, trim(adjustl(line)), verify(line, ' ') - 1)
           line = repeat(' ', indent)
         end if
         line = line//piece
       end do
-      write (unit, '(a)') line
+      call print_paragraph(unit, trim(adjustl(line)), verify(line, ' ') - 1)
     end do
   end subroutine print_summary
 
