@@ -2,7 +2,7 @@
 !> names. Uses text, grammar, data_help, draft, topics, outline, questions.
 module mech9_question_words
   use mech9_text, only: to_text, string_type
-  use mech9_grammar, only: group_table, item_table, rows_of_group, words_of
+  use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group, words_of
   use mech9_data_help, only: values_text, default_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: groups_of_topic
@@ -292,12 +292,24 @@ contains
         text = 'if not given: '//default_text(row)
         if (is_needed(question, draft, outline)) text = 'must be given'
         text = gist_of(question)//line_end//'Values: '//values_text(row)//unit//'; '//text//'.'//line_end// &
-               'For example: '//unquoted(trim(row%example))
+               'For example: '//example_of(row)
       end associate
     end select
     text = text//line_end//'Enter takes what stands in brackets. Also: back (to the question before), list (what is '// &
            'known), default (as if never answered), quit (what was typed is kept).'
   end function help_of
+
+  !> The example of a row as it would be typed here: without quotes and without the name.
+  pure function example_of(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text
+    integer :: equals
+
+    equals = index(row%example, '= ')
+    text = trim(row%example)
+    if (equals > 0) text = text(equals + 2:)
+    text = unquoted(text)
+  end function example_of
 
   pure function first_word(list) result(word)
     character(len=*), intent(in) :: list

@@ -11,8 +11,9 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import dialogue_scripts as scripts
-from dialogue import Terminal, answers_of, has_terminals, piped, prompts_in_order
+from dialogue import Talk, answers_of, first_missing, piped
 from mech9_cases import TREE, Checks, run
+from terminal import available
 
 DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
 EXAMPLE = {'fig_1': os.path.join(TREE, 'examples', 'fig1', 'fig1.nml'),
@@ -44,8 +45,8 @@ class Talks:
         """A conversation through a pipe, all of whose prompts come in order."""
         done = piped(program, *arguments, folder=folder, answers=answers_of(steps))
         self.checks.true(done.returncode == code, f'{why}: exit code {code}', f'it was {done.returncode}\n{done.stderr}')
-        self.checks.true(prompts_in_order(done.stderr, steps) is None, f'{why}: every prompt comes in its turn',
-                         f'{prompts_in_order(done.stderr, steps)} is missing\n{done.stderr}')
+        missing = first_missing(done.stderr, steps)
+        self.checks.true(missing is None, f'{why}: every prompt comes in its turn', f'{missing} is missing\n{done.stderr}')
         self.checks.true(max(map(len, done.stderr.splitlines())) < 80, f'{why}: lines fit 80 columns',
                          max(done.stderr.splitlines(), key=len))
         self.sound(done.stderr, why)
@@ -85,7 +86,7 @@ def cut_off_anywhere(talks):
         with tempfile.TemporaryDirectory() as folder:
             talks.pipe(program, steps, 'uninterrupted', folder=folder)
             expected = text_of(os.path.join(folder, stem + '.nml'))
-        for cut in range(1, len(steps) - 2, 4):
+        for cut in range(1, len(steps) - 3, 4):
             with tempfile.TemporaryDirectory() as folder:
                 draft = stem + '.draft.nml'
                 done = piped(program, folder=folder, answers=answers_of(steps[:cut]))
@@ -103,16 +104,15 @@ def at_a_terminal(talks):
     for term in ('dumb', 'xterm'):
         for program, steps, stem in ((talks.mech9k, scripts.with_errors(scripts.FIG1), 'fig_1'),
                                      (talks.mech9d, scripts.PENDULUM, 'simple_pendulum')):
-            with tempfile.TemporaryDirectory() as folder:
+            with tempfile.TemporaryDirectory() as folder, \
+                    Talk([program], folder=folder, term=term, HOME=folder, NO_COLOR='1') as talk:
                 why = f'{stem} at a terminal ({term})'
-                terminal = Terminal(program, folder=folder, term=term)
-                missing = terminal.play(steps)
-                code = terminal.end()
-                talks.checks.true(missing is None, f'{why}: every prompt comes', f'{missing!r}\n{terminal.text()[-1500:]}')
-                talks.checks.equal(code, DONE, f'{why}: exit code')
-                talks.sound(terminal.text(), why)
+                missing = talk.play(steps)
+                talks.checks.true(missing is None, f'{why}: every prompt comes', f'{missing!r}\n{talk.plain()[-1500:]}')
+                talks.checks.equal(talk.ends(), DONE, f'{why}: exit code')
+                talks.sound(talk.seen, why)
                 if term == 'dumb':
-                    talks.checks.true(b'\x1b' not in terminal.heard, f'{why}: plain text')
+                    talks.checks.true('\x1b' not in talk.seen, f'{why}: plain text')
                 talks.same_as_example(folder, program, stem, why)
 
 
@@ -121,23 +121,53 @@ def interrupted_at_a_terminal(talks):
     half = len(scripts.FIG1)//2
     for how in ('\x03', '\x04', 'closed', 'quit\n'):
         with tempfile.TemporaryDirectory() as folder:
-            terminal = Terminal(talks.mech9k, folder=folder)
-            missing = terminal.play(scripts.FIG1[:half])
-            talks.checks.true(missing is None and terminal.wait_for(scripts.FIG1[half][0]), 'half of Fig. 1', terminal.text())
-            if how == 'closed':
-                code = terminal.hang_up()
-                talks.checks.true(code in (INTERRUPTED, -signal.SIGHUP), 'a closed terminal ends it', code)
-            else:
-                terminal.type(how)
-                code = terminal.end()
-                talks.checks.equal(code, DONE if how == 'quit\n' else INTERRUPTED, f'{how!r}: exit code')
-                talks.checks.true('--resume' in terminal.text(), f'{how!r}: says how to go on', terminal.text()[-500:])
+            with Talk([talks.mech9k], folder=folder, term='dumb') as talk:
+                missing = talk.play(scripts.FIG1[:half])
+                talks.checks.true(missing is None and talk.expect(scripts.FIG1[half][0]), 'half of Fig. 1', talk.plain())
+                if how == 'closed':
+                    talk.hang_up()
+                    code = talk.ends()
+                    talks.checks.true(code in (INTERRUPTED, -signal.SIGHUP), 'a closed terminal ends it', code)
+                else:
+                    talk.type(how)
+                    code = talk.ends()
+                    talks.checks.equal(code, DONE if how == 'quit\n' else INTERRUPTED, f'{how!r}: exit code')
+                    talks.checks.true('--resume' in talk.plain(), f'{how!r}: says how to go on', talk.plain()[-500:])
             talks.checks.equal(os.listdir(folder), ['fig_1.draft.nml'], f'{how!r}: the draft is there')
-            terminal = Terminal(talks.mech9k, '--resume', 'fig_1.draft.nml', folder=folder)
-            missing = terminal.play(scripts.FIG1[half:])
-            talks.checks.true(missing is None, f'{how!r}: resumed', f'{missing!r}\n{terminal.text()[-1500:]}')
-            talks.checks.equal(terminal.end(), DONE, f'{how!r}: resumed to the end')
+            with Talk([talks.mech9k, '--resume', 'fig_1.draft.nml'], folder=folder, term='dumb') as talk:
+                missing = talk.play(scripts.FIG1[half:])
+                talks.checks.true(missing is None, f'{how!r}: resumed', f'{missing!r}\n{talk.plain()[-1500:]}')
+                talks.checks.equal(talk.ends(), DONE, f'{how!r}: resumed to the end')
             talks.same_as_example(folder, talks.mech9k, 'fig_1', f'{how!r}, then resumed')
+
+
+def transcript(said, steps):
+    """What was said to a pipe, with the answers behind their prompts, up to the saved file."""
+    answers = [answer for _, answer in steps]
+    lines = []
+    for line in said.splitlines():
+        if line.endswith(': ') and answers:      # a prompt, and nothing else, ends so
+            line += answers.pop(0)
+        lines.append(line.rstrip())
+        if 'Saved in' in line:
+            break
+    return '\n'.join(lines)
+
+
+def the_document(talks):
+    """The conversation in the document is this one."""
+    path = os.path.join(TREE, 'docs', 'conversation.md')
+    with tempfile.TemporaryDirectory() as folder:
+        done = piped(talks.mech9k, folder=folder, answers=answers_of(scripts.FIG1))
+    now = transcript(done.stderr, scripts.FIG1)
+    text = text_of(path)
+    start = text.index('tests/cases/conversation.py. -->')
+    head = text[:text.index('\n', start) + 1]
+    expected = head + '```\n' + now + '\n```\n'
+    if not talks.checks.true(text == expected, 'the document shows the conversation as it is; else copy conversation.md of the '
+                             'current folder over it'):
+        with open('conversation.md', 'w', encoding='utf-8') as file:
+            file.write(expected)
 
 
 def structure_and_start(talks):
@@ -226,11 +256,12 @@ def refusals(talks):
 def main():
     talks = Talks(*sys.argv[1:3])
     through_pipes(talks)
+    the_document(talks)
     structure_and_start(talks)
     edited_files(talks)
     refusals(talks)
     cut_off_anywhere(talks)
-    if has_terminals():
+    if available():
         at_a_terminal(talks)
         interrupted_at_a_terminal(talks)
     else:
