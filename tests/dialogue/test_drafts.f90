@@ -19,8 +19,7 @@ program test_drafts
   character(len=*), parameter :: slider_crank = &
     "! An offset slider-crank."//eol//eol// &
     "&mechanism title='It''s a slider/crank! & more', links=4, coordinates=4 /"//eol// &
-    "&structure c(1,:)=0,1,0,4  c(:,2)=1,0,2,0  c(3,4)=3 c(4,3)=3 c(3,1)=0 c(3,2)=2 c(3,3)=0 c(2,1)=1"//eol// &
-    "  c(2,3)=2 c(2,4)=0 c(4,1)=4 c(4,2)=0 c(4,4)=0 cq=1 /"//eol// &
+    "&structure c(1,:)=0,1,0,4  c(2,:)=1,0,2,0  c(3,1)=0  c(3,2:4)=2,0,3  c(4,1:2)=4,0  c(4,3)=3  c(4,4)=0  cq=1 /"//eol// &
     "! the crank"//eol// &
     "&pair coordinate=1, links=1,2, kind='revolute', axis=2*0,1 /"//eol// &
     "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point(1)=0.3, point(2:3)=0,0, moving_point=0,0,0 /"//eol
