@@ -211,7 +211,7 @@ module mech9_grammar
     item_row_type('output', 'compression', 'integer', 1, 1, '', optional, '0', '>=0', '', '', &
                   'how much the HDF5 file is compressed: 0 not at all (the fastest) to 9 (the smallest)', '4', seldom=.true.), &
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
-                  'mech9k: a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &
+                  'a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &
                   '.true.', seldom=.true.), &
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]

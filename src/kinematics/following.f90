@@ -181,7 +181,7 @@ contains
         follower%reach = min(2.0_wp*min(max(follower%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
         if (h < creeping_step*abs(remaining) .and. .not. driven) &
           call count_creeping(plan, follower, stuck, refused_by)
-        call accept(follower)
+        call accept(plan, follower)
         return
       end if
       follower%halvings = follower%halvings + 1
@@ -323,7 +323,8 @@ contains
   end subroutine judge
 
   !> The trial becomes the place of departure.
-  pure subroutine accept(follower)
+  pure subroutine accept(plan, follower)
+    type(plan_type), intent(in) :: plan
     type(follower_type), intent(inout) :: follower
     real(wp) :: h
 
@@ -331,7 +332,7 @@ contains
     follower%state%known = acceleration_known
     associate (here => follower%state, last => follower%departure)
       h = here%t - last%t
-      call extrapolate(size(here%q), h, here%q, here%dq, here%ddq, last%q, last%dq, last%ddq, last%higher)
+      call extrapolate(size(here%q), h, plan%unit_of, here%q, here%dq, here%ddq, last%q, last%dq, last%ddq, last%higher)
       last%t = here%t
       last%before = abs(h)
     end associate
@@ -340,10 +341,10 @@ contains
 
   !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
   !> order. The later position takes the place of the earlier one.
-  pure subroutine extrapolate(m, h, q, dq, ddq, last_q, last_dq, last_ddq, higher)
+  pure subroutine extrapolate(m, h, unit_of, q, dq, ddq, last_q, last_dq, last_ddq, higher)
     integer, intent(in) :: m
     real(wp), intent(in) :: h
-    real(wp), dimension(m), intent(in) :: q, dq, ddq
+    real(wp), dimension(m), intent(in) :: unit_of, q, dq, ddq
     real(wp), dimension(m), intent(inout) :: last_q, last_dq, last_ddq
     real(wp), intent(out) :: higher(m, 3)
     real(wp) :: d0, d1, d2, x, y, z, per_h, per_cube
@@ -361,7 +362,7 @@ contains
       z = x + d1 + 4.0_wp*d0
       y = d0 + x + z
       ! without the positions, where their round-off is all there is to the last term
-      is_noise = abs(z) <= only_round_off*max(1.0_wp, abs(q(k)))
+      is_noise = abs(z) <= only_round_off*max(unit_of(k), abs(q(k)))
       x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_noise)
       y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_noise)
       z = merge(0.0_wp, z, is_noise)

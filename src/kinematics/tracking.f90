@@ -1,6 +1,6 @@
 !> Following a driven motion from output to output, through special positions or up to where it ends.
-!> Uses kinds, error, text, mechanism, plan, state, solver, closure, watch, following, special_position,
-!> passage, special_start, motion, planning.
+!> Uses kinds, error, text, mechanism, plan, state, solver, conditioning, closure, watch, following,
+!> special_position, passage, special_start, motion, planning.
 module mech9_tracking
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_singular
@@ -8,7 +8,8 @@ module mech9_tracking
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, acceleration_known
-  use mech9_solver, only: least_pivot, solve_rates, solve_accelerations
+  use mech9_solver, only: solve_rates, solve_accelerations
+  use mech9_conditioning, only: conditioning_type
   use mech9_closure, only: closing_error
   use mech9_planning, only: chain_names
   use mech9_watch, only: factorize_trial, is_near
@@ -20,13 +21,11 @@ module mech9_tracking
   use mech9_passage, only: passage_type, build_passage, position_within
   implicit none
   private
-  public :: tracker_type, start_tracking, advance, set_inputs, largest_closure, words_of_block, find_conditioning
+  public :: tracker_type, start_tracking, advance, set_inputs, largest_closure, words_of_block
 
   !> Blocks whose least against largest pivot is below this start at a singular position: at a dead point
   !> round-off of the position leaves its square root, some 1e-8.
   real(wp), parameter :: singular = 1.0e-7_wp
-  !> The least singular value is looked at when the least pivot has fallen to this part.
-  real(wp), parameter :: worth_a_look = 0.99_wp
   !> A motion that ends is followed up to this part of the way from where the end was seen.
   real(wp), parameter :: just_short = 1.0e-9_wp
 
@@ -37,12 +36,7 @@ module mech9_tracking
     real(wp), allocatable :: clear_until(:)       !< for each block: until when nothing special was seen [s]
     integer(long) :: positions = 0                !< that were asked for
     integer(long) :: passages = 0                 !< special positions that were passed
-    !> Least singular value of any block's Jacobian at the positions asked for (rotations in rad, lengths in
-    !> the mechanism's; 1 where there is no closed chain), when it was met, and in which block.
-    real(wp) :: least_conditioning = 1.0_wp
-    real(wp) :: least_conditioning_time = 0.0_wp  !< [s]
-    integer :: least_conditioning_block = 0
-    real(wp) :: least_pivot = huge(1.0_wp)        !< when the least singular value was looked at last
+    type(conditioning_type) :: conditioning       !< the worst of the positions asked for
     real(wp) :: worst_closure = 0.0_wp            !< largest closure error of any position asked for [m]
     real(wp), allocatable :: limit(:)             !< (M): independent coordinates where the motion ends
   end type tracker_type
@@ -280,42 +274,11 @@ contains
   subroutine record(plan, tracker)
     type(plan_type), intent(in) :: plan
     type(tracker_type), intent(inout) :: tracker
-    real(wp) :: least
-    integer :: b
 
     tracker%positions = tracker%positions + 1
     tracker%worst_closure = max(tracker%worst_closure, largest_closure(plan, tracker%state))
-    least = huge(least)
-    do b = 1, size(tracker%work)
-      if (tracker%work(b)%equations%n > 0) least = min(least, least_pivot(tracker%work(b)))
-    end do
-    ! not at every position: pivots tell when it is worth while
-    if (least >= worth_a_look*tracker%least_pivot) return
-    tracker%least_pivot = least
-    call find_conditioning(tracker, least)
+    call tracker%conditioning%glance(tracker%state%t, tracker%work)
   end subroutine record
-
-  !> Least singular value of any block's Jacobian at the last position: how near the mechanism is to a
-  !> singular one. Rotations count in rad, lengths in the mechanism's; 1 where there is no closed chain.
-  subroutine find_conditioning(tracker, least)
-    type(tracker_type), intent(inout) :: tracker
-    real(wp), intent(out) :: least
-    real(wp) :: value
-    integer :: b
-
-    least = huge(least)
-    do b = 1, size(tracker%work)
-      if (tracker%work(b)%equations%n == 0) cycle
-      value = tracker%work(b)%equations%least_singular_value()
-      least = min(least, value)
-      if (value < tracker%least_conditioning .or. tracker%least_conditioning_block == 0) then
-        tracker%least_conditioning = value
-        tracker%least_conditioning_time = tracker%state%t
-        tracker%least_conditioning_block = b
-      end if
-    end do
-    if (.not. least < huge(least)) least = 1.0_wp
-  end subroutine find_conditioning
 
   !> Largest closure error of a state: a length [m], rotations times the mechanism's size.
   pure real(wp) function largest_closure(plan, state) result(largest)

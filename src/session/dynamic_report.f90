@@ -38,6 +38,8 @@ contains
       to_text(counts%rate_evaluations)//' evaluations'//each(outcome%seconds_solving, int(counts%rate_evaluations))
     write (unit, '(a)') 'largest closure '//to_text(run%worst_closure, 3)//' m; largest change of energy '// &
       to_text(run%largest_energy_change, 3)//' J'
+    if (run%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
+      to_text(run%conditioning%least, 3)//' at t = '//to_text(run%conditioning%t, 6)//' s'
     do i = 1, size(run%events)
       write (unit, '(a)') 't = '//to_text(run%events(i)%t, 8)//' s: independent coordinates are now '// &
         to_text(run%events(i)%independent)
@@ -95,7 +97,8 @@ contains
     call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
     call facts%add('energy_at_start', run%energy_at_start, 'kinetic and potential energy at the start', 'J')
     call facts%add('largest_energy_change', run%largest_energy_change, 'largest change of that energy', 'J')
-    call facts%add('least_conditioning', run%least_conditioning, 'least pivot ratio of a block: 0 is singular', '1')
+    call facts%add('least_conditioning', run%conditioning%least, 'least singular value of any block: 0 is singular', '1')
+    call facts%add('least_conditioning_time', run%conditioning%t, 'when it was that', 's')
     call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
   end subroutine dynamic_facts

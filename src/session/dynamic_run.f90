@@ -9,6 +9,7 @@ module mech9_dynamic_run
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
+  use mech9_conditioning, only: conditioning_type
   use mech9_tracking, only: largest_closure
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_coordinate_choice, only: best_independent, with_independent
@@ -47,7 +48,7 @@ module mech9_dynamic_run
     real(wp) :: energy_at_start = 0.0_wp          !< [J]
     real(wp) :: largest_energy_change = 0.0_wp    !< of kinetic + potential, against the start [J]
     real(wp) :: worst_closure = 0.0_wp            !< [m]
-    real(wp) :: least_conditioning = 1.0_wp
+    type(conditioning_type) :: conditioning       !< the worst of all outputs
   contains
     procedure :: row_at
     procedure :: statistics
@@ -96,6 +97,8 @@ contains
     call run%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
     call run%columns%append('E.total', 'J', 'kinetic and potential energy')
     call run%columns%append('closure', 'm', 'largest error of a closed chain')
+    if (mechanism%output%conditioning) &
+      call run%columns%append('conditioning', '1', 'least singular value of the worst chains')
     run%t = mechanism%time%start
     allocate (run%events(0))
     allocate (run%system)
@@ -130,6 +133,11 @@ contains
       row(used + 1:used + 3) = [kinetic, potential, kinetic + potential]
       call self%columns%fill_poses(system%plan, system%state, row)
       row(used + 4) = largest_closure(system%plan, system%state)
+      if (system%mechanism%output%conditioning) then
+        call self%conditioning%look(t, system%work%blocks, row(used + 5))
+      else
+        call self%conditioning%glance(t, system%work%blocks)
+      end if
       if (allocated(self%film)) call self%film%take(system%mechanism, system%plan, system%state)
     end associate
     if (.not. self%started) self%energy_at_start = kinetic + potential
@@ -153,7 +161,6 @@ contains
     end if
     self%system%refuse_below = merge(refused, 0.0_wp, self%system%conditioning() > doubtful)
     call self%integrator%step(t, self%t, self%y, failure)
-    self%least_conditioning = min(self%least_conditioning, self%system%conditioning())
     if (.not. allocated(failure)) return
     ! perhaps the integrator stopped at a singular position of these coordinates only
     if (failure%code == exit_singular .or. failure%code == exit_integrator) then

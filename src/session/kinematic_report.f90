@@ -31,9 +31,9 @@ contains
       each(outcome%seconds_solving, outcome%rows)//', '//duration(outcome%seconds_writing)//' to write'
     write (unit, '(a)') to_text(iterations_each(outcome, tracker), 3)//' Newton iterations a position; largest closure '// &
       to_text(tracker%worst_closure, 3)//' m'
-    if (tracker%least_conditioning_block > 0) write (unit, '(a)') 'least conditioning '// &
-      to_text(tracker%least_conditioning, 3)//' at t = '//to_text(tracker%least_conditioning_time, 6)//' s: '// &
-      words_of_block(plan, plan%blocks(tracker%least_conditioning_block))
+    if (tracker%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
+      to_text(tracker%conditioning%least, 3)//' at t = '//to_text(tracker%conditioning%t, 6)//' s: '// &
+      words_of_block(plan, plan%blocks(tracker%conditioning%block))
     if (tracker%passages > 0) write (unit, '(a)') 'special positions passed: '//to_text(tracker%passages)// &
       ', each on the branch with continuous velocities'
     if (tracker%steps >= outcome%rows) write (unit, '(a)') to_text(tracker%steps)//' steps to keep to the branch, and '// &
@@ -68,9 +68,9 @@ contains
     call facts%add('newton_iterations_per_position', iterations_each(outcome, tracker), 'Newton iterations a position', '1')
     call facts%add('largest_closure', tracker%worst_closure, 'largest error of a closed chain', 'm')
     call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
-    call facts%add('least_conditioning', tracker%least_conditioning, 'least pivot ratio of a block: 0 is singular', '1')
-    call facts%add('least_conditioning_time', tracker%least_conditioning_time, 'when it was that', 's')
-    call facts%add('least_conditioning_block', tracker%least_conditioning_block, 'block that it was in')
+    call facts%add('least_conditioning', tracker%conditioning%least, 'least singular value of any block: 0 is singular', '1')
+    call facts%add('least_conditioning_time', tracker%conditioning%t, 'when it was that', 's')
+    call facts%add('least_conditioning_block', tracker%conditioning%block, 'block that it was in')
     call facts%add('special_positions_passed', tracker%passages, 'special positions passed')
     call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')

@@ -7,7 +7,7 @@ module mech9_kinematic_run
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs, largest_closure, find_conditioning
+  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs, largest_closure
   use mech9_columns, only: kinematic_columns
   use mech9_recording, only: motion_source_type
   implicit none
@@ -77,6 +77,7 @@ contains
     call self%columns%fill_poses(self%plan, self%tracker%state, row)
     row(used + 1) = largest_closure(self%plan, self%tracker%state)
     if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%tracker%state)
-    if (self%mechanism%output%conditioning) call find_conditioning(self%tracker, row(used + 2))
+    if (self%mechanism%output%conditioning) &
+      call self%tracker%conditioning%look(t, self%tracker%work, row(used + 2))
   end subroutine row_at
 end module mech9_kinematic_run

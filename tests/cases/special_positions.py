@@ -1,6 +1,6 @@
 """Dead points, ranges, crossings of branches and conditioning through the whole program, by closed forms.
 
-usage: special_positions.py MECH9K
+usage: special_positions.py MECH9K MECH9D
 """
 import json
 import math
@@ -143,22 +143,51 @@ def end_of_table(s):
         s.checks.true(False, 'it ends well', done.stderr)
 
 
+def least_singular_values(lengths, table):
+    """Of the loop's matrix at each row: turns about its pins as (rotation, velocity/size of the middle of the ground)."""
+    ground, crank, coupler, _ = lengths
+    size = max(lengths)
+    values = []
+    for q1, q2 in np.radians(np.stack([table['q1'], table['q2']], axis=1)):
+        pins = [crank * np.array([math.cos(q1), math.sin(q1)])]
+        pins.append(pins[0] + coupler * np.array([math.cos(q1 + q2), math.sin(q1 + q2)]))
+        pins.append(np.array([ground, 0.0]))
+        columns = [[1.0, pin[1] / size, -(pin[0] - 0.5 * ground) / size] for pin in pins]
+        values.append(np.linalg.svd(np.array(columns).T, compute_uv=False)[-1])
+    return np.array(values)
+
+
+def conditioning_of_motion(s, mech9d):
+    """The same of a four-bar whose crank is thrown: column and report of mech9d."""
+    lengths = (0.4, 0.15, 0.35, 0.3)
+    text = four_bar(lengths, (0.0, 360.0), 1.0, 90, more="""&initial coordinate=1, position=0, velocity=300 /
+&body link=2, mass=1, centre=0,0,0, inertia=0.1,0.1,0.1,0,0,0 /
+&output conditioning=.true. /""")
+    report = os.path.join(s.folder, 'report.json')
+    s.program, kept = mech9d, s.program
+    done = s.run(text, '--table', '-', '--report', report)
+    s.program = kept
+    if not s.checks.equal(done.returncode, 0, 'mech9d runs') or not s.checks.true(done.stdout, 'with a table', done.stderr):
+        return
+    table = read_table(done.stdout)
+    values = least_singular_values(lengths, table)
+    s.checks.near(table['conditioning'] / values, 1.0, 1e-11, 'mech9d: the least singular value of the loop')
+    with open(report, encoding='utf-8') as file:
+        found = json.load(file)
+    least = int(np.argmin(values))
+    s.checks.near(found['least_conditioning'] / values[least], 1.0, 1e-11, 'mech9d: its least value in the report')
+    s.checks.near(found['least_conditioning_time'], table['t'][least], 1e-15, 'mech9d: and when')
+    s.checks.true('least conditioning' in done.stderr, 'mech9d: also in words', done.stderr)
+
+
 def conditioning(s):
     """The column is the least singular value of the loop's matrix; the report has its least value and when."""
-    lengths = ground, crank, coupler, rocker = (0.4, 0.15, 0.35, 0.3)
+    lengths = (0.4, 0.15, 0.35, 0.3)
     text = four_bar(lengths, (0.0, 360.0), 1.0, 90, more='&output conditioning=.true. /')
     report = os.path.join(s.folder, 'report.json')
     done = s.run(text, '--table', '-', '--report', report)
     table = read_table(done.stdout)
-    size = max(lengths)
-    values = []
-    for q1, q2, q4 in np.radians(np.stack([table['q1'], table['q2'], table['q4']], axis=1)):
-        pins = [crank * np.array([math.cos(q1), math.sin(q1)])]
-        pins.append(pins[0] + coupler * np.array([math.cos(q1 + q2), math.sin(q1 + q2)]))
-        pins.append(np.array([ground, 0.0]))
-        # turns about the pins as (rotation, velocity/size of what lies in the middle of the ground)
-        columns = [[1.0, (pin[1] - 0.0) / size, -(pin[0] - 0.5 * ground) / size] for pin in pins]
-        values.append(np.linalg.svd(np.array(columns).T, compute_uv=False)[-1])
+    values = least_singular_values(lengths, table)
     s.checks.near(table['conditioning'] / values, 1.0, 1e-11, 'the least singular value of the loop')
     with open(report, encoding='utf-8') as file:
         found = json.load(file)
@@ -175,6 +204,7 @@ def main():
         s = Cases(os.path.abspath(sys.argv[1]), folder)
         for case in (dead_point, ranges, passed, end_of_table, conditioning):
             case(s)
+        conditioning_of_motion(s, os.path.abspath(sys.argv[2]))
         s.checks.finish()
 
 

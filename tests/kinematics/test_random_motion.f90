@@ -92,7 +92,7 @@ contains
       goes_on = goes_on + 1
       ! round-off of positions over the least singular value
       call test%near(maxval(abs(few%state%q - many%state%q)/plan%unit_of), 0.0_wp, &
-                     1.0e-13_wp/min(few%least_conditioning, many%least_conditioning), name//': to the same position')
+                     1.0e-13_wp/min(few%conditioning%least, many%conditioning%least), name//': to the same position')
     end if
   end subroutine compare
 

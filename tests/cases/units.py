@@ -1,0 +1,173 @@
+"""The same mechanism in metres, millimetres and kilometres: the same decisions and, scaled, the same numbers.
+
+Data files of tests/reference and of the examples, and members of the families of the stress test, among them some that
+end at dead points, cannot be put together or have wrong inputs.
+
+usage: units.py MECH9K MECH9D
+"""
+import json
+import os
+import re
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+import data_file
+import families
+from mech9_cases import REFERENCE, TREE, Checks, read_table, run, tolerance_of
+from stress import Mechanism
+from loops import Loops
+
+UNITS = (1e3, 1e-3)     # numbers of lengths in millimetres, in kilometres, against those in metres
+LIMIT = 1e-9            # of a dead point, as promised
+
+
+def scaled(groups, s):
+    """The groups with lengths that are s times as large: kg and s stay, so that forces are s times as large and moments s^2."""
+    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'] == ['prismatic']}
+    powers = {'point': {'position': 1}, 'body': {'centre': 1, 'inertia': 2}, 'gravity': {'acceleration': 1},
+              'pair': {'point': 1, 'moving_point': 1, 'pitch': 1},
+              'spring': {'position': 1, 'second_position': 1, 'free_length': 1},
+              'force': {'position': 1, 'force': 1}, 'torque': {'torque': 2}}
+    along = {'initial': {'position': 1, 'velocity': 1},
+             'drive': {'coefficients': 1, 'mean': 1, 'amplitude': 1},
+             'coordinate': {'rest': 1, 'force': 1}}
+    for group, items in groups:
+        kind = items['kind'][0] if group == 'load' else group
+        change = dict(powers.get(kind, {}))
+        if kind in along and items['coordinate'][0] in slides:
+            change = along[kind]
+        elif kind == 'coordinate':
+            change = {'stiffness': 2, 'damping': 2, 'force': 2}
+        for name, power in change.items():
+            if name in items:
+                items[name] = [float(value) * s ** power for value in items[name]]
+        if 'dh' in items:
+            items['dh'] = [float(value) * (s if i in (0, 2) else 1.0) for i, value in enumerate(items['dh'])]
+    return slides
+
+
+def power_of(column, slides):
+    """Of the unit of length in a column."""
+    if column in ('E.kinetic', 'E.potential', 'E.total'):
+        return 2
+    coordinate = re.fullmatch(r'd{0,2}q(\d+)', column)
+    if coordinate:
+        return 1 if int(coordinate.group(1)) in slides else 0
+    return 1 if '.' in column else 0
+
+
+class Units:
+    def __init__(self, folder):
+        self.folder, self.checks = folder, Checks()
+
+    def look(self, program, text, *options):
+        """Exit code, what is said but for the path, table and report of a run, and its plan."""
+        path, table, report = (os.path.join(self.folder, name) for name in ('case.nml', 'case.dat', 'case.json'))
+        for name in (table, report):
+            if os.path.exists(name):
+                os.remove(name)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        done = run(program, path, '--table', table, '--report', report, '--quiet', *options, folder=self.folder)
+        plan = run(program, path, '--plan', folder=self.folder).stdout.split('coefficients of motion')[0]
+        rows = kept = None
+        if os.path.exists(table):
+            with open(table, encoding='utf-8') as file:
+                content = file.read()
+            rows = read_table(content) if len([line for line in content.splitlines() if line[:1] != '#']) > 1 else None
+        if os.path.exists(report):
+            with open(report, encoding='utf-8') as file:
+                kept = json.load(file)
+        if rows and 'evaluations' in (kept or {}):
+            # how an integration goes on depends on tolerances in m and rad: of it only the start
+            rows = {name: values[:1] for name, values in rows.items()}
+        return done.returncode, done.stderr, rows, kept, plan
+
+    def compare(self, why, plain, other, s, slides):
+        """A run in another unit against the one in metres."""
+        code, said, table, report, plan = plain
+        self.checks.equal(other[0], code, f'{why}: exit code')
+        self.checks.equal(other[4], plan, f'{why}: the plan')
+        if code == 6:
+            limits = [float(re.search(r'beyond t = (\S+) s', words).group(1)) for words in (said, other[1])]
+            self.checks.near(limits[1], limits[0], LIMIT, f'{why}: where it ends')
+        if (table is None) or not self.checks.true(other[2] is not None, f'{why}: a table', other[1]):
+            return
+        for name in ('steps', 'halvings') if 'positions' in report else ():
+            if name in report and code == 0:        # the last steps up to a dead point are as long as round-off lets them
+                self.checks.equal(other[3][name], report[name], f'{why}: {name}')
+        least = report.get('least_conditioning', 1.0)
+        for column, values in table.items():
+            if column == 'closure':
+                continue
+            found = other[2][column] / s ** power_of(column, slides)
+            if len(found) != len(values):
+                self.checks.true(False, f'{why}: {len(values)} rows', len(found))
+                return
+            # beside a singular position each solution loses as much as its matrix is ill conditioned
+            lost = max(1.0, 0.01 / least) ** (1 + column.count('d'))
+            scale = max(1.0, np.max(np.abs(values)))
+            self.checks.near(found / scale, values / scale, tolerance_of(column) * lost, f'{why}: {column}')
+
+    def file(self, program, path, *options):
+        """A data file in three units."""
+        with open(path, encoding='utf-8') as file:
+            text = file.read()
+        runs = []
+        for s in (1.0, *UNITS):
+            groups = data_file.parse(text)
+            slides = scaled(groups, s)
+            runs.append(self.look(program, data_file.write(groups), *options))
+        self.checks.true(runs[0][2] is not None, f'{path}: it runs', runs[0][1])
+        for s, other in zip(UNITS, runs[1:]):
+            self.compare(f'{os.path.basename(path)}, lengths times {s:g}', runs[0], other, s, slides)
+
+    def families(self, mech9k, members):
+        """Members of families, right ones and wrong ones."""
+        for family, variants in {**families.MOVING, **families.WRONG}.items():
+            for number, variant in enumerate(variants):
+                rng = np.random.default_rng([2000, *family.encode(), number])
+                links, pairs, inputs = variant(rng, members)
+                loops = Loops(links, pairs.point, pairs.axis, pairs.turns, pairs.slides, [k - 1 for k in inputs],
+                              rng.uniform(0.5, 2.0, (members, len(inputs))))
+                slides = {k + 1 for k, turns in enumerate(pairs.turns[0]) if turns == 0}
+                for member in range(members):
+                    plain, *others = (self.look(mech9k, Mechanism(family, loops, member, s, 7, np.zeros(len(links))).text())
+                                      for s in (1.0, *UNITS))
+                    for s, other in zip(UNITS, others):
+                        self.compare(f'{family} {number}, member {member}, lengths times {s:g}', plain, other, s, slides)
+
+
+def examples():
+    """Programs and data files of the gallery that need no user procedures."""
+    with open(os.path.join(TREE, 'examples', 'list.txt'), encoding='utf-8') as file:
+        rows = [[word.strip() for word in line.split('|')] for line in file if line.strip() and line[0] != '#']
+    return [(program, os.path.join(TREE, 'examples', name, data)) for name, program, data, procedures, _ in rows
+            if not procedures]
+
+
+def main():
+    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
+    with tempfile.TemporaryDirectory() as folder:
+        units = Units(folder)
+        names = sorted(name for name in os.listdir(REFERENCE) if name.endswith('.nml'))
+        for name in names:
+            path = os.path.join(REFERENCE, name)
+            if name.startswith('kinematics_'):
+                units.file(mech9k, path)
+            else:
+                units.file(mech9d, path, '--set', 'time.intervals=1', '--set', 'time.end=1e-6')
+        for program, path in examples():
+            if program == 'mech9k':
+                units.file(mech9k, path)
+            else:
+                units.file(mech9d, path, '--set', 'time.intervals=1', '--set', 'time.end=1e-6')
+        units.families(mech9k, 1)
+        units.checks.finish()
+
+
+if __name__ == '__main__':
+    main()
