@@ -1,19 +1,20 @@
 !> Taylor arithmetic: a value with its first and second derivative in one variable, carried exactly
-!> through arithmetic and the usual functions. Uses kinds, taylor_arithmetic.
+!> through arithmetic and the usual functions. Uses kinds, taylor_arithmetic, taylor_comparison.
 !>
 !> Write a formula with `type(taylor)` as with real numbers; mixed operations with real numbers and
 !> integers work, and so do arrays.
 module mech9_taylor
   use mech9_kinds, only: wp
   use mech9_taylor_arithmetic, only: taylor, variable, constant, chain, assignment(=), operator(+), &
-    operator(-), operator(*), operator(/), operator(<), operator(<=), operator(>), operator(>=), &
-    operator(==), operator(/=)
+    operator(-), operator(*), operator(/)
+  use mech9_taylor_comparison, only: operator(<), operator(<=), operator(>), operator(>=), operator(==), operator(/=)
   implicit none
   private
   public :: taylor, variable, constant
   public :: assignment(=), operator(+), operator(-), operator(*), operator(/), operator(**)
   public :: operator(<), operator(<=), operator(>), operator(>=), operator(==), operator(/=)
-  public :: sqrt, exp, log, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, abs, min, max
+  public :: sqrt, exp, log, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, abs, sign, min, max
+  public :: hypot, sum, dot_product, norm2
 
   interface operator(**)
     module procedure power_ti, power_tr, power_tt, power_rt
@@ -82,6 +83,26 @@ module mech9_taylor
   interface max
     module procedure max_tt, max_tr, max_rt
   end interface max
+
+  interface sign
+    module procedure sign_tt, sign_tr, sign_rt
+  end interface sign
+
+  interface hypot
+    module procedure hypot_tt, hypot_tr, hypot_rt
+  end interface hypot
+
+  interface sum
+    module procedure sum_t
+  end interface sum
+
+  interface dot_product
+    module procedure dot_product_tt, dot_product_tr, dot_product_rt
+  end interface dot_product
+
+  interface norm2
+    module procedure norm2_t
+  end interface norm2
 
 contains
 
@@ -295,4 +316,82 @@ contains
 
     max_rt = merge(constant(a), b, a >= b%value)
   end function max_rt
+
+  !> |a| with the sign of b.
+  elemental type(taylor) function sign_tr(a, b)
+    type(taylor), intent(in) :: a
+    real(wp), intent(in) :: b
+
+    sign_tr = sign(1.0_wp, a%value)*sign(1.0_wp, b)*a
+  end function sign_tr
+
+  elemental type(taylor) function sign_tt(a, b)
+    type(taylor), intent(in) :: a, b
+
+    sign_tt = sign_tr(a, b%value)
+  end function sign_tt
+
+  elemental type(taylor) function sign_rt(a, b)
+    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    sign_rt = constant(sign(a, b%value))
+  end function sign_rt
+
+  elemental type(taylor) function hypot_tt(a, b)
+    type(taylor), intent(in) :: a, b
+
+    hypot_tt = norm2_t([a, b])
+  end function hypot_tt
+
+  elemental type(taylor) function hypot_tr(a, b)
+    type(taylor), intent(in) :: a
+    real(wp), intent(in) :: b
+
+    hypot_tr = norm2_t([a, constant(b)])
+  end function hypot_tr
+
+  elemental type(taylor) function hypot_rt(a, b)
+    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    hypot_rt = norm2_t([constant(a), b])
+  end function hypot_rt
+
+  pure type(taylor) function sum_t(a)
+    type(taylor), intent(in) :: a(:)
+
+    sum_t = taylor(sum(a%value), sum(a%first), sum(a%second))
+  end function sum_t
+
+  pure type(taylor) function dot_product_tt(a, b)
+    type(taylor), intent(in) :: a(:), b(:)
+
+    dot_product_tt = sum_t(a*b)
+  end function dot_product_tt
+
+  pure type(taylor) function dot_product_tr(a, b)
+    type(taylor), intent(in) :: a(:)
+    real(wp), intent(in) :: b(:)
+
+    dot_product_tr = sum_t(a*b)
+  end function dot_product_tr
+
+  pure type(taylor) function dot_product_rt(a, b)
+    real(wp), intent(in) :: a(:)
+    type(taylor), intent(in) :: b(:)
+
+    dot_product_rt = sum_t(a*b)
+  end function dot_product_rt
+
+  !> The length of a vector, from |a|^2 differentiated twice, without squares that overflow.
+  pure type(taylor) function norm2_t(a)
+    type(taylor), intent(in) :: a(:)
+    real(wp) :: length, rate
+
+    length = norm2(a%value)
+    rate = sum(a%value/length*a%first)
+    norm2_t = taylor(length, rate, &
+                     sum(a%value/length*a%second) + (sum(a%first/length*a%first) - rate/length*rate))
+  end function norm2_t
 end module mech9_taylor

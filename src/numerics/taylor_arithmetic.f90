@@ -1,11 +1,10 @@
-!> Taylor arithmetic, first half: the type, its operations and comparisons. Uses kinds only.
+!> Taylor arithmetic, first part: the type and its operations. Uses kinds only.
 module mech9_taylor_arithmetic
   use mech9_kinds, only: wp
   implicit none
   private
   public :: taylor, variable, constant, chain
   public :: assignment(=), operator(+), operator(-), operator(*), operator(/)
-  public :: operator(<), operator(<=), operator(>), operator(>=), operator(==), operator(/=)
 
   !> A function of one variable x at some x.
   type :: taylor
@@ -33,30 +32,6 @@ module mech9_taylor_arithmetic
   interface operator(/)
     module procedure divide, divide_tr, divide_rt, divide_ti, divide_it
   end interface operator(/)
-
-  interface operator(<)
-    module procedure less_tt, less_tr, less_rt
-  end interface operator(<)
-
-  interface operator(<=)
-    module procedure less_equal_tt, less_equal_tr, less_equal_rt
-  end interface operator(<=)
-
-  interface operator(>)
-    module procedure greater_tt, greater_tr, greater_rt
-  end interface operator(>)
-
-  interface operator(>=)
-    module procedure greater_equal_tt, greater_equal_tr, greater_equal_rt
-  end interface operator(>=)
-
-  interface operator(==)
-    module procedure equal_tt, equal_tr, equal_rt
-  end interface operator(==)
-
-  interface operator(/=)
-    module procedure unequal_tt, unequal_tr, unequal_rt
-  end interface operator(/=)
 
 contains
 
@@ -246,124 +221,4 @@ contains
 
     divide_it = divide_rt(real(a, wp), b)
   end function divide_it
-
-  elemental logical function less_tt(a, b)
-    type(taylor), intent(in) :: a, b
-
-    less_tt = a%value < b%value
-  end function less_tt
-
-  elemental logical function less_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
-
-    less_tr = a%value < b
-  end function less_tr
-
-  elemental logical function less_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
-
-    less_rt = a < b%value
-  end function less_rt
-
-  elemental logical function less_equal_tt(a, b)
-    type(taylor), intent(in) :: a, b
-
-    less_equal_tt = a%value <= b%value
-  end function less_equal_tt
-
-  elemental logical function less_equal_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
-
-    less_equal_tr = a%value <= b
-  end function less_equal_tr
-
-  elemental logical function less_equal_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
-
-    less_equal_rt = a <= b%value
-  end function less_equal_rt
-
-  elemental logical function greater_tt(a, b)
-    type(taylor), intent(in) :: a, b
-
-    greater_tt = a%value > b%value
-  end function greater_tt
-
-  elemental logical function greater_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
-
-    greater_tr = a%value > b
-  end function greater_tr
-
-  elemental logical function greater_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
-
-    greater_rt = a > b%value
-  end function greater_rt
-
-  elemental logical function greater_equal_tt(a, b)
-    type(taylor), intent(in) :: a, b
-
-    greater_equal_tt = a%value >= b%value
-  end function greater_equal_tt
-
-  elemental logical function greater_equal_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
-
-    greater_equal_tr = a%value >= b
-  end function greater_equal_tr
-
-  elemental logical function greater_equal_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
-
-    greater_equal_rt = a >= b%value
-  end function greater_equal_rt
-
-  elemental logical function equal_tt(a, b)
-    type(taylor), intent(in) :: a, b
-
-    equal_tt = a%value <= b%value .and. a%value >= b%value
-  end function equal_tt
-
-  elemental logical function equal_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
-
-    equal_tr = a%value <= b .and. a%value >= b
-  end function equal_tr
-
-  elemental logical function equal_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
-
-    equal_rt = a <= b%value .and. a >= b%value
-  end function equal_rt
-
-  elemental logical function unequal_tt(a, b)
-    type(taylor), intent(in) :: a, b
-
-    unequal_tt = a%value < b%value .or. a%value > b%value
-  end function unequal_tt
-
-  elemental logical function unequal_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
-
-    unequal_tr = a%value < b .or. a%value > b
-  end function unequal_tr
-
-  elemental logical function unequal_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
-
-    unequal_rt = a < b%value .or. a > b%value
-  end function unequal_rt
 end module mech9_taylor_arithmetic

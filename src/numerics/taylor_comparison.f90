@@ -1,0 +1,238 @@
+!> Taylor arithmetic, second part: comparisons, which look at values only. Uses kinds, taylor_arithmetic.
+module mech9_taylor_comparison
+  use mech9_kinds, only: wp
+  use mech9_taylor_arithmetic, only: taylor
+  implicit none
+  private
+  public :: operator(<), operator(<=), operator(>), operator(>=), operator(==), operator(/=)
+
+  interface operator(<)
+    module procedure less_tt, less_tr, less_rt, less_ti, less_it
+  end interface operator(<)
+
+  interface operator(<=)
+    module procedure less_equal_tt, less_equal_tr, less_equal_rt, less_equal_ti, less_equal_it
+  end interface operator(<=)
+
+  interface operator(>)
+    module procedure greater_tt, greater_tr, greater_rt, greater_ti, greater_it
+  end interface operator(>)
+
+  interface operator(>=)
+    module procedure greater_equal_tt, greater_equal_tr, greater_equal_rt, greater_equal_ti, greater_equal_it
+  end interface operator(>=)
+
+  interface operator(==)
+    module procedure equal_tt, equal_tr, equal_rt, equal_ti, equal_it
+  end interface operator(==)
+
+  interface operator(/=)
+    module procedure unequal_tt, unequal_tr, unequal_rt, unequal_ti, unequal_it
+  end interface operator(/=)
+
+contains
+
+  elemental logical function less_tt(a, b)
+    type(taylor), intent(in) :: a, b
+
+    less_tt = a%value < b%value
+  end function less_tt
+
+  elemental logical function less_tr(a, b)
+    type(taylor), intent(in) :: a
+    real(wp), intent(in) :: b
+
+    less_tr = a%value < b
+  end function less_tr
+
+  elemental logical function less_rt(a, b)
+    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    less_rt = a < b%value
+  end function less_rt
+
+  elemental logical function less_equal_tt(a, b)
+    type(taylor), intent(in) :: a, b
+
+    less_equal_tt = a%value <= b%value
+  end function less_equal_tt
+
+  elemental logical function less_equal_tr(a, b)
+    type(taylor), intent(in) :: a
+    real(wp), intent(in) :: b
+
+    less_equal_tr = a%value <= b
+  end function less_equal_tr
+
+  elemental logical function less_equal_rt(a, b)
+    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    less_equal_rt = a <= b%value
+  end function less_equal_rt
+
+  elemental logical function greater_tt(a, b)
+    type(taylor), intent(in) :: a, b
+
+    greater_tt = a%value > b%value
+  end function greater_tt
+
+  elemental logical function greater_tr(a, b)
+    type(taylor), intent(in) :: a
+    real(wp), intent(in) :: b
+
+    greater_tr = a%value > b
+  end function greater_tr
+
+  elemental logical function greater_rt(a, b)
+    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    greater_rt = a > b%value
+  end function greater_rt
+
+  elemental logical function greater_equal_tt(a, b)
+    type(taylor), intent(in) :: a, b
+
+    greater_equal_tt = a%value >= b%value
+  end function greater_equal_tt
+
+  elemental logical function greater_equal_tr(a, b)
+    type(taylor), intent(in) :: a
+    real(wp), intent(in) :: b
+
+    greater_equal_tr = a%value >= b
+  end function greater_equal_tr
+
+  elemental logical function greater_equal_rt(a, b)
+    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    greater_equal_rt = a >= b%value
+  end function greater_equal_rt
+
+  elemental logical function equal_tt(a, b)
+    type(taylor), intent(in) :: a, b
+
+    equal_tt = a%value <= b%value .and. a%value >= b%value
+  end function equal_tt
+
+  elemental logical function equal_tr(a, b)
+    type(taylor), intent(in) :: a
+    real(wp), intent(in) :: b
+
+    equal_tr = a%value <= b .and. a%value >= b
+  end function equal_tr
+
+  elemental logical function equal_rt(a, b)
+    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    equal_rt = a <= b%value .and. a >= b%value
+  end function equal_rt
+
+  elemental logical function unequal_tt(a, b)
+    type(taylor), intent(in) :: a, b
+
+    unequal_tt = a%value < b%value .or. a%value > b%value
+  end function unequal_tt
+
+  elemental logical function unequal_tr(a, b)
+    type(taylor), intent(in) :: a
+    real(wp), intent(in) :: b
+
+    unequal_tr = a%value < b .or. a%value > b
+  end function unequal_tr
+
+  elemental logical function unequal_rt(a, b)
+    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    unequal_rt = a < b%value .or. a > b%value
+  end function unequal_rt
+
+  elemental logical function less_ti(a, b)
+    type(taylor), intent(in) :: a
+    integer, intent(in) :: b
+
+    less_ti = less_tr(a, real(b, wp))
+  end function less_ti
+
+  elemental logical function less_it(a, b)
+    integer, intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    less_it = less_rt(real(a, wp), b)
+  end function less_it
+
+  elemental logical function less_equal_ti(a, b)
+    type(taylor), intent(in) :: a
+    integer, intent(in) :: b
+
+    less_equal_ti = less_equal_tr(a, real(b, wp))
+  end function less_equal_ti
+
+  elemental logical function less_equal_it(a, b)
+    integer, intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    less_equal_it = less_equal_rt(real(a, wp), b)
+  end function less_equal_it
+
+  elemental logical function greater_ti(a, b)
+    type(taylor), intent(in) :: a
+    integer, intent(in) :: b
+
+    greater_ti = greater_tr(a, real(b, wp))
+  end function greater_ti
+
+  elemental logical function greater_it(a, b)
+    integer, intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    greater_it = greater_rt(real(a, wp), b)
+  end function greater_it
+
+  elemental logical function greater_equal_ti(a, b)
+    type(taylor), intent(in) :: a
+    integer, intent(in) :: b
+
+    greater_equal_ti = greater_equal_tr(a, real(b, wp))
+  end function greater_equal_ti
+
+  elemental logical function greater_equal_it(a, b)
+    integer, intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    greater_equal_it = greater_equal_rt(real(a, wp), b)
+  end function greater_equal_it
+
+  elemental logical function equal_ti(a, b)
+    type(taylor), intent(in) :: a
+    integer, intent(in) :: b
+
+    equal_ti = equal_tr(a, real(b, wp))
+  end function equal_ti
+
+  elemental logical function equal_it(a, b)
+    integer, intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    equal_it = equal_rt(real(a, wp), b)
+  end function equal_it
+
+  elemental logical function unequal_ti(a, b)
+    type(taylor), intent(in) :: a
+    integer, intent(in) :: b
+
+    unequal_ti = unequal_tr(a, real(b, wp))
+  end function unequal_ti
+
+  elemental logical function unequal_it(a, b)
+    integer, intent(in) :: a
+    type(taylor), intent(in) :: b
+
+    unequal_it = unequal_rt(real(a, wp), b)
+  end function unequal_it
+end module mech9_taylor_comparison
