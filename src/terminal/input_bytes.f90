@@ -55,15 +55,25 @@ module mech9_input_bytes
 
 contains
 
-  !> The next byte; waits for it.
-  subroutine next_byte(self, byte, status)
+  !> The next byte; waits for it. Who asks whether it was disturbed is told so at once instead, without a byte,
+  !> when a signal came that ends nothing: the program was stopped and goes on, the window has another size.
+  subroutine next_byte(self, byte, status, disturbed)
     class(input_bytes_type), intent(inout) :: self
     character, intent(out) :: byte
     integer, intent(out) :: status   !< input_read, or why there is none
+    logical, intent(out), optional :: disturbed
+    logical :: by_signal
 
     byte = achar(0)
     status = input_read
-    if (self%place == self%filled) call self%refill(status)
+    by_signal = .false.
+    if (present(disturbed)) disturbed = .false.
+    do while (self%place == self%filled .and. status == input_read)
+      call self%refill(status, by_signal)
+      if (.not. (by_signal .and. present(disturbed))) cycle
+      disturbed = .true.
+      return
+    end do
     if (status /= input_read) return
     self%place = self%place + 1
     byte = self%buffer(self%place:self%place)
@@ -76,14 +86,18 @@ contains
     if (self%place > 0) self%place = self%place - 1
   end subroutine step_back
 
-  subroutine refill(self, status)
+  !> Wait for input and take it; `disturbed` is true where a signal broke the waiting off.
+  subroutine refill(self, status, disturbed)
     class(input_bytes_type), intent(inout) :: self
     integer, intent(out) :: status
+    logical, intent(out) :: disturbed
     type(poll_type) :: asked
     integer :: ready, got
 
+    disturbed = .false.
+    status = input_read
     ready = 0
-    do while (ready <= 0)
+    do while (ready == 0)
       if (interrupted()) exit
       ready = int(c_poll(asked, 1_c_long, patience))
     end do
@@ -91,6 +105,8 @@ contains
       status = merge(input_ended, input_interrupted, hung_up())
       return
     end if
+    disturbed = ready < 0
+    if (disturbed) return
     got = int(c_read(asked%descriptor, self%buffer, int(buffer_size, c_size_t)))
     self%place = 0
     self%filled = max(got, 0)

@@ -11,7 +11,7 @@ module mech9_libedit
   public :: history_winit, history_wend, history_w, c_dup, c_fdopen, c_fclose, c_setlocale
   public :: history_event_type, line_info_type, wide
   public :: el_prompt, el_editor, el_signal, el_bind, el_setty, el_addfn, el_hist, el_getcfn, el_clientdata, &
-            el_prep_term
+            el_prep_term, el_refresh
   public :: h_setsize, h_enter, h_setunique, cc_refresh, cc_error, cc_redisplay, lc_ctype
 
   !> A wide character (wchar_t of Linux): a code point.
@@ -19,7 +19,7 @@ module mech9_libedit
 
   ! What el_wset, history_w and setlocale are asked for.
   integer(c_int), parameter :: el_prompt = 0, el_editor = 2, el_signal = 3, el_bind = 4, el_setty = 8, &
-                               el_addfn = 9, el_hist = 10, el_getcfn = 13, el_clientdata = 14, el_prep_term = 16
+                               el_addfn = 9, el_hist = 10, el_getcfn = 13, el_clientdata = 14, el_prep_term = 16, el_refresh = 20
   integer(c_int), parameter :: h_setsize = 1, h_enter = 10, h_setunique = 20
   integer(c_int), parameter :: lc_ctype = 0
   ! What a function bound to a key answers.

@@ -15,7 +15,7 @@ module mech9_libedit_editor
   use mech9_libedit, only: el_init, el_end, el_wset, el_wget, el_wgets, el_wline, el_winsertstr, &
                            history_winit, history_wend, history_w, c_dup, c_fdopen, c_fclose, c_setlocale, &
                            history_event_type, line_info_type, wide, lc_ctype, el_prompt, el_editor, el_signal, el_bind, &
-                           el_setty, el_addfn, el_hist, el_getcfn, el_clientdata, el_prep_term, h_setsize, h_enter, &
+                           el_setty, el_addfn, el_hist, el_getcfn, el_clientdata, el_prep_term, el_refresh, h_setsize, h_enter, &
                            h_setunique, cc_refresh, cc_error, cc_redisplay
   implicit none
   private
@@ -198,10 +198,15 @@ contains
     type(c_ptr), value :: editor
     integer(wide), intent(out) :: key
     type(box_type), pointer :: box
+    logical :: disturbed
 
     box => box_of(editor)
     do
-      call read_character(box%bytes, key, box%status)
+      call read_character(box%bytes, key, box%status, disturbed)
+      if (disturbed) then
+        call draw_again(editor)
+        cycle
+      end if
       if (box%status /= input_read .or. .not. is_letter(key)) exit
       if (line_length(editor) < longest_line) exit
       write (error_unit, '(a)', advance='no') bell
@@ -209,6 +214,16 @@ contains
     if (box%status == input_read .and. key == iachar(ctrl_c)) box%status = input_interrupted
     get_key = merge(1_c_int, 0_c_int, box%status == input_read)
   end function get_key
+
+  !> Draw prompt and line once more, from the beginning of the line that the cursor is in.
+  subroutine draw_again(editor)
+    type(c_ptr), intent(in) :: editor
+    integer(c_int) :: ignored
+
+    write (error_unit, '(a)', advance='no') achar(13)
+    flush (error_unit)
+    ignored = el_wset(editor, el_refresh, nothing, nothing, nothing)
+  end subroutine draw_again
 
   !> Not a key that does something.
   pure logical function is_letter(key)
@@ -227,16 +242,17 @@ contains
   end function line_length
 
   !> One UTF-8 character; unknown_character for bytes that are none.
-  subroutine read_character(bytes, point, status)
+  subroutine read_character(bytes, point, status, disturbed)
     type(input_bytes_type), intent(inout) :: bytes
     integer(wide), intent(out) :: point
     integer, intent(out) :: status
+    logical, intent(out) :: disturbed     !< as that of next_byte
     character(len=4) :: letter
     integer :: length, i
 
     point = 0
-    call bytes%next_byte(letter(1:1), status)
-    if (status /= input_read) return
+    call bytes%next_byte(letter(1:1), status, disturbed)
+    if (status /= input_read .or. disturbed) return
     ! as many bytes as there are leading ones
     length = max(1, leadz(not(ishft(ichar(letter(1:1)), bit_size(1) - 8))))
     point = unknown_character

@@ -17,10 +17,10 @@ module mech9_system
   !> SIG_DFL and SIG_IGN as addresses.
   integer(c_intptr_t), parameter :: default_action = 0, ignore_action = 1
 
-  !> The number of the signal that came, 0 before; set by the signal handler, read by `interrupted`. A signal handler is given nothing but the number
-  !> of the signal, so that it can only reach a module variable: this is the one exception of the
-  !> project to its rule that no module variable changes. An interrupt means the whole process, hence
-  !> every mechanism running in it.
+  !> The number of the signal that came, 0 before; set by the signal handler, read by `interrupted`. A signal
+  !> handler is given nothing but the number of the signal, so that it can only reach a module variable: this
+  !> is the one exception of the project to its rule that no module variable changes. An interrupt means the
+  !> whole process, hence every mechanism running in it.
   integer(c_int), volatile, bind(c, name='mech9_interrupt_flag') :: interrupt_flag = 0
 
   interface
@@ -70,7 +70,8 @@ contains
   !> From now on the first Ctrl-C, request to terminate or closing of the terminal only sets what
   !> `interrupted` tells, so that a loop can end in order; a second one ends the program at once. A reader
   !> that goes away (`mech9k ... | head`) and a file that may not grow (ulimit -f) become errors of writing
-  !> instead of the death of the program. Called again, it forgets what was caught: a session that outlives an interrupted run is ready for the next.
+  !> instead of the death of the program. Called again, it forgets what was caught: a session that outlives an
+  !> interrupted run is ready for the next.
   subroutine catch_interrupts()
     type(c_funptr) :: previous
 

@@ -134,6 +134,21 @@ def test_hostile_keys():
             checks.true('Backtrace' not in terminal.plain() and 'Sanitizer' not in terminal.plain(), 'no crash', terminal.plain()[-2000:])
 
 
+def test_stopped():
+    """Stopped by Ctrl-Z and continued, the program shows the line again that was being edited."""
+    with Terminal([PROBE], stdout=subprocess.PIPE) as terminal:
+        terminal.expect('1> ')
+        terminal.type('abd')
+        terminal.expect('abd')
+        terminal.signal(signal.SIGCONT)
+        checks.true(terminal.expect('1> abd'), 'the prompt and the line are shown again', terminal.seen)
+        terminal.type('\x7fc\r')
+        terminal.expect('2> ')
+        terminal.type('\x04')
+        checks.equal(terminal.ends(), 0, 'and it goes on')
+        checks.equal(answers(terminal.process.stdout.read()), ([b'abc'], 'ended'), 'with the line as it was')
+
+
 def test_simple_terminal():
     """What cannot move its cursor gets no sequences that would move it."""
     for term in ('dumb', ''):
@@ -156,6 +171,7 @@ if available():
         test_editing()
         test_completion()
         test_hostile_keys()
+        test_stopped()
     test_ends()
     test_simple_terminal()
 else:
