@@ -84,22 +84,27 @@ module mech9_taylor
     module procedure max_tt, max_tr, max_rt
   end interface max
 
+  !> The size of the first with the sign of the second.
   interface sign
     module procedure sign_tt, sign_tr, sign_rt
   end interface sign
 
+  !> The third side of a right-angled triangle.
   interface hypot
     module procedure hypot_tt, hypot_tr, hypot_rt
   end interface hypot
 
+  !> Of the elements of a vector.
   interface sum
     module procedure sum_t
   end interface sum
 
+  !> Scalar product of two vectors.
   interface dot_product
     module procedure dot_product_tt, dot_product_tr, dot_product_rt
   end interface dot_product
 
+  !> Length of a vector.
   interface norm2
     module procedure norm2_t
   end interface norm2
