@@ -207,7 +207,8 @@ module mech9_grammar
                   'of these pictures: axes to the right and up, as in xz; iso; or the direction to the viewer, as in 1,-2,1', &
                   '''xz''', seldom=.true.), &
     item_row_type('output', 'poses', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
-                  'the HDF5 file holds the poses of all links too, and an .xdmf file beside it shows them in ParaView', '.true.'), &
+                  'the HDF5 file holds the poses of all links too, and an .xdmf file beside it shows them in ParaView', '.true.', &
+                  seldom=.true.), &
     item_row_type('output', 'compression', 'integer', 1, 1, '', optional, '0', '>=0', '', '', &
                   'how much the HDF5 file is compressed: 0 not at all (the fastest) to 9 (the smallest)', '4', seldom=.true.), &
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &

@@ -1,4 +1,7 @@
-"""The conversations that the tests lead: Fig. 1 of the paper and a pendulum."""
+"""The conversations that the tests lead: Fig. 1 of the paper and a pendulum.
+
+A new name of the data file that is asked for in every conversation is one step more here.
+"""
 
 TITLE_FIG1 = 'Fig. 1: two closed chains, one degree of freedom'
 LINKS = {1: '1 6', 2: '6 5', 3: '3 5', 4: '2 3', 5: '1 2', 6: '1 4', 7: '3 4'}
