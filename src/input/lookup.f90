@@ -154,13 +154,14 @@ contains
   pure integer function text_length(group, name) result(length)
     type(group_type), intent(in) :: group
     character(len=*), intent(in) :: name
-    integer :: i
+    integer :: i, row
 
     i = find_item(group, name)
     if (i > 0) then
       length = len_trim(group%items(i)%values(1)%text)
     else
-      associate (default => item_table(row_of(group, name))%default)
+      row = row_of(group, name)
+      associate (default => item_table(row)%default)
         length = 0
         if (index(default, '''''') == 1) length = len_trim(default) - 2
       end associate
