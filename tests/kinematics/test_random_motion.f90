@@ -41,7 +41,7 @@ contains
     type(mechanism_type) :: mechanism
     integer :: k
 
-    links = random_links(n_links, loops, random)
+    allocate (links, source=random_links(n_links, loops, random))
     if (family == 1) axes = planar_axes(size(links, 2), 5, random)
     if (family == 2) axes = spherical_axes(size(links, 2), random)
     if (family == 3) axes = spatial_axes(size(links, 2), 5, random)

@@ -95,7 +95,22 @@ def on_terminal(*words):
     return got.decode()
 
 
+def has_terminals():
+    """Whether the system gives pseudo-terminals; some containers have none."""
+    try:
+        master, slave = pty.openpty()
+    except OSError as error:
+        print(f"no pseudo-terminal here ({error}): what is shown on terminals is not checked")
+        return False
+    os.close(master)
+    os.close(slave)
+    return True
+
+
 def test_progress():
+    check(run("progress", "2").stderr == b"", "nothing where standard error is no terminal")
+    if not has_terminals():
+        return
     got = on_terminal("progress", "3")
     lines = got.split("\r")
     shown = [line for line in lines if "left" in line]
@@ -109,7 +124,6 @@ def test_progress():
     check("\n" not in got, "on one line")
     check(on_terminal("progress", "3", "quiet") == "", "nothing from a quiet run")
     check(on_terminal("progress", "0") == "", "nothing from a short run")
-    check(run("progress", "2").stderr == b"", "nothing where standard error is no terminal")
 
 
 def test_table():
