@@ -5,7 +5,7 @@
 !> alone and with velocities, accelerations and one point, and the ratios of both to the closed form.
 program bench_positions
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_singular
   use mech9_clock, only: seconds
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
@@ -113,21 +113,23 @@ contains
     second = first
     third = first
     begin = seconds()
-    do i = 1, mechanism%time%intervals
+    outcome%converged = .true.
+    positions: do i = 1, mechanism%time%intervals
       state%q = 3.0_wp*(first - second) + third
       state%t = mechanism%time%time(i)
       call set_inputs(mechanism, state%t, state%q, state%dq, state%ddq, err)
+      if (allocated(err)) exit
       do b = 1, size(plan%blocks)
         call close_block(plan, plan%blocks(b), state, work(b), outcome, err)
-        if (.not. outcome%converged) stop 1
+        if (allocated(err) .or. .not. outcome%converged) exit positions
       end do
       third = second
       second = first
       first = state%q
-      ! the first two positions have no three before them
-      if (i == 1) third = second
-    end do
+    end do positions
     time = seconds() - begin
+    if (.not. (allocated(err) .or. outcome%converged)) call raise(err, exit_singular, 'a position was not closed')
+    call stop_at(err, mechanism%title)
   end subroutine time_closing
 
   !> Positions, velocities, accelerations of all coordinates and of the last point, the branch watched.

@@ -29,10 +29,11 @@ program bench_precision
     character(len=24) :: columns       !< of the results, in the order of the reference's columns after the time
   end type problem_type
 
-  type(problem_type), parameter :: problems(5) = [ &
+  type(problem_type), parameter :: problems(6) = [ &
     problem_type('andrews', 'examples/andrews/andrews.nml', 'a03_andrews_ivp.csv', 0.03_wp, 'q1 q2 q3 q4 q5 q6 q7'), &
     problem_type('governor', 'examples/flyball_governor/flyball_governor.nml', 'a05_flyball.csv', 10.0_wp, 'q2'), &
     problem_type('two_windows', 'examples/n_four_bar/n_four_bar_2.nml', 'a02_nfourbar_N2.csv', 10.0_wp, 'B0.x B0.y'), &
+    problem_type('forty_windows', 'examples/n_four_bar/n_four_bar_40.nml', 'a02_nfourbar_N40.csv', 10.0_wp, 'B0.x B0.y'), &
     problem_type('bricard', 'examples/bricard/bricard.nml', 'a04_bricard.csv', 9.0_wp, 'P3.x P3.y P3.z'), &
     problem_type('slider_crank', 'tests/reference/dynamics_spatial_slider_crank.nml', '', 1.0_wp, 'q1 q5 q7')]
 

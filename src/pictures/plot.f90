@@ -3,7 +3,7 @@
 module mech9_plot
   use, intrinsic :: iso_fortran_env, only: output_unit
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, add_place, exit_file
+  use mech9_error, only: error_type, raise, add_place, exit_usage, exit_file
   use mech9_text, only: string_type, to_text
   use mech9_path, only: folder_of, name_of, ending_of, with_ending
   use mech9_text_file, only: text_file_type
@@ -16,6 +16,8 @@ module mech9_plot
   implicit none
   private
   public :: plot_type, plot_columns, default_picture
+
+  character(len=*), parameter :: script_ending = 'gp'
 
   !> A sink that keeps what it needs of the rows and draws when it is closed. The table, if there is one, is to be
   !> closed before.
@@ -54,6 +56,11 @@ contains
     self%title = title
     self%picture = picture
     if (self%request%target /= '') self%picture = self%request%target
+    if (self%picture == table .or. with_ending(self%picture, script_ending) == table) then
+      call raise(err, exit_usage, '--plot: the picture '//self%picture//" or its script would overwrite the table '"// &
+                 table//"'; give one of them another name")
+      return
+    end if
     self%table = table
     self%said = ''
     self%data = new_plot_data(names, units, self%request%curves, expected)
@@ -119,7 +126,7 @@ contains
     type(text_file_type) :: file
     logical :: found
 
-    script_path = with_ending(self%picture, 'gp')
+    script_path = with_ending(self%picture, script_ending)
     folder = folder_of(self%picture)
     source = ''
     if (can_be_read(self%table) .and. folder_of(self%table) == folder) source = name_of(self%table)

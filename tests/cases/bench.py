@@ -79,13 +79,13 @@ with tempfile.TemporaryDirectory() as folder:
         # round-off times the conditioning of a chain
         checks.true(error < 1e-10, 'the accelerations of the four-bar are those of the closed form', error)
         problems = [heading for heading in tables if heading not in ('Time per position', 'Growth')]
-        checks.equal(len(problems), 5, 'five problems')
+        checks.equal(len(problems), 6, 'six problems')
         for heading in problems:
             check_precision(heading, tables[heading])
         check_growth(tables['Growth'])
         pictures = re.findall(r'\((pictures/\S+\.svg)\)', page)
         if shutil.which('gnuplot'):
-            checks.equal(len(pictures), 6, 'a picture for each problem and one of the growth')
+            checks.equal(len(pictures), 7, 'a picture for each problem and one of the growth')
         for picture in pictures:
             xml.parse(os.path.join(folder, picture))
     else:

@@ -188,6 +188,10 @@ def test_refusals(folder):
     done = run(mech9k, FIG1, '--table', 'none.dat', '--plot', 'q1,q33', folder=folder)
     checks.true(done.returncode == 2 and "did you mean 'q3'?" in done.stderr, 'an unknown name', done.stderr)
     checks.equal(os.listdir(folder), [], 'nothing is written then')
+    for table, plot in (('a.gp', 'q1'), ('a.svg', 'a.svg:q1'), ('b/a.gp', 'b/a.png:q1')):
+        done = run(mech9k, FIG1, '--table', table, '--plot', plot, folder=folder)
+        checks.true(done.returncode == 2 and 'overwrite the table' in done.stderr, f'{plot} over {table}', done.stderr)
+    checks.equal(os.listdir(folder), [], 'nor then')
     done = run(mech9k, FIG1, '--no-write', '--plot', 'q1', folder=folder)
     checks.equal(done.returncode, 2, 'a plot that is not to be written')
     done = run(mech9k, FIG1, '--plot', 'no/such/folder.svg:q1', folder=folder)
