@@ -64,10 +64,13 @@ contains
     integer, intent(in) :: n_quantities, n_columns   !< at most
     integer, intent(in) :: expected_rows             !< there may be more, or fewer
     integer, intent(in) :: compression               !< 0 none to 9 most
+    integer :: chunks
 
     allocate (self%quantities(n_quantities))
     self%compression = compression
-    self%chunk_rows = min(max(expected_rows, 1), rows_within(largest_chunk, n_columns))
+    ! as many in each chunk, so that the last one is filled
+    chunks = 1 + (max(expected_rows, 1) - 1)/rows_within(largest_chunk, n_columns)
+    self%chunk_rows = 1 + (max(expected_rows, 1) - 1)/chunks
     if (compression > 0) self%chunk_rows = min(self%chunk_rows, &
                                                max(least_chunk_rows, 1 + (expected_rows - 1)/compressed_chunks))
     self%capacity = min(most_buffered, rows_within(buffer_size, n_columns))
