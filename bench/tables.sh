@@ -70,7 +70,7 @@ write_tables() {
 # Benchmarks
 
 Measured by \`bench/run\`, which builds the programs with every instruction of the machine, runs them and writes this page.
-$([ $mode = full ] || echo "This was a quick run: its figures mean little.")
+$([ $mode = full ] || echo "This was a quick run, over a twentieth of the times told below: its figures mean little.")
 
 - machine: $(machine)
 - build: $(build_words)
