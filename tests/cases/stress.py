@@ -346,7 +346,7 @@ def part(mech9k, seed, family, number, members):
 
 
 def main():
-    mech9k = sys.argv[1]
+    mech9k = os.path.abspath(sys.argv[1])
     members = int(sys.argv[2]) if len(sys.argv) > 2 else 25
     seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1995
     only = sys.argv[4] if len(sys.argv) > 4 else ''
