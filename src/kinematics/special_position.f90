@@ -130,6 +130,8 @@ contains
     real(wp) :: speed, usual
     integer :: k
 
+    ! asked at every step of every block: the question first that costs least
+    if (.not. slides_far(plan, follower, b)) return
     usual = 0.0_wp
     call find_speeds(plan, follower, b, speed, usual)
     k = fastest_of(plan, follower, b)
@@ -140,6 +142,24 @@ contains
       finding = finding_type(escape, b, follower%departure%t + 1.0_wp/(ddq/dq - dq/q), k)
     end associate
   end subroutine find_escape
+
+  !> Whether a dependent coordinate of a block slides and is far.
+  pure logical function slides_far(plan, follower, b)
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(in) :: follower
+    integer, intent(in) :: b
+    integer :: i, k
+
+    slides_far = .false.
+    do i = 1, size(plan%blocks(b)%unknowns)
+      k = plan%blocks(b)%coordinates(i)
+      if (abs(follower%departure%q(k)) < far*plan%unit_of(k)) cycle
+      associate (step => plan%steps(plan%blocks(b)%unknowns(i)))
+        slides_far = step%is_screw .and. .not. abs(step%turn) > 0.0_wp
+      end associate
+      if (slides_far) return
+    end do
+  end function slides_far
 
   !> Whether the fastest coordinate of a block slides, is far, and moves as a power of 1/(T - t).
   pure logical function follows_power_law(plan, follower, b) result(follows)
