@@ -262,8 +262,8 @@ contains
   pure function right_aligned(word, width) result(field)
     character(len=*), intent(in) :: word
     integer, intent(in) :: width
-    character(len=:), allocatable :: field
+    character(len=max(width, len(word) + 1)) :: field
 
-    field = repeat(' ', max(width - len(word), 1))//word
+    field = repeat(' ', len(field) - len(word))//word
   end function right_aligned
 end module mech9_table
