@@ -218,8 +218,11 @@ contains
     character(len=*), intent(in) :: unit
     character(len=:), allocatable :: name
 
-    name = '1'
-    if (unit /= '') name = column_name(unit)
+    if (unit == '') then
+      name = '1'
+    else
+      name = column_name(unit)
+    end if
   end function unit_name
 
   pure function name_line(names) result(line)
@@ -242,6 +245,7 @@ contains
     integer :: i, k
 
     line = ''
+    name = ''
     do i = 1, size(names)
       name = trim(printable(names(i)%text))
       if (i > 1) line = line//','
