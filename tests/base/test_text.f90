@@ -27,6 +27,7 @@ contains
 
   subroutine integers_as_text(test)
     type(tester_type), intent(inout) :: test
+    integer, parameter :: none(0) = [integer ::]
 
     call same(test, to_text(0), '0')
     call same(test, to_text(-7), '-7')
@@ -34,7 +35,7 @@ contains
     call same(test, to_text(-huge(1)), '-2147483647')
     call same(test, to_text(huge(1_long)), '9223372036854775807')
     call same(test, to_text(-huge(1_long)), '-9223372036854775807')
-    call same(test, to_text([integer ::]), '')
+    call same(test, to_text(none), '')
     call same(test, to_text([5]), '5')
     call same(test, to_text([1, -2, 30]), '1, -2, 30')
     call same(test, to_text([1, -2, 30], ' '), '1 -2 30')

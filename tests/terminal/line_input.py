@@ -7,6 +7,7 @@ import random
 import signal
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 from mech9_cases import Checks
@@ -140,6 +141,7 @@ def test_stopped():
         terminal.expect('1> ')
         terminal.type('abd')
         terminal.expect('abd')
+        time.sleep(0.5)          # until it waits for the next key, as it does when a person stops it
         terminal.signal(signal.SIGCONT)
         checks.true(terminal.expect('1> abd'), 'the prompt and the line are shown again', terminal.seen)
         terminal.type('\x7fc\r')
