@@ -1,5 +1,6 @@
 !> The plan of dynamics: which links have inertia, and on which independent coordinates each frame
-!> depends. Uses kinds, pose, inertia, mechanism, plan, planar_motion, planar_lagrange.
+!> depends. Uses kinds, pose, inertia, mechanism, plan, planar_motion, planar_lagrange,
+!> articulated_bodies.
 !>
 !> Columns of Jacobians are kept only where a frame depends on the independent coordinate: frame s has
 !> the entries first(s) .. first(s+1)-1 of one long list. All frames of a closed block share one set of
@@ -12,6 +13,7 @@ module mech9_dynamics_plan
   use mech9_plan, only: plan_type, block_type
   use mech9_planar_motion, only: to_plane
   use mech9_planar_lagrange, only: planar_body_type, planar_body
+  use mech9_articulated_bodies, only: articulated_type, new_articulated, add_to_frame
   implicit none
   private
   public :: dynamics_plan_type, frame_body_type, make_dynamics_plan
@@ -37,6 +39,7 @@ module mech9_dynamics_plan
     integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame
     logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
     logical, allocatable :: load_links(:)              !< (N) links whose motion loads ask for
+    type(articulated_type) :: articulated              !< used where no chain is closed, but for planar arithmetic
   end type dynamics_plan_type
 
 contains
@@ -61,6 +64,7 @@ contains
     call find_bodies(mechanism, plan, dynamics)
     call find_columns(plan, dynamics)
     call find_carriers(plan, dynamics)
+    if (size(plan%closures) == 0 .and. .not. plan%planar%used) call lay_out_open_chains(plan, dynamics)
   end subroutine make_dynamics_plan
 
   !> Bodies with mass, moved into the frames of their links.
@@ -90,6 +94,22 @@ contains
     dynamics%bodies = dynamics%bodies(:n)
     if (plan%planar%used) dynamics%planar_bodies = dynamics%planar_bodies(:n)
   end subroutine find_bodies
+
+  !> Open chains as articulated bodies.
+  subroutine lay_out_open_chains(plan, dynamics)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer :: i
+
+    dynamics%articulated = new_articulated(plan%steps%parent, plan%steps%coordinate, &
+                                           abs(plan%steps%slide) > 0.0_wp .or. .not. plan%steps%is_screw)
+    do i = 1, size(dynamics%bodies)
+      associate (body => dynamics%bodies(i))
+        call add_to_frame(dynamics%articulated, body%frame, body%mass, body%centre, body%inertia)
+      end associate
+    end do
+    dynamics%articulated%used = .true.
+  end subroutine lay_out_open_chains
 
   !> The columns of all frames, block by block.
   subroutine find_columns(plan, dynamics)

@@ -1,13 +1,14 @@
 !> Lagrange's equations in the independent coordinates, (19): coefficients of motion, velocity terms and
 !> generalized forces from the Jacobians of the frames. Uses the kinematics floor, mechanism, loads,
-!> cholesky, dynamics_plan, jacobian, planar_lagrange.
+!> cholesky, dynamics_plan, jacobian, planar_lagrange, articulated_bodies.
 !>
 !> (21) and the terms of (19) that are squares of rates are not differentiated: with the Jacobians J_c of
 !> mass centres and J_w of angular velocities,
 !>   a_pr = sum m J_c,p . J_c,r + J_w,p . I J_w,r,
 !>   h_p  = sum m J_c,p . a_c + J_w,p . (I alpha + omega x I omega)
 !> with the accelerations a_c, alpha that rates alone give (no accelerations of independent coordinates);
-!> then a ddq_i = Q - h. The result is the same, at O(links I^2).
+!> then a ddq_i = Q - h. The result is the same, at O(links I^2). Open chains need no coefficients for their
+!> accelerations: the plan says where articulated bodies give them.
 module mech9_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular
@@ -24,10 +25,11 @@ module mech9_lagrange
   use mech9_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_dynamics_plan, only: dynamics_plan_type, frame_body_type
   use mech9_planar_lagrange, only: add_inertia, add_link_force
+  use mech9_articulated_bodies, only: articulated_work_type, new_articulated_work, solve_open_chains
   use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian, noise_of_rates
   implicit none
   private
-  public :: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations, show_state
+  public :: lagrange_work_type, new_lagrange_work, find_motion, find_equations, complete_accelerations, show_state
 
   !> Blocks whose least pivot is below this are at a singular position.
   real(wp), parameter :: singular = 1.0e-9_wp
@@ -40,6 +42,7 @@ module mech9_lagrange
     !> the accelerations that rates alone give. They only count beside noise; zero will do.
     real(wp), allocatable :: expected_b(:)
     real(wp), allocatable :: expected_ddq(:)
+    !> Of find_equations, and of find_motion where the plan does without articulated bodies.
     real(wp), allocatable :: coefficients(:, :)      !< a_pr, lower triangle
     real(wp), allocatable :: factors(:, :)
     real(wp), allocatable :: velocity_terms(:)       !< h_p
@@ -47,6 +50,7 @@ module mech9_lagrange
     real(wp), allocatable :: accelerations(:)        !< of the independent coordinates
     type(motion_view_type) :: view
     type(force_sum_type) :: sum
+    type(articulated_work_type) :: articulated
   end type lagrange_work_type
 
 contains
@@ -70,6 +74,7 @@ contains
     allocate (work%view%links(plan%n_links))
     allocate (work%view%q(plan%n_coordinates), work%view%dq(plan%n_coordinates), source=0.0_wp)
     work%sum = new_force_sum(plan%n_links, plan%n_coordinates)
+    if (dynamics%articulated%used) work%articulated = new_articulated_work(plan%n_coordinates)
   end function new_lagrange_work
 
   !> Rates of the dependent coordinates and accelerations of the independent ones, for closed positions
@@ -83,15 +88,15 @@ contains
     type(state_type), intent(inout) :: state
     type(lagrange_work_type), intent(inout) :: work
     type(error_type), allocatable, intent(out) :: err
-    integer :: b, n, failed_at
+    integer :: n, failed_at
+    logical :: found
 
-    state%ddq(plan%independent) = 0.0_wp
-    do b = 1, size(plan%blocks)
-      call move_block(plan, dynamics, b, state, work, err)
-      if (allocated(err)) return
-    end do
-    call collect_inertia(dynamics, state, work)
-    call collect_forces(mechanism, plan, dynamics, state, work, err)
+    if (dynamics%articulated%used) then
+      call move_open_chains(mechanism, plan, dynamics, state, work, found, err)
+      ! where a coordinate has no inertia, the coefficients tell which
+      if (allocated(err) .or. found) return
+    end if
+    call find_equations(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
     n = size(plan%independent)
     work%factors = work%coefficients
@@ -105,6 +110,55 @@ contains
     work%accelerations = work%forces - work%velocity_terms
     call cholesky_solve(n, work%factors, work%accelerations)
   end subroutine find_motion
+
+  !> Coefficients of motion, velocity terms and generalized forces, and the rates of the dependent coordinates;
+  !> see find_motion.
+  subroutine find_equations(mechanism, plan, dynamics, state, work, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(inout) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    type(error_type), allocatable, intent(out) :: err
+    integer :: b
+
+    state%ddq(plan%independent) = 0.0_wp
+    do b = 1, size(plan%blocks)
+      call move_block(plan, dynamics, b, state, work, err)
+      if (allocated(err)) return
+    end do
+    call collect_inertia(dynamics, state, work)
+    call collect_loads(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    if (size(mechanism%loads) > 0) call collect_forces(plan, dynamics, state, work)
+  end subroutine find_equations
+
+  !> The motion of open chains by articulated bodies. `found` is false where a coordinate has no inertia.
+  subroutine move_open_chains(mechanism, plan, dynamics, state, work, found, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(inout) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    logical, intent(out) :: found
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    found = .false.
+    state%ddq = 0.0_wp
+    call spread_velocities(plan, 1, plan%n_coordinates, state)
+    call spread_accelerations(plan, 1, plan%n_coordinates, state)
+    call collect_loads(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    do i = 2, plan%n_links
+      if (.not. dynamics%load_links(i)) cycle
+      work%articulated%applied(1:3, plan%frame_of(i)) = torque_on_frame(plan, state, i, work)
+      work%articulated%applied(4:6, plan%frame_of(i)) = work%sum%force(:, i)
+    end do
+    call solve_open_chains(dynamics%articulated, plan%n_coordinates, dynamics%gravity, state%r, state%p, state%axis_w, &
+                           state%axis_v, state%omega, state%alpha, state%a, work%sum%generalized, work%articulated, &
+                           work%accelerations, found)
+  end subroutine move_open_chains
 
   !> Rates and Jacobians of one block, and its accelerations from rates alone.
   subroutine move_block(plan, dynamics, b, state, work, err)
@@ -250,15 +304,15 @@ contains
     product = turn(r, turn(body%inertia, turn_back(r, vector)))
   end function inertia_times
 
-  !> Q_p (25): what the loads exert, on the frames and on the coordinates.
-  subroutine collect_forces(mechanism, plan, dynamics, state, work, err)
+  !> What the loads exert, on links and on coordinates.
+  subroutine collect_loads(mechanism, plan, dynamics, state, work, err)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(in) :: dynamics
     type(state_type), intent(in) :: state
     type(lagrange_work_type), intent(inout) :: work
     type(error_type), allocatable, intent(out) :: err
-    integer :: i, e, p, s
+    integer :: i
 
     if (size(mechanism%loads) == 0) return
     call show_state(plan, dynamics, state, work%view)
@@ -267,6 +321,16 @@ contains
       call mechanism%loads(i)%load%apply(work%view, work%sum, err)
       if (allocated(err)) return
     end do
+  end subroutine collect_loads
+
+  !> Q_p (25) of what the loads exert.
+  pure subroutine collect_forces(plan, dynamics, state, work)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    integer :: i, e, p, s
+
     do i = 2, plan%n_links
       if (.not. dynamics%load_links(i)) cycle
       call add_forces_on_link(plan, dynamics, state, i, work)
@@ -287,7 +351,7 @@ contains
     type(state_type), intent(in) :: state
     integer, intent(in) :: link
     type(lagrange_work_type), intent(inout) :: work
-    real(wp) :: arm(3), torque(3)
+    real(wp) :: torque(3)
     integer :: f, first, last, e, p
 
     f = plan%frame_of(link)
@@ -299,14 +363,25 @@ contains
                           work%sum%torque(:, link), work%forces)
       return
     end if
-    arm = work%view%links(link)%p - plan%origin - state%p(:, f)
-    torque = work%sum%torque(:, link) + cross(arm, work%sum%force(:, link))
+    torque = torque_on_frame(plan, state, link, work)
     do e = first, last
       p = dynamics%column(e)
       work%forces(p) = work%forces(p) + dot_product(work%jacobian%v(:, e), work%sum%force(:, link)) &
                        + dot_product(work%jacobian%w(:, e), torque)
     end do
   end subroutine add_forces_on_link
+
+  !> Torque of the loads on a link about the origin of its frame.
+  pure function torque_on_frame(plan, state, link, work) result(torque)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: link
+    type(lagrange_work_type), intent(in) :: work
+    real(wp) :: torque(3), arm(3)
+
+    arm = work%view%links(link)%p - plan%origin - state%p(:, plan%frame_of(link))
+    torque = work%sum%torque(:, link) + cross(arm, work%sum%force(:, link))
+  end function torque_on_frame
 
   !> The state as loads see it: the links' own systems in that of link 1.
   pure subroutine show_state(plan, dynamics, state, view)
@@ -334,6 +409,11 @@ contains
     type(state_type), intent(inout) :: state
     integer :: s, e
 
+    if (dynamics%articulated%used) then
+      state%ddq = work%accelerations
+      call spread_accelerations(plan, 1, plan%n_coordinates, state)
+      return
+    end if
     do s = 1, plan%n_coordinates
       do e = dynamics%first(s), dynamics%first(s + 1) - 1
         state%ddq(plan%steps(s)%coordinate) = state%ddq(plan%steps(s)%coordinate) &

@@ -16,7 +16,8 @@ module mech9_motion_system
   use mech9_planning, only: chain_names
   use mech9_ode_system, only: ode_system_type
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations, show_state
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion, find_equations, &
+    complete_accelerations, show_state
   implicit none
   private
   public :: motion_system_type, set_motion_system
@@ -55,7 +56,8 @@ module mech9_motion_system
 
 contains
 
-  !> The system from an assembled start with the independent rates in `start`; its motion there is worked out.
+  !> The system from an assembled start with the independent rates in `start`; its motion there is worked out,
+  !> and work%coefficients are those of the start.
   subroutine set_motion_system(mechanism, plan, start, system, err)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
@@ -69,6 +71,9 @@ contains
     call make_dynamics_plan(mechanism, plan, system%dynamics)
     system%work = new_lagrange_work(plan, system%dynamics)
     system%state = start
+    ! reports show the coefficients of the start; articulated bodies do without
+    if (system%dynamics%articulated%used) call find_equations(mechanism, plan, system%dynamics, system%state, system%work, err)
+    if (allocated(err)) return
     call system%present(err)
   end subroutine set_motion_system
 
@@ -139,6 +144,8 @@ contains
     class(motion_system_type), intent(inout) :: self
 
     self%just_settled = .false.
+    ! nothing to expect where all coordinates are independent
+    if (size(self%plan%closures) == 0) return
     if (self%past(1)%known) then
       ! no straight line through two states at one time
       if (.not. abs(self%state%t - self%past(1)%t) > 0.0_wp) return

@@ -32,6 +32,17 @@ IN_XY = dict(normal='0,0,1', last='0,0,1', o='0,0,0', a='0.3,0.2,0', b='1.2,0.8,
 IN_YZ = dict(normal='1,0,0', last='1,0,0', o='0,0,0', a='0,0.3,0.2', b='0,1.2,0.8', c='0,1.1,0', inertia='0.1,0.05,0.05', zz='0.1', g='0,0,-9.81')
 # the last axis lies in the plane: the link beyond it turns with the rocker, which has so much less inertia
 ACROSS = {**IN_XY, 'last': '0,1,0', 'inertia': '0.05,0.1,0.05', 'zz': '0.05'}
+# one link turns on another, about axes across each other
+OPEN = """
+&mechanism links=3, coordinates=2 /
+&structure cq=1, 2 /
+&pair coordinate=1, links=1,2, kind='revolute', point=0,0,0, axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', point=1,0,0, axis={axis} /
+&initial coordinate=1, position=0, velocity=1 /
+&initial coordinate=2, position=0, velocity=1 /
+&body link=3, mass=1, centre=1,1,1, inertia=0.1,0.1,0.1,0,0,0 /
+&time start=0, end=0.5, intervals=5 /
+"""
 # tolerances of 1e-11 a step, some dozen steps
 TOLERANCE = 1e-9
 
@@ -42,12 +53,12 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, 'case.nml')
 
-        def write(values):
+        def write(values, form=FOUR_BAR):
             with open(path, 'w', encoding='utf-8') as file:
-                file.write(FOUR_BAR.format(**values))
+                file.write(form.format(**values))
 
-        def plan_of(values):
-            write(values)
+        def plan_of(values, form=FOUR_BAR):
+            write(values, form)
             done = run(program, path, '--plan', folder=folder)
             checks.equal(done.returncode, 0, 'a plan is printed')
             return done.stdout
@@ -57,7 +68,10 @@ def main():
         checks.true('without mass, no terms of inertia: links 3\n' in flat, 'the massless link', flat)
         checks.true('left out: links' in flat and 'links 3\n' in flat.split('left out:')[-1], 'its motion is not needed', flat)
         checks.true('planar arithmetic' in plan_of(IN_YZ), 'planar in another plane')
+        checks.true('by articulated bodies' in plan_of(dict(axis='0,1,0'), OPEN), 'an open chain in space')
+        checks.true('by articulated bodies' not in plan_of(dict(axis='0,0,1'), OPEN), 'an open chain in the plane')
         across = plan_of(ACROSS)
+        checks.true('by articulated bodies' not in across, 'a chain is closed', across)
         checks.true('spatial arithmetic: pair 5 ' in across, 'the pair that has another axis is named', across)
 
         tables = []

@@ -8,7 +8,7 @@ program test_lagrange
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_equations
   use mech9_energy, only: kinetic_energy
   use mech9_literal_lagrange, only: literal_type, literal_equations
   use mech9_loaded_mechanisms, only: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops
@@ -57,7 +57,7 @@ contains
     work = new_lagrange_work(plan, dynamics)
     n = size(plan%independent)
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, n)]
-    call find_motion(mechanism, plan, dynamics, state, work, err)
+    call find_equations(mechanism, plan, dynamics, state, work, err)
     call test%no_error(err, why)
     call literal_equations(mechanism, plan, state, literal, err)
     call test%no_error(err, why//': literally')

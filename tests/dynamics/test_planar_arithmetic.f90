@@ -12,7 +12,8 @@ program test_planar_arithmetic
   use mech9_planning, only: make_plan
   use mech9_motion, only: point_motion
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion, complete_accelerations
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_equations, find_motion, &
+    complete_accelerations
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_sample_mechanisms, only: general_loop
   use mech9_mechanism_families, only: axis_type, home_mechanism, planar_axes
@@ -155,6 +156,9 @@ contains
     call make_dynamics_plan(mechanism, plan, dynamics)
     work = new_lagrange_work(plan, dynamics)
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, size(plan%independent))]
+    ! open chains have their accelerations without the equations
+    call find_equations(mechanism, plan, dynamics, state, work, err)
+    call test%no_error(err, why//': equations')
     call find_motion(mechanism, plan, dynamics, state, work, err)
     call test%no_error(err, why//': motion')
     if (allocated(err)) return

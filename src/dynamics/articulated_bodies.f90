@@ -1,0 +1,253 @@
+!> Accelerations of open chains by articulated bodies: no matrix of all coordinates, O(links). Uses kinds, rotation.
+!>
+!> Lagrange's equations of a mechanism without closed chains are those of Newton and Euler link by link. What
+!> hangs on a step resists the motion (dw, dv) of its frame with a wrench that is linear in it,
+!>   torque = J dw + H dv + torque_0,   force = H^T dw + M dv + force_0,
+!> about the frame's origin, in fixed axes. A first pass inward eliminates the steps' accelerations from the tips to
+!> link 1: with the screw S of a step, U = (J H; H^T M) S and D = S . U,
+!>   ddq = (Q - S . wrench_0 - U . (motion of the parent, seen at this frame)) / D,
+!> so that the parent feels the inertia less U U^T / D. A second pass outward finds the accelerations. Motions are counted
+!> from the accelerations that rates alone give, hence no other terms of the rates.
+module mech9_articulated_bodies
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: turn, turn_back, combine, cross
+  implicit none
+  private
+  public :: articulated_type, articulated_work_type, new_articulated, new_articulated_work, add_to_frame, &
+    solve_open_chains
+
+  !> An open mechanism as the passes see it. Indices are those of frames, which are the steps'.
+  type :: articulated_type
+    logical :: used = .false.
+    integer, allocatable :: parent(:)            !< (M) frame from which each step departs, 0 for that of link 1
+    integer, allocatable :: coordinate(:)        !< (M) of each step
+    logical, allocatable :: slides(:)            !< (M) the frame's origin moves by its own step
+    real(wp), allocatable :: mass(:)             !< (M) of the frame's bodies together [kg]
+    real(wp), allocatable :: moment(:, :)        !< (3,M) mass times centre, in the frame [kg m]
+    real(wp), allocatable :: inertia(:, :, :)    !< (3,3,M) about the frame's origin, in the frame [kg m^2]
+  end type articulated_type
+
+  !> Scratch of the passes, sized once. Wrenches are (torque, force), motions (angular, of the origin).
+  type :: articulated_work_type
+    real(wp), allocatable :: applied(:, :)       !< (6,M) wrench of the loads on each frame: to be set before
+    real(wp), allocatable :: inertia(:, :, :)    !< (3,9,0:M) J, H, M side by side
+    real(wp), allocatable :: wrench(:, :)        !< (6,0:M)
+    real(wp), allocatable :: column(:, :)        !< (6,M) U
+    real(wp), allocatable :: pivot(:)            !< (M) D
+    real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
+    real(wp), allocatable :: amount(:, :)        !< (5,0:M) all that hangs on a step, as if rigid: mass, moment, sum of m r^2
+    real(wp), allocatable :: motion(:, :)        !< (6,0:M)
+  end type articulated_work_type
+
+contains
+
+  !> Frames without mass; `add_to_frame` gives them some.
+  pure function new_articulated(parent, coordinate, slides) result(chains)
+    integer, intent(in) :: parent(:), coordinate(:)
+    logical, intent(in) :: slides(:)
+    type(articulated_type) :: chains
+
+    chains%parent = parent
+    chains%coordinate = coordinate
+    chains%slides = slides
+    allocate (chains%mass(size(parent)), chains%moment(3, size(parent)), chains%inertia(3, 3, size(parent)), source=0.0_wp)
+  end function new_articulated
+
+  !> Room for the passes over so many steps; no loads yet.
+  pure function new_articulated_work(m) result(work)
+    integer, intent(in) :: m
+    type(articulated_work_type) :: work
+
+    allocate (work%applied(6, m), work%column(6, m), work%pivot(m), work%rest(m), source=0.0_wp)
+    allocate (work%inertia(3, 9, 0:m), work%wrench(6, 0:m), work%amount(5, 0:m), work%motion(6, 0:m), source=0.0_wp)
+  end function new_articulated_work
+
+  !> A body moves with a frame.
+  pure subroutine add_to_frame(chains, frame, mass, centre, inertia)
+    type(articulated_type), intent(inout) :: chains
+    integer, intent(in) :: frame
+    real(wp), intent(in) :: mass, centre(3)      !< [kg]; in the frame [m]
+    real(wp), intent(in) :: inertia(3, 3)        !< about the centre, frame axes [kg m^2]
+    integer :: i
+
+    chains%mass(frame) = chains%mass(frame) + mass
+    chains%moment(:, frame) = chains%moment(:, frame) + mass*centre
+    associate (total => chains%inertia(:, :, frame))
+      do i = 1, 3
+        total(:, i) = total(:, i) + inertia(:, i) - mass*centre*centre(i)
+        total(i, i) = total(i, i) + mass*dot_product(centre, centre)
+      end do
+    end associate
+  end subroutine add_to_frame
+
+  !> Accelerations of all coordinates under gravity, the wrenches work%applied and generalized forces. The motion is
+  !> given by frames, screws of the steps, velocities, and the accelerations that rates alone give. `found` is false where
+  !> a coordinate has no inertia beyond round-off.
+  pure subroutine solve_open_chains(chains, m, gravity, r, p, axis_w, axis_v, omega, alpha, a, forces, work, ddq, found)
+    type(articulated_type), intent(in) :: chains
+    integer, intent(in) :: m                                    !< steps
+    real(wp), intent(in) :: gravity(3)                          !< fixed axes [m/s^2]
+    real(wp), intent(in) :: r(3, 3, 0:m), p(3, 0:m)             !< frames
+    real(wp), intent(in) :: axis_w(3, m), axis_v(3, m)          !< angular velocity and that of the origin per unit rate
+    real(wp), intent(in) :: omega(3, 0:m), alpha(3, 0:m), a(3, 0:m)
+    real(wp), intent(in) :: forces(m)                           !< of each coordinate [N m or N]
+    type(articulated_work_type), intent(inout) :: work
+    real(wp), intent(out) :: ddq(m)
+    logical, intent(out) :: found
+
+    call set_bodies(m, chains%mass, chains%moment, chains%inertia, gravity, r, omega, alpha, a, work%applied, &
+                    work%inertia, work%wrench, work%amount)
+    call go_inward(m, chains%parent, chains%coordinate, chains%slides, p, axis_w, axis_v, forces, work%inertia, &
+                   work%wrench, work%amount, work%column, work%pivot, work%rest, found)
+    if (.not. found) return
+    call go_outward(m, chains%parent, chains%coordinate, p, axis_w, axis_v, work%column, work%pivot, work%rest, &
+                    work%motion, ddq)
+  end subroutine solve_open_chains
+
+  !> Each frame's own bodies in fixed axes, and the wrench that they need for the motion by rates alone, less the loads'.
+  pure subroutine set_bodies(m, mass, moment, tensor, gravity, r, omega, alpha, a, applied, inertia, wrench, amount)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: mass(m), moment(3, m), tensor(3, 3, m), gravity(3)
+    real(wp), intent(in) :: r(3, 3, 0:m), omega(3, 0:m), alpha(3, 0:m), a(3, 0:m), applied(6, m)
+    real(wp), intent(inout) :: inertia(3, 9, 0:m), wrench(6, 0:m), amount(5, 0:m)   !< not of frame 0
+    real(wp) :: h(3), j(3, 3), fall(3)
+    integer :: s, i
+
+    do s = 1, m
+      wrench(:, s) = -applied(:, s)
+      amount(:, s) = 0.0_wp
+      inertia(:, :, s) = 0.0_wp
+      if (.not. (mass(s) > 0.0_wp .or. tensor(1, 1, s) + tensor(2, 2, s) + tensor(3, 3, s) > 0.0_wp)) cycle
+      h = turn(r(:, :, s), moment(:, s))
+      j = in_fixed_axes(r(:, :, s), tensor(:, :, s))
+      inertia(:, 1:3, s) = j
+      ! torque h x dv
+      inertia(2, 4, s) = h(3)
+      inertia(3, 4, s) = -h(2)
+      inertia(1, 5, s) = -h(3)
+      inertia(3, 5, s) = h(1)
+      inertia(1, 6, s) = h(2)
+      inertia(2, 6, s) = -h(1)
+      do i = 1, 3
+        inertia(i, 6 + i, s) = mass(s)
+      end do
+      fall = a(:, s) - gravity
+      wrench(1:3, s) = wrench(1:3, s) + cross(h, fall) + turn(j, alpha(:, s)) + cross(omega(:, s), turn(j, omega(:, s)))
+      wrench(4:6, s) = wrench(4:6, s) + mass(s)*fall + cross(alpha(:, s), h) + cross(omega(:, s), cross(omega(:, s), h))
+      amount(1, s) = mass(s)
+      amount(2:4, s) = h
+      amount(5, s) = 0.5_wp*(j(1, 1) + j(2, 2) + j(3, 3))
+    end do
+  end subroutine set_bodies
+
+  !> r t r^T of a symmetric t.
+  pure function in_fixed_axes(r, t) result(turned)
+    real(wp), intent(in) :: r(3, 3), t(3, 3)
+    real(wp) :: turned(3, 3), half(3, 3)
+    integer :: i, k
+
+    half = combine(r, t)
+    do k = 1, 3
+      do i = k, 3
+        turned(i, k) = half(i, 1)*r(k, 1) + half(i, 2)*r(k, 2) + half(i, 3)*r(k, 3)
+        turned(k, i) = turned(i, k)
+      end do
+    end do
+  end function in_fixed_axes
+
+  !> The accelerations of the steps eliminated, the last one first.
+  pure subroutine go_inward(m, parent, coordinate, slides, p, axis_w, axis_v, forces, inertia, wrench, amount, column, &
+                            pivot, rest, found)
+    integer, intent(in) :: m, parent(m), coordinate(m)
+    logical, intent(in) :: slides(m)
+    real(wp), intent(in) :: p(3, 0:m), axis_w(3, m), axis_v(3, m), forces(m)
+    real(wp), intent(inout) :: inertia(3, 9, 0:m), wrench(6, 0:m), amount(5, 0:m)
+    real(wp), intent(out) :: column(6, m), pivot(m), rest(m)
+    logical, intent(out) :: found
+    real(wp) :: u(6), part(6), arm(3)
+    integer :: s, i
+
+    found = .true.
+    do s = m, 1, -1
+      u(1:3) = turn(inertia(:, 1:3, s), axis_w(:, s))
+      u(4:6) = turn_back(inertia(:, 4:6, s), axis_w(:, s))
+      rest(s) = forces(coordinate(s)) - dot_product(axis_w(:, s), wrench(1:3, s))
+      pivot(s) = dot_product(axis_w(:, s), u(1:3))
+      if (slides(s)) then
+        u(1:3) = u(1:3) + turn(inertia(:, 4:6, s), axis_v(:, s))
+        u(4:6) = u(4:6) + turn(inertia(:, 7:9, s), axis_v(:, s))
+        rest(s) = rest(s) - dot_product(axis_v(:, s), wrench(4:6, s))
+        pivot(s) = dot_product(axis_w(:, s), u(1:3)) + dot_product(axis_v(:, s), u(4:6))
+      end if
+      column(:, s) = u
+      ! what is left by round-off is nothing, as in the Cholesky factors
+      found = pivot(s) > 8.0_wp*m*epsilon(1.0_wp)*rigid_inertia(amount(:, s), axis_w(:, s), axis_v(:, s))
+      if (.not. found) return
+      if (parent(s) == 0) cycle
+      part = u*(1.0_wp/pivot(s))
+      do i = 1, 3
+        inertia(:, i, s) = inertia(:, i, s) - u(1:3)*part(i)
+        inertia(:, 3 + i, s) = inertia(:, 3 + i, s) - u(1:3)*part(3 + i)
+        inertia(:, 6 + i, s) = inertia(:, 6 + i, s) - u(4:6)*part(3 + i)
+      end do
+      wrench(:, s) = wrench(:, s) + part*rest(s)
+      arm = p(:, s) - p(:, parent(s))
+      call add_to_parent(arm, inertia(:, :, s), wrench(:, s), amount(:, s), inertia(:, :, parent(s)), &
+                         wrench(:, parent(s)), amount(:, parent(s)))
+    end do
+  end subroutine go_inward
+
+  !> At least the inertia about a screw of all that hangs on it, as if rigid: what round-off is judged by.
+  pure real(wp) function rigid_inertia(amount, w, v)
+    real(wp), intent(in) :: amount(5), w(3), v(3)
+
+    rigid_inertia = dot_product(w, w)*amount(5) + dot_product(v, v)*amount(1) &
+                    + 2.0_wp*abs(dot_product(v, cross(w, amount(2:4))))
+  end function rigid_inertia
+
+  !> What a frame feels, about the origin of its parent: J' = J + [arm] H'^T - H [arm], H' = H + [arm] M.
+  pure subroutine add_to_parent(arm, inertia, wrench, amount, parent_inertia, parent_wrench, parent_amount)
+    real(wp), intent(in) :: arm(3)               !< from the parent's origin to the frame's
+    real(wp), intent(in) :: inertia(3, 9), wrench(6), amount(5)
+    real(wp), intent(inout) :: parent_inertia(3, 9), parent_wrench(6), parent_amount(5)
+    real(wp) :: h(3, 3), j(3, 3)
+    integer :: i
+
+    do i = 1, 3
+      h(:, i) = inertia(:, 3 + i) + cross(arm, inertia(:, 6 + i))
+    end do
+    do i = 1, 3
+      j(:, i) = inertia(:, i) + cross(arm, h(i, :))
+    end do
+    j(:, 1) = j(:, 1) + arm(2)*inertia(:, 6) - arm(3)*inertia(:, 5)
+    j(:, 2) = j(:, 2) + arm(3)*inertia(:, 4) - arm(1)*inertia(:, 6)
+    j(:, 3) = j(:, 3) + arm(1)*inertia(:, 5) - arm(2)*inertia(:, 4)
+    parent_inertia(:, 1:3) = parent_inertia(:, 1:3) + j
+    parent_inertia(:, 4:6) = parent_inertia(:, 4:6) + h
+    parent_inertia(:, 7:9) = parent_inertia(:, 7:9) + inertia(:, 7:9)
+    parent_wrench(1:3) = parent_wrench(1:3) + wrench(1:3) + cross(arm, wrench(4:6))
+    parent_wrench(4:6) = parent_wrench(4:6) + wrench(4:6)
+    parent_amount(1) = parent_amount(1) + amount(1)
+    parent_amount(2:4) = parent_amount(2:4) + amount(2:4) + amount(1)*arm
+    parent_amount(5) = parent_amount(5) + amount(5) + 2.0_wp*dot_product(arm, amount(2:4)) + amount(1)*dot_product(arm, arm)
+  end subroutine add_to_parent
+
+  !> The accelerations, the first step first.
+  pure subroutine go_outward(m, parent, coordinate, p, axis_w, axis_v, column, pivot, rest, motion, ddq)
+    integer, intent(in) :: m, parent(m), coordinate(m)
+    real(wp), intent(in) :: p(3, 0:m), axis_w(3, m), axis_v(3, m), column(6, m), pivot(m), rest(m)
+    real(wp), intent(inout) :: motion(6, 0:m)    !< none of frame 0
+    real(wp), intent(out) :: ddq(m)
+    real(wp) :: dw(3), dv(3), x
+    integer :: s
+
+    do s = 1, m
+      dw = motion(1:3, parent(s))
+      dv = motion(4:6, parent(s)) + cross(dw, p(:, s) - p(:, parent(s)))
+      x = (rest(s) - dot_product(column(1:3, s), dw) - dot_product(column(4:6, s), dv))/pivot(s)
+      ddq(coordinate(s)) = x
+      motion(1:3, s) = dw + x*axis_w(:, s)
+      motion(4:6, s) = dv + x*axis_v(:, s)
+    end do
+  end subroutine go_outward
+end module mech9_articulated_bodies

@@ -1,0 +1,276 @@
+!> Articulated bodies give what Lagrange's equations (19) ask for, on random trees with all kinds of pairs and loads;
+!> a coordinate without inertia is named as there; an evaluation allocates nothing.
+program test_open_chains
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_data
+  use mech9_rotation, only: identity
+  use mech9_pose, only: pose_type
+  use mech9_random, only: random_type
+  use mech9_screw_pair, only: screw_pair_type, helical_pair
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion, find_equations, complete_accelerations
+  use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame, general_loop
+  use mech9_curved_pair, only: curved_pair_type
+  use mech9_loaded_mechanisms, only: five_bar, load_everything, without_loads, add_body
+  use mech9_random_geometry, only: random_vector, random_unit
+  use mech9_testing, only: tester_type
+  use mech9_counted_memory, only: calls
+  implicit none
+
+  !> A mechanism and all that its motion needs.
+  type :: case_type
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+  end type case_type
+
+  type(tester_type) :: test
+
+  call random_trees()
+  call long_chain()
+  call without_inertia()
+  call closed_chains()
+  call test%finish()
+
+contains
+
+  !> Trees of 2 to 13 steps; on every second one some links have no mass, but never the last of a branch.
+  subroutine random_trees()
+    type(case_type) :: tree
+    type(random_type) :: random
+    integer, allocatable :: links(:, :)
+    integer :: trial, m
+
+    do trial = 1, 48
+      m = 2 + mod(trial, 12)
+      call random_tree(random, m, links, tree%mechanism)
+      call load_everything(random, tree%mechanism)
+      if (mod(trial, 2) == 0) call lighten(random, links, tree%mechanism)
+      call prepare(tree, 'a tree')
+      call check_motion(tree, 'a tree')
+      call check_memory(tree)
+    end do
+  end subroutine random_trees
+
+  !> Steps of all kinds, from any earlier link to the next, either way round, coordinates in any order.
+  subroutine random_tree(random, m, links, mechanism)
+    type(random_type), intent(inout) :: random
+    integer, intent(in) :: m
+    integer, allocatable, intent(out) :: links(:, :)      !< (2,m) reference and moving link of each coordinate
+    type(mechanism_type), intent(out) :: mechanism
+    integer :: order(m), i, k, other
+
+    order = [(i, i=1, m)]
+    do i = m, 2, -1
+      other = below(random, i) + 1
+      k = order(i)
+      order(i) = order(other)
+      order(other) = k
+    end do
+    allocate (links(2, m))
+    do i = 1, m
+      links(:, order(i)) = [1 + below(random, i), i + 1]
+      if (below(random, 2) == 0) links(:, order(i)) = links([2, 1], order(i))
+    end do
+    call new_mechanism(m + 1, links, [(i, i=1, m)], mechanism)
+    do k = 1, m
+      call add_random_pair(random, k, links(:, k), mechanism)
+      mechanism%initial_position(k) = random%symmetric()
+    end do
+  end subroutine random_tree
+
+  subroutine add_random_pair(random, k, links, mechanism)
+    type(random_type), intent(inout) :: random
+    integer, intent(in) :: k, links(2)
+    type(mechanism_type), intent(inout) :: mechanism
+    type(screw_pair_type) :: helix
+    type(curved_pair_type) :: curved
+    type(pose_type) :: here, there
+
+    here = frame(random_vector(random), random_unit(random))
+    there = frame(random_vector(random), random_unit(random))
+    select case (below(random, 5))
+    case (0)
+      call add_prismatic(mechanism, k, links(1), links(2), here, there)
+    case (1)
+      helix = helical_pair(here, there, 0.4_wp)
+      allocate (mechanism%pairs(k)%pair, source=helix)
+    case (2)
+      curved%angular = .false.
+      allocate (mechanism%pairs(k)%pair, source=curved)
+    case default
+      call add_revolute(mechanism, k, links(1), links(2), here, there)
+    end select
+    mechanism%pairs(k)%pair%coordinate = k
+    mechanism%pairs(k)%pair%reference = links(1)
+    mechanism%pairs(k)%pair%moving = links(2)
+  end subroutine add_random_pair
+
+  !> A whole number from 0 to n - 1.
+  integer function below(random, n)
+    type(random_type), intent(inout) :: random
+    integer, intent(in) :: n
+
+    below = min(n - 1, int(0.5_wp*n*(1.0_wp + random%symmetric())))
+  end function below
+
+  !> Half of the links that carry another one lose their mass; up to three steps in a row may then move
+  !> without mass, which a body with all its inertia at the end resists in general.
+  subroutine lighten(random, links, mechanism)
+    type(random_type), intent(inout) :: random
+    integer, intent(in) :: links(:, :)
+    type(mechanism_type), intent(inout) :: mechanism
+    integer :: i, in_a_row, toss
+
+    in_a_row = 0
+    do i = 1, size(mechanism%bodies)
+      toss = below(random, 2)
+      associate (body => mechanism%bodies(i))
+        in_a_row = in_a_row + 1
+        if (count(links == body%link) < 2 .or. in_a_row > 3 .or. toss == 0) in_a_row = 0
+        if (in_a_row == 0) cycle
+        body%mass = 0.0_wp
+        body%inertia = 0.0_wp
+      end associate
+    end do
+  end subroutine lighten
+
+  !> Plan, and some rates.
+  subroutine prepare(this, why)
+    type(case_type), intent(inout) :: this
+    character(len=*), intent(in) :: why
+    type(error_type), allocatable :: err
+    integer :: i
+
+    call make_plan(this%mechanism, this%mechanism%initial_position, this%plan, this%state, err)
+    call test%no_error(err, why//': plan')
+    call make_dynamics_plan(this%mechanism, this%plan, this%dynamics)
+    this%work = new_lagrange_work(this%plan, this%dynamics)
+    this%state%dq(this%plan%independent) = [(1.3_wp*cos(2.0_wp*i), i=1, size(this%plan%independent))]
+  end subroutine prepare
+
+  !> The accelerations satisfy a ddq = Q - h. What is left over is round-off of the terms: of sums over all links
+  !> along a chain, some hundreds of units.
+  subroutine check_motion(this, why)
+    type(case_type), intent(inout) :: this
+    character(len=*), intent(in) :: why
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: ddq(:), a(:, :), left(:)
+    real(wp) :: terms
+    integer :: i, n
+
+    call test%is_true(this%dynamics%articulated%used, why//': articulated bodies')
+    call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+    call test%no_error(err, why//': motion')
+    if (allocated(err)) return
+    n = size(this%plan%independent)
+    call test%near(maxval(abs(this%work%coefficients)), 0.0_wp, 0.0_wp, why//': without the coefficients')
+    ddq = this%work%accelerations
+    call complete_accelerations(this%plan, this%dynamics, this%work, this%state)
+    call test%near(maxval(abs(this%state%ddq(this%plan%independent) - ddq)), 0.0_wp, 0.0_wp, why//': each to its coordinate')
+    call find_equations(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+    call test%no_error(err, why//': equations')
+    a = this%work%coefficients
+    do i = 1, n
+      a(i, i + 1:) = a(i + 1:, i)
+    end do
+    left = matmul(a, ddq) - this%work%forces + this%work%velocity_terms
+    terms = maxval(matmul(abs(a), abs(ddq)) + abs(this%work%forces) + abs(this%work%velocity_terms))
+    call test%is_true(terms > 1.0_wp, why//': there is something to compare')
+    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-13_wp, why//': Lagrange''s equations')
+  end subroutine check_motion
+
+  subroutine check_memory(this)
+    type(case_type), intent(inout) :: this
+    type(error_type), allocatable :: err
+    integer :: i, before
+
+    before = calls
+    call test%is_true(before > 0, 'the counter counts')
+    do i = 1, 10
+      call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+      if (allocated(err)) exit
+    end do
+    call test%is_true(calls == before, 'ten evaluations allocate nothing')
+    call test%no_error(err, 'evaluations')
+  end subroutine check_memory
+
+  !> Sixty links of 1 m in a row, turning about x and y by turns.
+  subroutine long_chain()
+    integer, parameter :: m = 60
+    real(wp), parameter :: top(3) = [0.0_wp, 0.0_wp, 1.0_wp], foot(3) = 0.0_wp
+    real(wp) :: axis(3)
+    type(case_type) :: chain
+    integer :: k
+
+    call new_mechanism(m + 1, reshape([(k, k + 1, k=1, m)], [2, m]), [(k, k=1, m)], chain%mechanism)
+    call without_loads(chain%mechanism)
+    chain%mechanism%gravity = [0.0_wp, 0.0_wp, -9.81_wp]
+    do k = 1, m
+      axis = [modulo(k, 2), modulo(k + 1, 2), 0]
+      call add_revolute(chain%mechanism, k, k, k + 1, frame(top, axis), frame(foot, axis))
+      call add_body(chain%mechanism, k + 1, 1.0_wp, 0.5_wp*top, 0.08_wp*identity)
+      chain%mechanism%initial_position(k) = 0.3_wp*sin(real(k, wp))
+    end do
+    call prepare(chain, 'sixty links')
+    call check_motion(chain, 'sixty links')
+    call check_memory(chain)
+  end subroutine long_chain
+
+  !> The error is that of the coefficients, word for word: mass that is missing at the end, and mass that turns about
+  !> two axes in one line, of which the second is left no inertia but round-off.
+  subroutine without_inertia()
+    type(case_type) :: chain
+    type(random_type) :: random
+    real(wp) :: point(3), axis(3)
+    integer :: trial, massive
+
+    do trial = 1, 20
+      call new_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), [1, 2, 3], chain%mechanism)
+      call without_loads(chain%mechanism)
+      point = random_vector(random)
+      axis = random_unit(random)
+      call add_prismatic(chain%mechanism, 1, 1, 2, frame(random_vector(random), random_unit(random)), frame(point, axis))
+      call add_revolute(chain%mechanism, 2, 2, 3, frame(point, axis), frame(point, axis))
+      call add_revolute(chain%mechanism, 3, 3, 4, frame(point + 0.7_wp*axis, axis), frame(random_vector(random), axis))
+      chain%mechanism%initial_position = [0.4_wp, random%symmetric(), random%symmetric()]
+      massive = merge(3, 4, mod(trial, 2) == 0)
+      call add_body(chain%mechanism, massive, 1.0_wp + 0.5_wp*random%symmetric(), random_vector(random), 0.3_wp*identity)
+      call prepare(chain, 'without inertia')
+      call check_refusal(chain)
+    end do
+  end subroutine without_inertia
+
+  subroutine check_refusal(this)
+    type(case_type), intent(inout) :: this
+    type(error_type), allocatable :: err, expected
+
+    call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+    call test%has_error(err, exit_data, 'a coordinate without inertia')
+    this%dynamics%articulated%used = .false.
+    call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, expected)
+    call test%has_error(expected, exit_data, 'the same by the coefficients')
+    if (.not. (allocated(err) .and. allocated(expected))) return
+    call test%is_true(err%message == expected%message, 'the same words: '//err%message)
+    call test%is_true(index(err%message, 'coordinate 3 ') > 0, 'the last coordinate is named: '//err%message)
+  end subroutine check_refusal
+
+  !> Where chains are closed, in the plane or in space, the coefficients are needed.
+  subroutine closed_chains()
+    type(case_type) :: closed
+
+    call five_bar(closed%mechanism)
+    call prepare(closed, 'five-bar')
+    call test%is_true(.not. closed%dynamics%articulated%used, 'not in a five-bar')
+    call general_loop(closed%mechanism)
+    call without_loads(closed%mechanism)
+    call prepare(closed, 'spatial loop')
+    call test%is_true(.not. closed%dynamics%articulated%used, 'not in a spatial loop')
+  end subroutine closed_chains
+end program test_open_chains
