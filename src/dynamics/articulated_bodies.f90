@@ -18,7 +18,6 @@ module mech9_articulated_bodies
 
   !> An open mechanism as the passes see it. Indices are those of frames, which are the steps'.
   type :: articulated_type
-    logical :: used = .false.
     integer, allocatable :: parent(:)            !< (M) frame from which each step departs, 0 for that of link 1
     integer, allocatable :: coordinate(:)        !< (M) of each step
     logical, allocatable :: slides(:)            !< (M) the frame's origin moves by its own step

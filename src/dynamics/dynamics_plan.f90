@@ -39,7 +39,8 @@ module mech9_dynamics_plan
     integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame
     logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
     logical, allocatable :: load_links(:)              !< (N) links whose motion loads ask for
-    type(articulated_type) :: articulated              !< used where no chain is closed, but for planar arithmetic
+    logical :: open_chains = .false.                   !< no chain is closed: accelerations by articulated bodies
+    type(articulated_type) :: articulated              !< of open chains, but for planar arithmetic
   end type dynamics_plan_type
 
 contains
@@ -64,7 +65,8 @@ contains
     call find_bodies(mechanism, plan, dynamics)
     call find_columns(plan, dynamics)
     call find_carriers(plan, dynamics)
-    if (size(plan%closures) == 0 .and. .not. plan%planar%used) call lay_out_open_chains(plan, dynamics)
+    dynamics%open_chains = size(plan%closures) == 0
+    if (dynamics%open_chains .and. .not. plan%planar%used) call lay_out_open_chains(plan, dynamics)
   end subroutine make_dynamics_plan
 
   !> Bodies with mass, moved into the frames of their links.
@@ -108,7 +110,6 @@ contains
         call add_to_frame(dynamics%articulated, body%frame, body%mass, body%centre, body%inertia)
       end associate
     end do
-    dynamics%articulated%used = .true.
   end subroutine lay_out_open_chains
 
   !> The columns of all frames, block by block.

@@ -1,6 +1,6 @@
 !> Lagrange's equations in the independent coordinates, (19): coefficients of motion, velocity terms and
 !> generalized forces from the Jacobians of the frames. Uses the kinematics floor, mechanism, loads,
-!> cholesky, dynamics_plan, jacobian, planar_lagrange, articulated_bodies.
+!> cholesky, dynamics_plan, jacobian, planar_lagrange, articulated_bodies, planar_articulated.
 !>
 !> (21) and the terms of (19) that are squares of rates are not differentiated: with the Jacobians J_c of
 !> mass centres and J_w of angular velocities,
@@ -24,8 +24,9 @@ module mech9_lagrange
   use mech9_closure, only: closure_rates
   use mech9_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_dynamics_plan, only: dynamics_plan_type, frame_body_type
-  use mech9_planar_lagrange, only: add_inertia, add_link_force
+  use mech9_planar_lagrange, only: add_inertia, planar_wrench, add_link_force
   use mech9_articulated_bodies, only: articulated_work_type, new_articulated_work, solve_open_chains
+  use mech9_planar_articulated, only: planar_work_type, new_planar_work, solve_in_plane
   use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian, noise_of_rates
   implicit none
   private
@@ -50,7 +51,8 @@ module mech9_lagrange
     real(wp), allocatable :: accelerations(:)        !< of the independent coordinates
     type(motion_view_type) :: view
     type(force_sum_type) :: sum
-    type(articulated_work_type) :: articulated
+    type(articulated_work_type) :: articulated       !< of open chains, or in the plane:
+    type(planar_work_type) :: planar
   end type lagrange_work_type
 
 contains
@@ -74,7 +76,12 @@ contains
     allocate (work%view%links(plan%n_links))
     allocate (work%view%q(plan%n_coordinates), work%view%dq(plan%n_coordinates), source=0.0_wp)
     work%sum = new_force_sum(plan%n_links, plan%n_coordinates)
-    if (dynamics%articulated%used) work%articulated = new_articulated_work(plan%n_coordinates)
+    if (.not. dynamics%open_chains) return
+    if (plan%planar%used) then
+      work%planar = new_planar_work(plan%n_coordinates)
+    else
+      work%articulated = new_articulated_work(plan%n_coordinates)
+    end if
   end function new_lagrange_work
 
   !> Rates of the dependent coordinates and accelerations of the independent ones, for closed positions
@@ -91,7 +98,7 @@ contains
     integer :: n, failed_at
     logical :: found
 
-    if (dynamics%articulated%used) then
+    if (dynamics%open_chains) then
       call move_open_chains(mechanism, plan, dynamics, state, work, found, err)
       ! where a coordinate has no inertia, the coefficients tell which
       if (allocated(err) .or. found) return
@@ -142,7 +149,7 @@ contains
     type(lagrange_work_type), intent(inout) :: work
     logical, intent(out) :: found
     type(error_type), allocatable, intent(out) :: err
-    integer :: i
+    integer :: i, f
 
     found = .false.
     state%ddq = 0.0_wp
@@ -152,9 +159,21 @@ contains
     if (allocated(err)) return
     do i = 2, plan%n_links
       if (.not. dynamics%load_links(i)) cycle
-      work%articulated%applied(1:3, plan%frame_of(i)) = torque_on_frame(plan, state, i, work)
-      work%articulated%applied(4:6, plan%frame_of(i)) = work%sum%force(:, i)
+      f = plan%frame_of(i)
+      if (plan%planar%used) then
+        work%planar%applied(:, f) = planar_wrench(plan%planar, i, state%planar%pose(:, f), work%sum%force(:, i), &
+                                                  work%sum%torque(:, i))
+      else
+        work%articulated%applied(1:3, f) = torque_on_frame(plan, state, i, work)
+        work%articulated%applied(4:6, f) = work%sum%force(:, i)
+      end if
     end do
+    if (plan%planar%used) then
+      call solve_in_plane(plan%n_coordinates, plan%planar%steps, dynamics%planar_bodies, dynamics%gravity(1:2), &
+                          state%planar%pose, state%planar%slide, state%planar%velocity, state%planar%acceleration, &
+                          work%sum%generalized, work%planar, work%accelerations, found)
+      return
+    end if
     call solve_open_chains(dynamics%articulated, plan%n_coordinates, dynamics%gravity, state%r, state%p, state%axis_w, &
                            state%axis_v, state%omega, state%alpha, state%a, work%sum%generalized, work%articulated, &
                            work%accelerations, found)
@@ -409,7 +428,7 @@ contains
     type(state_type), intent(inout) :: state
     integer :: s, e
 
-    if (dynamics%articulated%used) then
+    if (dynamics%open_chains) then
       state%ddq = work%accelerations
       call spread_accelerations(plan, 1, plan%n_coordinates, state)
       return

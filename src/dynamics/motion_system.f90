@@ -72,7 +72,7 @@ contains
     system%work = new_lagrange_work(plan, system%dynamics)
     system%state = start
     ! reports show the coefficients of the start; articulated bodies do without
-    if (system%dynamics%articulated%used) call find_equations(mechanism, plan, system%dynamics, system%state, system%work, err)
+    if (system%dynamics%open_chains) call find_equations(mechanism, plan, system%dynamics, system%state, system%work, err)
     if (allocated(err)) return
     call system%present(err)
   end subroutine set_motion_system

@@ -12,7 +12,8 @@ module mech9_planar_lagrange
   use mech9_planar_motion, only: planar_motion_type, to_plane
   implicit none
   private
-  public :: planar_body_type, planar_body, spread_columns, add_inertia, add_link_force, planar_kinetic_energy
+  public :: planar_body_type, planar_body, spread_columns, add_inertia, planar_wrench, add_link_force, &
+    planar_kinetic_energy
 
   !> A link with mass, in its frame in the plane.
   type :: planar_body_type
@@ -114,8 +115,22 @@ contains
     real(wp), intent(in) :: f(4)                  !< pose of the link's frame
     real(wp), intent(in) :: force(3), torque(3)   !< fixed axes [N, N m]
     real(wp), intent(inout) :: forces(:)
-    real(wp) :: pull(3), spin(3), x, y
+    real(wp) :: wrench(3)
     integer :: p
+
+    wrench = planar_wrench(planar, link, f, force, torque)
+    do p = 1, k
+      forces(numbers(p)) = forces(numbers(p)) + dot_product(columns(:, p), wrench)
+    end do
+  end subroutine add_link_force
+
+  !> A force and a torque about the origin of a link, as a torque about the origin of its frame and a force in the plane.
+  pure function planar_wrench(planar, link, f, force, torque) result(wrench)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: link
+    real(wp), intent(in) :: f(4)                  !< pose of the link's frame
+    real(wp), intent(in) :: force(3), torque(3)   !< fixed axes [N, N m]
+    real(wp) :: wrench(3), pull(3), spin(3), x, y
 
     pull = to_plane(planar, force)
     spin = to_plane(planar, torque)
@@ -123,11 +138,9 @@ contains
       x = f(1)*arm(1) - f(2)*arm(2)
       y = f(2)*arm(1) + f(1)*arm(2)
     end associate
-    spin(3) = spin(3) + x*pull(2) - y*pull(1)
-    do p = 1, k
-      forces(numbers(p)) = forces(numbers(p)) + columns(1, p)*spin(3) + columns(2, p)*pull(1) + columns(3, p)*pull(2)
-    end do
-  end subroutine add_link_force
+    wrench(1) = spin(3) + x*pull(2) - y*pull(1)
+    wrench(2:3) = pull(1:2)
+  end function planar_wrench
 
   !> Of all bodies [J].
   pure real(wp) function planar_kinetic_energy(bodies, motion) result(energy)

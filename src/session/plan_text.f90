@@ -201,7 +201,7 @@ contains
     integer :: i
 
     call make_dynamics_plan(mechanism, plan, dynamics)
-    if (dynamics%articulated%used) write (unit, '(a)') &
+    if (dynamics%open_chains) write (unit, '(a)') &
       'accelerations by articulated bodies: no chain is closed, coefficients of motion are found at the start only'
     has_mass = .false.
     do i = 1, size(dynamics%bodies)

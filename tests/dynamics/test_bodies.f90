@@ -10,7 +10,7 @@ program test_bodies
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion
+  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_equations, find_motion
   use mech9_coordinate_load, only: coordinate_load_type
   use mech9_spring_load, only: spring_load_type
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame
@@ -60,6 +60,9 @@ contains
       end associate
     end do
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, size(plan%independent))]
+    ! open chains have their accelerations without the equations
+    call find_equations(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
     call find_motion(mechanism, plan, dynamics, state, work, err)
   end subroutine find
 

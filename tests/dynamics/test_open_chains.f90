@@ -1,5 +1,5 @@
-!> Articulated bodies give what Lagrange's equations (19) ask for, on random trees with all kinds of pairs and loads;
-!> a coordinate without inertia is named as there; an evaluation allocates nothing.
+!> Articulated bodies give what Lagrange's equations (19) ask for, on random trees with all kinds of pairs and loads, in
+!> space and in the plane; a coordinate without inertia is named as there; an evaluation allocates nothing.
 program test_open_chains
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data
@@ -46,22 +46,26 @@ contains
     type(random_type) :: random
     integer, allocatable :: links(:, :)
     integer :: trial, m
+    logical :: planar
 
-    do trial = 1, 48
+    do trial = 1, 96
       m = 2 + mod(trial, 12)
-      call random_tree(random, m, links, tree%mechanism)
+      planar = trial > 48
+      call random_tree(random, m, planar, links, tree%mechanism)
       call load_everything(random, tree%mechanism)
-      if (mod(trial, 2) == 0) call lighten(random, links, tree%mechanism)
+      if (mod(trial, 2) == 0) call lighten(random, links, merge(1, 4, planar), tree%mechanism)
       call prepare(tree, 'a tree')
+      call test%is_true(tree%plan%planar%used .or. .not. planar, 'a tree in the plane')
       call check_motion(tree, 'a tree')
       call check_memory(tree)
     end do
   end subroutine random_trees
 
   !> Steps of all kinds, from any earlier link to the next, either way round, coordinates in any order.
-  subroutine random_tree(random, m, links, mechanism)
+  subroutine random_tree(random, m, planar, links, mechanism)
     type(random_type), intent(inout) :: random
     integer, intent(in) :: m
+    logical, intent(in) :: planar                         !< only pairs about and across z
     integer, allocatable, intent(out) :: links(:, :)      !< (2,m) reference and moving link of each coordinate
     type(mechanism_type), intent(out) :: mechanism
     integer :: order(m), i, k, other
@@ -80,7 +84,11 @@ contains
     end do
     call new_mechanism(m + 1, links, [(i, i=1, m)], mechanism)
     do k = 1, m
-      call add_random_pair(random, k, links(:, k), mechanism)
+      if (planar) then
+        call add_planar_pair(random, k, links(:, k), mechanism)
+      else
+        call add_random_pair(random, k, links(:, k), mechanism)
+      end if
       mechanism%initial_position(k) = random%symmetric()
     end do
   end subroutine random_tree
@@ -112,6 +120,27 @@ contains
     mechanism%pairs(k)%pair%moving = links(2)
   end subroutine add_random_pair
 
+  subroutine add_planar_pair(random, k, links, mechanism)
+    type(random_type), intent(inout) :: random
+    integer, intent(in) :: k, links(2)
+    type(mechanism_type), intent(inout) :: mechanism
+    type(pose_type) :: here, there
+    real(wp) :: along(3)
+    logical :: slides
+
+    along = [0.0_wp, 0.0_wp, sign(1.0_wp, random%symmetric())]
+    ! without a pair that turns there is no plane
+    slides = below(random, 3) == 0 .and. k > 1
+    if (slides) along = [random%symmetric(), 1.0_wp, 0.0_wp]
+    here = frame(random_vector(random), along)
+    there = frame(random_vector(random), along)
+    if (slides) then
+      call add_prismatic(mechanism, k, links(1), links(2), here, there)
+    else
+      call add_revolute(mechanism, k, links(1), links(2), here, there)
+    end if
+  end subroutine add_planar_pair
+
   !> A whole number from 0 to n - 1.
   integer function below(random, n)
     type(random_type), intent(inout) :: random
@@ -120,21 +149,21 @@ contains
     below = min(n - 1, int(0.5_wp*n*(1.0_wp + random%symmetric())))
   end function below
 
-  !> Half of the links that carry another one lose their mass; up to three steps in a row may then move
-  !> without mass, which a body with all its inertia at the end resists in general.
-  subroutine lighten(random, links, mechanism)
+  !> Some links that carry another one lose their mass; a body at the end of them all resists six steps in
+  !> general, in the plane three, but only two of them slides.
+  subroutine lighten(random, links, most, mechanism)
     type(random_type), intent(inout) :: random
     integer, intent(in) :: links(:, :)
+    integer, intent(in) :: most                  !< links
     type(mechanism_type), intent(inout) :: mechanism
-    integer :: i, in_a_row, toss
+    integer :: i, light, toss
 
-    in_a_row = 0
+    light = 0
     do i = 1, size(mechanism%bodies)
       toss = below(random, 2)
       associate (body => mechanism%bodies(i))
-        in_a_row = in_a_row + 1
-        if (count(links == body%link) < 2 .or. in_a_row > 3 .or. toss == 0) in_a_row = 0
-        if (in_a_row == 0) cycle
+        if (count(links == body%link) < 2 .or. light == most .or. toss == 0) cycle
+        light = light + 1
         body%mass = 0.0_wp
         body%inertia = 0.0_wp
       end associate
@@ -165,7 +194,7 @@ contains
     real(wp) :: terms
     integer :: i, n
 
-    call test%is_true(this%dynamics%articulated%used, why//': articulated bodies')
+    call test%is_true(this%dynamics%open_chains, why//': articulated bodies')
     call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
     call test%no_error(err, why//': motion')
     if (allocated(err)) return
@@ -253,7 +282,7 @@ contains
 
     call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
     call test%has_error(err, exit_data, 'a coordinate without inertia')
-    this%dynamics%articulated%used = .false.
+    this%dynamics%open_chains = .false.
     call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, expected)
     call test%has_error(expected, exit_data, 'the same by the coefficients')
     if (.not. (allocated(err) .and. allocated(expected))) return
@@ -267,10 +296,10 @@ contains
 
     call five_bar(closed%mechanism)
     call prepare(closed, 'five-bar')
-    call test%is_true(.not. closed%dynamics%articulated%used, 'not in a five-bar')
+    call test%is_true(.not. closed%dynamics%open_chains, 'not in a five-bar')
     call general_loop(closed%mechanism)
     call without_loads(closed%mechanism)
     call prepare(closed, 'spatial loop')
-    call test%is_true(.not. closed%dynamics%articulated%used, 'not in a spatial loop')
+    call test%is_true(.not. closed%dynamics%open_chains, 'not in a spatial loop')
   end subroutine closed_chains
 end program test_open_chains

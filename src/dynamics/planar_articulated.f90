@@ -1,0 +1,180 @@
+!> Articulated bodies in planar arithmetic: accelerations of open chains whose motion keeps to one plane. Uses kinds,
+!> planar_plan, planar_lagrange.
+!>
+!> As in space (articulated_bodies), with wrenches (torque about the normal, force) and motions (dw, dv):
+!>   torque = J dw + H . dv + torque_0,   force = H dw + M dv + force_0.
+module mech9_planar_articulated
+  use mech9_kinds, only: wp
+  use mech9_planar_plan, only: planar_step_type
+  use mech9_planar_lagrange, only: planar_body_type
+  implicit none
+  private
+  public :: planar_work_type, new_planar_work, solve_in_plane
+
+  !> Scratch of the passes, sized once. J, H, M as (J, Hx, Hy, Mxx, Mxy, Myy).
+  type :: planar_work_type
+    real(wp), allocatable :: applied(:, :)       !< (3,M) wrench of the loads on each frame: to be set before
+    real(wp), allocatable :: inertia(:, :)       !< (6,0:M)
+    real(wp), allocatable :: wrench(:, :)        !< (3,0:M)
+    real(wp), allocatable :: column(:, :)        !< (3,M) U
+    real(wp), allocatable :: pivot(:)            !< (M) D
+    real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
+    real(wp), allocatable :: amount(:, :)        !< (4,0:M) all that hangs on a step, as if rigid: mass, moment, inertia
+    real(wp), allocatable :: motion(:, :)        !< (3,0:M)
+  end type planar_work_type
+
+contains
+
+  !> Room for the passes over so many steps; no loads yet.
+  pure function new_planar_work(m) result(work)
+    integer, intent(in) :: m
+    type(planar_work_type) :: work
+
+    allocate (work%applied(3, m), work%column(3, m), work%pivot(m), work%rest(m), source=0.0_wp)
+    allocate (work%inertia(6, 0:m), work%wrench(3, 0:m), work%amount(4, 0:m), work%motion(3, 0:m), source=0.0_wp)
+  end function new_planar_work
+
+  !> Accelerations of all coordinates under gravity, the wrenches work%applied and generalized forces; see
+  !> solve_open_chains of articulated_bodies.
+  pure subroutine solve_in_plane(m, steps, bodies, gravity, f, slide, v, a, forces, work, ddq, found)
+    integer, intent(in) :: m                                    !< steps
+    type(planar_step_type), intent(in) :: steps(m)
+    type(planar_body_type), intent(in) :: bodies(:)
+    real(wp), intent(in) :: gravity(2)
+    real(wp), intent(in) :: f(4, 0:m), slide(2, m)              !< poses of the frames; ways of the steps
+    real(wp), intent(in) :: v(3, 0:m), a(3, 0:m)                !< velocities; accelerations that rates alone give
+    real(wp), intent(in) :: forces(m)                           !< of each coordinate [N m or N]
+    type(planar_work_type), intent(inout) :: work
+    real(wp), intent(out) :: ddq(m)
+    logical, intent(out) :: found
+    integer :: i
+
+    work%inertia = 0.0_wp
+    work%amount = 0.0_wp
+    work%wrench(:, 1:) = -work%applied
+    do i = 1, size(bodies)
+      call add_body(bodies(i), gravity, f(:, bodies(i)%frame), v(:, bodies(i)%frame), a(:, bodies(i)%frame), &
+                    work%inertia(:, bodies(i)%frame), work%wrench(:, bodies(i)%frame), work%amount(:, bodies(i)%frame))
+    end do
+    call go_inward(m, steps, f, slide, forces, work%inertia, work%wrench, work%amount, work%column, work%pivot, work%rest, &
+                   found)
+    if (.not. found) return
+    call go_outward(m, steps, f, slide, work%column, work%pivot, work%rest, work%motion, ddq)
+  end subroutine solve_in_plane
+
+  !> A body's inertia about the origin of its frame, and the wrench that it needs for the motion by rates alone.
+  pure subroutine add_body(body, gravity, f, v, a, inertia, wrench, amount)
+    type(planar_body_type), intent(in) :: body
+    real(wp), intent(in) :: gravity(2), f(4), v(3), a(3)
+    real(wp), intent(inout) :: inertia(6), wrench(3), amount(4)
+    real(wp) :: x, y, j, force(2)
+
+    x = f(1)*body%centre(1) - f(2)*body%centre(2)
+    y = f(2)*body%centre(1) + f(1)*body%centre(2)
+    j = body%inertia + body%mass*(x**2 + y**2)
+    inertia(1) = inertia(1) + j
+    inertia(2) = inertia(2) - body%mass*y
+    inertia(3) = inertia(3) + body%mass*x
+    inertia(4) = inertia(4) + body%mass
+    inertia(6) = inertia(6) + body%mass
+    force(1) = body%mass*(a(2) - a(1)*y - v(1)**2*x - gravity(1))
+    force(2) = body%mass*(a(3) + a(1)*x - v(1)**2*y - gravity(2))
+    wrench(1) = wrench(1) + body%inertia*a(1) + x*force(2) - y*force(1)
+    wrench(2:3) = wrench(2:3) + force
+    amount(1) = amount(1) + body%mass
+    amount(2) = amount(2) + body%mass*x
+    amount(3) = amount(3) + body%mass*y
+    amount(4) = amount(4) + j
+  end subroutine add_body
+
+  !> The accelerations of the steps eliminated, the last one first.
+  pure subroutine go_inward(m, steps, f, slide, forces, inertia, wrench, amount, column, pivot, rest, found)
+    integer, intent(in) :: m
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(in) :: f(4, 0:m), slide(2, m), forces(m)
+    real(wp), intent(inout) :: inertia(6, 0:m), wrench(3, 0:m), amount(4, 0:m)
+    real(wp), intent(out) :: column(3, m), pivot(m), rest(m)
+    logical, intent(out) :: found
+    real(wp) :: u(3), part(3), rigid, s(2)
+    integer :: i, p
+
+    found = .true.
+    do i = m, 1, -1
+      p = steps(i)%parent
+      rest(i) = forces(steps(i)%coordinate)
+      if (steps(i)%turns) then
+        u = steps(i)%turn*inertia(1:3, i)
+        pivot(i) = steps(i)%turn*u(1)
+        rest(i) = rest(i) - steps(i)%turn*wrench(1, i)
+        rigid = amount(4, i)
+      else
+        s = slide(:, i)
+        u(1) = inertia(2, i)*s(1) + inertia(3, i)*s(2)
+        u(2) = inertia(4, i)*s(1) + inertia(5, i)*s(2)
+        u(3) = inertia(5, i)*s(1) + inertia(6, i)*s(2)
+        pivot(i) = s(1)*u(2) + s(2)*u(3)
+        rest(i) = rest(i) - s(1)*wrench(2, i) - s(2)*wrench(3, i)
+        rigid = amount(1, i)*(s(1)**2 + s(2)**2)
+      end if
+      column(:, i) = u
+      ! what is left by round-off is nothing, as in the Cholesky factors
+      found = pivot(i) > 8.0_wp*m*epsilon(1.0_wp)*rigid
+      if (.not. found) return
+      if (p == 0) cycle
+      part = u*(1.0_wp/pivot(i))
+      inertia(1:3, i) = inertia(1:3, i) - u(1)*part
+      inertia(4, i) = inertia(4, i) - u(2)*part(2)
+      inertia(5, i) = inertia(5, i) - u(2)*part(3)
+      inertia(6, i) = inertia(6, i) - u(3)*part(3)
+      wrench(:, i) = wrench(:, i) + part*rest(i)
+      call add_to_parent(f(3, i) - f(3, p), f(4, i) - f(4, p), inertia(:, i), wrench(:, i), amount(:, i), &
+                         inertia(:, p), wrench(:, p), amount(:, p))
+    end do
+  end subroutine go_inward
+
+  !> What a frame feels, about the origin of its parent: with the velocity (-y, x) of the frame's origin per dw.
+  pure subroutine add_to_parent(x, y, inertia, wrench, amount, parent_inertia, parent_wrench, parent_amount)
+    real(wp), intent(in) :: x, y                 !< from the parent's origin to the frame's
+    real(wp), intent(in) :: inertia(6), wrench(3), amount(4)
+    real(wp), intent(inout) :: parent_inertia(6), parent_wrench(3), parent_amount(4)
+    real(wp) :: h(2)
+
+    h(1) = inertia(2) - inertia(4)*y + inertia(5)*x
+    h(2) = inertia(3) - inertia(5)*y + inertia(6)*x
+    parent_inertia(1) = parent_inertia(1) + inertia(1) - y*(inertia(2) + h(1)) + x*(inertia(3) + h(2))
+    parent_inertia(2:3) = parent_inertia(2:3) + h
+    parent_inertia(4:6) = parent_inertia(4:6) + inertia(4:6)
+    parent_wrench(1) = parent_wrench(1) + wrench(1) - y*wrench(2) + x*wrench(3)
+    parent_wrench(2:3) = parent_wrench(2:3) + wrench(2:3)
+    parent_amount(1) = parent_amount(1) + amount(1)
+    parent_amount(2) = parent_amount(2) + amount(2) + amount(1)*x
+    parent_amount(3) = parent_amount(3) + amount(3) + amount(1)*y
+    parent_amount(4) = parent_amount(4) + amount(4) + 2.0_wp*(x*amount(2) + y*amount(3)) + amount(1)*(x**2 + y**2)
+  end subroutine add_to_parent
+
+  !> The accelerations, the first step first.
+  pure subroutine go_outward(m, steps, f, slide, column, pivot, rest, motion, ddq)
+    integer, intent(in) :: m
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(in) :: f(4, 0:m), slide(2, m), column(3, m), pivot(m), rest(m)
+    real(wp), intent(inout) :: motion(3, 0:m)    !< none of frame 0
+    real(wp), intent(out) :: ddq(m)
+    real(wp) :: x, d(3)
+    integer :: i, p
+
+    do i = 1, m
+      p = steps(i)%parent
+      d = motion(:, p)
+      d(2) = d(2) - d(1)*(f(4, i) - f(4, p))
+      d(3) = d(3) + d(1)*(f(3, i) - f(3, p))
+      x = (rest(i) - column(1, i)*d(1) - column(2, i)*d(2) - column(3, i)*d(3))/pivot(i)
+      ddq(steps(i)%coordinate) = x
+      if (steps(i)%turns) then
+        d(1) = d(1) + steps(i)%turn*x
+      else
+        d(2:3) = d(2:3) + slide(:, i)*x
+      end if
+      motion(:, i) = d
+    end do
+  end subroutine go_outward
+end module mech9_planar_articulated
