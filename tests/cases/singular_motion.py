@@ -141,7 +141,7 @@ def check_pendulum_four_bar(checks, mech9d):
     with open(data, encoding='utf-8') as file:
         text = file.read()
     start = by_rocker['q1'][0]
-    text = text.replace('cq=4', 'cq=1').replace('coordinate=1, position=-1.3', f'coordinate=1, position={start!r}')
+    text = text.replace('cq=4', 'cq=1').replace('coordinate=1, position=-1.3', f'coordinate=1, position={float(start)!r}')
     text = text.replace('position=-0.55, velocity=0', 'position=-0.55')
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, 'by_crank.nml')
