@@ -69,8 +69,7 @@ write_tables() {
   cat <<EOT
 # Benchmarks
 
-Measured by \`bench/run\`, which builds the programs with every instruction of the machine, runs them and writes this page.
-$([ $mode = full ] || echo "This was a quick run, over a twentieth of the times told below: its figures mean little.")
+Measured by \`bench/run\`, which builds the programs with every instruction of the machine, runs them and writes this page.$([ $mode = full ] || printf '\n%s' "This was a quick run, over a twentieth of the times told below: its figures mean little.")
 
 - machine: $(machine)
 - build: $(build_words)
