@@ -150,7 +150,9 @@ contains
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))
         write (unit, '(a)') 'block '//to_text(b)//': links '// &
-          to_text(plan%steps(block%first_step:block%last_step)%link)
+          to_text(pack(plan%steps(block%first_step:block%last_step)%link, &
+                       [(.not. any(plan%closures(block%first_closure:block%last_closure)%closing == i), &
+                         i=block%first_step, block%last_step)]))
         if (size(block%unknowns) > 0) then
           write (unit, '(a)') '  solved for: '// &
             to_text([(block%coordinates(i), i=1, size(block%unknowns))])//' from '// &
