@@ -190,7 +190,7 @@ contains
     right = 4
     do i = 1, maxval(panels)
       own = pack(curves, panels == i)
-      left = max(left, 6 + digits_needed(data%extent(own%y)))
+      left = max(left, 6 + letters_needed(data%extent(own%y)))
       if (size(own) > 1) right = max(right, 6 + longest_name(own, data))
     end do
     text = 'set multiplot layout '//to_text(maxval(panels))//',1 title '//quoted(title)//' margins char '// &
@@ -275,6 +275,18 @@ contains
 
     text = quoted('%.'//to_text(digits_needed(ends))//'g')
   end function format_for
+
+  !> Letters that the marks of an axis take: the digits, and for numbers like -3.5e-13 or -0.00035 more.
+  pure integer function letters_needed(ends)
+    real(wp), intent(in) :: ends(2)
+    real(wp), parameter :: smallest_short = 1e-2_wp, largest_short = 1e6_wp
+    integer, parameter :: exponent = 4
+    real(wp) :: size
+
+    size = maxval(abs(ends))
+    letters_needed = digits_needed(ends)
+    if ((size > 0.0_wp .and. size < smallest_short) .or. size >= largest_short) letters_needed = letters_needed + exponent
+  end function letters_needed
 
   !> Digits by which neighbouring marks of an axis differ, six at least.
   pure integer function digits_needed(ends)

@@ -143,9 +143,9 @@ contains
       associate (step => plan%steps(s))
         k = step%coordinate
         from = sum(mechanism%structure%links(:, k)) - step%link
-        text = text//'  '//to_text(from)//' -- '//to_text(step%link)//' [color="'//colour(b)//'", label=" q'// &
+        text = text//'  '//to_text(from)//' -- '//to_text(step%link)//' [color="'//colour(b)//'", label="   q'// &
                to_text(k)//' '//trim(mechanism%pairs(k)%pair%kind_name())//'\l'
-        if (.not. step%dependent) text = text//' independent\l", penwidth="4'
+        if (.not. step%dependent) text = text//'   independent\l", penwidth="4'
         text = text//'"];'//line_end
       end associate
     end do

@@ -125,6 +125,12 @@ def test_dynamics(folder):
     checks.true('energy [J]' in texts_of(os.path.join(folder, 'energy.svg')), 'the energy axis')
     # a pendulum that starts at rest: the kinetic energy starts at zero
     checks.near(curves[0][0], [0, 0], 1e-12, 'its start')
+    # the sum stays zero but for round-off: its marks, like -2.5e-13, push the label to the left
+    run(mech9d, PENDULUM, '--plot', 'marks.svg:E.total,q1', folder=folder)
+    turned = re.findall(r'translate\(([-\d.]+),[-\d.]+\) rotate\((?:-90|270)', read(os.path.join(folder, 'marks.svg')))
+    checks.equal(len(turned), 2, 'a label at each upward axis')
+    for place in turned:
+        checks.true(float(place) > 15, 'an upward label is within the picture: its base is farther in than letters are high', place)
 
 
 def test_hostile(folder):

@@ -54,7 +54,7 @@ def check_graph(program, data, folder, extra=()):
             nodes.add(int(words[1]))
         elif words[0] == 'edge':
             label = words[4 + 2 * int(words[3])]
-            match = re.fullmatch(r' q(\d+) (\w+)\\?l( independent\\?l)?', label)
+            match = re.fullmatch(r' +q(\d+) (\w+)\\?l( +independent\\?l)?', label)
             if checks.true(match, f'{name}: an edge is labelled', label):
                 drawn[int(match.group(1))] = frozenset(map(int, words[1:3])), match.group(2), bool(match.group(3))
     checks.equal(drawn, expected, f'{name}: pairs, kinds and independent coordinates')
