@@ -1,5 +1,5 @@
 !> A writer of JSON for reports: objects, arrays, numbers, texts, truth values.
-!> Uses mech9_text, mech9_printable, mech9_text_file and the base.
+!> Uses mech9_text, mech9_printable, mech9_page and the base.
 !>
 !>     call json%begin_object()
 !>     call json%add('positions', 101)
@@ -13,7 +13,7 @@ module mech9_json
   use mech9_error, only: error_type, raise, exit_internal
   use mech9_text, only: to_text
   use mech9_printable, only: utf8_length
-  use mech9_text_file, only: text_file_type
+  use mech9_page, only: page_type
   implicit none
   private
   public :: json_type
@@ -25,8 +25,7 @@ module mech9_json
   !> added in an array without; a document that breaks this is refused by `save`.
   type :: json_type
     private
-    character(len=:), allocatable :: buffer
-    integer :: used = 0               !< letters of the buffer in use
+    type(page_type) :: page
     integer :: depth = 0
     character :: closing(deepest) = ' '   !< what ends the object or array at each depth
     logical :: empty = .true.         !< nothing stands yet in the innermost object or array
@@ -43,7 +42,7 @@ module mech9_json
     !> `add(name, value)` in an object, `add(value)` in an array.
     generic :: add => add_real, add_integer, add_long, add_logical, add_text, add_reals, &
       item_real, item_integer, item_long, item_logical, item_text
-    procedure, private :: put_item, begin, finish, append
+    procedure, private :: put_item, begin, finish
   end type json_type
 
 contains
@@ -174,18 +173,15 @@ contains
     class(json_type), intent(in) :: self
     character(len=*), intent(in) :: path   !< '-' is standard output
     type(error_type), allocatable, intent(out) :: err
-    type(text_file_type) :: file
-    type(error_type), allocatable :: close_error
+    type(page_type) :: whole
 
-    if (self%wrong .or. self%depth /= 0 .or. self%used == 0) then
+    if (self%wrong .or. self%depth /= 0 .or. self%page%is_empty()) then
       call raise(err, exit_internal, 'the report '//path//' was not composed as a whole document')
       return
     end if
-    call file%open(path, err)
-    if (allocated(err)) return
-    call file%write(self%buffer(:self%used)//line_end, err)
-    call file%close(close_error)
-    if (.not. allocated(err)) call move_alloc(close_error, err)
+    whole = self%page
+    call whole%put(line_end)
+    call whole%save(path, err)
   end subroutine save_document
 
   subroutine begin(self, opening, closing, name)
@@ -212,8 +208,8 @@ contains
       return
     end if
     self%depth = self%depth - 1
-    if (.not. self%empty) call self%append(line_end//repeat('  ', self%depth))
-    call self%append(closing)
+    if (.not. self%empty) call self%page%put(line_end//repeat('  ', self%depth))
+    call self%page%put(closing)
     self%empty = .false.
   end subroutine finish
 
@@ -227,29 +223,14 @@ contains
     in_object = .false.
     if (self%depth > 0) in_object = self%closing(self%depth) == '}'
     if (in_object .neqv. present(name)) self%wrong = .true.
-    if (self%depth == 0 .and. self%used > 0) self%wrong = .true.
+    if (self%depth == 0 .and. .not. self%page%is_empty()) self%wrong = .true.
     if (self%wrong) return
-    if (.not. self%empty) call self%append(',')
-    if (self%depth > 0) call self%append(line_end//repeat('  ', self%depth))
-    if (present(name)) call self%append(quoted(name)//': ')
-    call self%append(value)
+    if (.not. self%empty) call self%page%put(',')
+    if (self%depth > 0) call self%page%put(line_end//repeat('  ', self%depth))
+    if (present(name)) call self%page%put(quoted(name)//': ')
+    call self%page%put(value)
     self%empty = .false.
   end subroutine put_item
-
-  subroutine append(self, text)
-    class(json_type), intent(inout) :: self
-    character(len=*), intent(in) :: text
-    character(len=:), allocatable :: grown
-
-    if (.not. allocated(self%buffer)) allocate (character(len=4096) :: self%buffer)
-    if (self%used + len(text) > len(self%buffer)) then
-      allocate (character(len=2*(self%used + len(text))) :: grown)
-      grown(:self%used) = self%buffer(:self%used)
-      call move_alloc(grown, self%buffer)
-    end if
-    self%buffer(self%used + 1:self%used + len(text)) = text
-    self%used = self%used + len(text)
-  end subroutine append
 
   !> The shortest of 15 to 17 digits that reads back as the same number; JSON has no NaN and no
   !> infinity, they become null.

@@ -1,5 +1,5 @@
 !> A film as an animated GIF, drawn by gnuplot. Uses kinds, error, film, projection, scene, drawing,
-!> picture_style, svg_film, gnuplot, page.
+!> picture_style, svg_film, gnuplot, page, xml_text.
 !>
 !> gnuplot is given polygons only: lines are drawn forth and back, bands and plates as their outlines.
 module mech9_gif_film
@@ -15,7 +15,8 @@ module mech9_gif_film
   use mech9_svg_film, only: duration_of
   use mech9_svg_picture, only: clock_text
   use mech9_gnuplot, only: quoted, quoted_path, run_gnuplot, gnuplot_package
-  use mech9_page, only: page_type, decimal
+  use mech9_page, only: page_type
+  use mech9_xml_text, only: decimal
   implicit none
   private
   public :: save_gif_film

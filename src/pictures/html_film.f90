@@ -1,6 +1,6 @@
 !> A film as a page that a browser plays, with nothing from elsewhere: the first picture, the places of everything
 !> in every frame, and a script. Uses kinds, error, text, rotation, film, view, projection, scene, svg_picture,
-!> film_script, page.
+!> film_script, page, xml_text.
 module mech9_html_film
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -11,7 +11,8 @@ module mech9_html_film
   use mech9_scene, only: scene_type, item_type, label, in_thread
   use mech9_svg_picture, only: put_picture
   use mech9_film_script, only: put_script
-  use mech9_page, only: page_type, xml_text, decimal
+  use mech9_page, only: page_type
+  use mech9_xml_text, only: xml_text, decimal
   implicit none
   private
   public :: save_html_film

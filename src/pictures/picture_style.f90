@@ -1,10 +1,10 @@
-!> How things look: colours, widths, and the marks of joints and points. Uses kinds, text, page, scene.
+!> How things look: colours, widths, and the marks of joints and points. Uses kinds, text, xml_text, scene.
 !>
 !> The colours are those of Okabe and Ito, which people who see colours differently tell apart, each with a
 !> light tint; outlines are dark, so that pictures can be read in grey.
 module mech9_picture_style
   use mech9_kinds, only: wp
-  use mech9_page, only: decimal
+  use mech9_xml_text, only: decimal
   use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free
   implicit none
   private

@@ -1,5 +1,5 @@
 !> A film as one SVG that moves by itself, without a script, so that it also plays where a page shows it as a
-!> picture. Uses kinds, error, text, film, projection, scene, drawing, picture_style, svg_picture, page.
+!> picture. Uses kinds, error, text, film, projection, scene, drawing, picture_style, svg_picture, page, xml_text.
 module mech9_svg_film
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -9,7 +9,8 @@ module mech9_svg_film
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, mark_svg
   use mech9_svg_picture, only: put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of
-  use mech9_page, only: page_type, decimal
+  use mech9_page, only: page_type
+  use mech9_xml_text, only: decimal
   implicit none
   private
   public :: save_svg_film, duration_of

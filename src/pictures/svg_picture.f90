@@ -1,5 +1,5 @@
 !> A frame of a film as a picture in SVG, alone or as the part of a page that a script moves.
-!> Uses kinds, error, text, rotation, film, view, projection, scene, drawing, picture_style, page.
+!> Uses kinds, error, text, rotation, film, view, projection, scene, drawing, picture_style, page, xml_text.
 module mech9_svg_picture
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -10,7 +10,8 @@ module mech9_svg_picture
                          in_trace
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, colour_of, style_sheet, mark_svg
-  use mech9_page, only: page_type, xml_text, decimal
+  use mech9_page, only: page_type
+  use mech9_xml_text, only: xml_text, decimal
   implicit none
   private
   public :: save_sketch, put_picture, put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of, &

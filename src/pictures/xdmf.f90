@@ -1,5 +1,5 @@
 !> A description in XDMF of the moving links in an HDF5 file, for ParaView and its like.
-!> Uses error, text, mechanism, poses, result_sink, page.
+!> Uses error, text, mechanism, poses, result_sink, page, xml_text.
 !>
 !> Each output is a grid of lines between vertices; the numbers stay in the HDF5 file, which must stand beside.
 module mech9_xdmf
@@ -10,7 +10,8 @@ module mech9_xdmf
   use mech9_settings, only: time_grid_type
   use mech9_poses, only: poses_type
   use mech9_result_sink, only: result_sink_type
-  use mech9_page, only: page_type, xml_text
+  use mech9_page, only: page_type
+  use mech9_xml_text, only: xml_text
   implicit none
   private
   public :: xdmf_type, new_xdmf

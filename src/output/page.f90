@@ -1,14 +1,10 @@
-!> A page: text that is put together in memory and saved as a file, and what pictures in XML need besides.
-!> Uses kinds, error, text, printable, text_file.
+!> A page: text that is put together in memory and saved as a file. Uses error, text_file.
 module mech9_page
-  use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: to_text
-  use mech9_printable, only: printable
   use mech9_text_file, only: text_file_type
   implicit none
   private
-  public :: page_type, xml_text, decimal
+  public :: page_type
 
   character, parameter :: line_end = achar(10)
 
@@ -21,6 +17,7 @@ module mech9_page
     procedure :: put
     procedure :: line
     procedure :: text => text_of_page
+    procedure :: is_empty
     procedure :: save => save_page
   end type page_type
 
@@ -60,6 +57,13 @@ contains
     if (self%used > 0) text = self%buffer(:self%used)
   end function text_of_page
 
+  !> Whether nothing was put yet.
+  pure logical function is_empty(self)
+    class(page_type), intent(in) :: self
+
+    is_empty = self%used == 0
+  end function is_empty
+
   !> Write the page into a file; '-' is standard output. Errors are exit_file.
   subroutine save_page(self, path, err)
     class(page_type), intent(in) :: self
@@ -74,47 +78,4 @@ contains
     call file%close(close_error)
     if (.not. allocated(err)) call move_alloc(close_error, err)
   end subroutine save_page
-
-  !> Any text as text of an XML document: nothing in it is taken for markup.
-  pure function xml_text(text) result(xml)
-    character(len=*), intent(in) :: text
-    character(len=:), allocatable :: xml
-    character(len=len(text)) :: clean
-    integer :: i
-
-    clean = printable(text)
-    xml = ''
-    do i = 1, len(clean)
-      select case (clean(i:i))
-      case ('&')
-        xml = xml//'&amp;'
-      case ('<')
-        xml = xml//'&lt;'
-      case ('>')
-        xml = xml//'&gt;'
-      case ('"')
-        xml = xml//'&quot;'
-      case ("'")
-        xml = xml//'&#39;'
-      case default
-        xml = xml//clean(i:i)
-      end select
-    end do
-  end function xml_text
-
-  !> A number with at most two decimals and no more letters than it needs: 12.5, -0.25, 7.
-  pure function decimal(number) result(text)
-    real(wp), intent(in) :: number               !< of a size that a picture has
-    character(len=:), allocatable :: text
-    integer :: hundredths, whole, rest
-
-    hundredths = nint(100.0_wp*max(-2.0e7_wp, min(2.0e7_wp, number)))
-    whole = abs(hundredths)/100
-    rest = mod(abs(hundredths), 100)
-    text = to_text(whole)
-    if (hundredths < 0) text = '-'//text
-    if (rest == 0) return
-    text = text//'.'//achar(48 + rest/10)
-    if (mod(rest, 10) > 0) text = text//achar(48 + mod(rest, 10))
-  end function decimal
 end module mech9_page
