@@ -1,14 +1,13 @@
 !> How answers are corrected. What is wrong is shown with the numbers of the answers, and any answer can be changed, taken
-!> away or added. Uses text, grammar, draft, draft_check, questions, question_words, summary, asking,
+!> away or added. Uses text, grammar, draft_check, questions, question_words, summary, asking,
 !> conversation.
 module mech9_correcting
   use mech9_text, only: string_type, to_text, lower
   use mech9_grammar, only: group_table, find_group_row
-  use mech9_draft, only: integer_of
   use mech9_draft_check, only: fault_type
   use mech9_questions, only: label_of, find_question, ask_item
   use mech9_question_words, only: is_lacking
-  use mech9_summary, only: entry_with_number, number_of_entry, named_entry, title_of
+  use mech9_summary, only: number_of_entry, entry_meant, title_of
   use mech9_conversation, only: conversation_type, going
   use mech9_asking, only: take_answer
   implicit none
@@ -172,27 +171,20 @@ contains
     character(len=*), intent(in) :: line
     logical, intent(out) :: found
     character(len=:), allocatable :: group, name, which
-    integer :: index_of_group, entry, place, equals
+    integer :: place, equals
+    logical :: by_number
 
     found = .false.
     equals = index(line//'=', '=')
     which = trim(line(:equals - 1))
     conversation%heading = ''
     associate (interview => conversation%interview)
-      index_of_group = 0
-      if (integer_of(which) > 0) call entry_with_number(interview%draft, integer_of(which), index_of_group, entry)
-      if (index_of_group > 0) then
-        group = interview%draft%groups(index_of_group)%name
-        place = interview%draft%place_of(index_of_group)
-        name = interview%draft%groups(index_of_group)%entries(entry)%name
-      else
-        call named_entry(interview%draft, which, group, place, name)
-      end if
+      call entry_meant(interview%draft, which, group, place, name, by_number)
       if (group /= '' .and. name /= '') call interview%correct(group, place, name, found)
     end associate
     if (found .and. equals < len(line)) then
       call take_answer(conversation, trim(adjustl(line(equals + 1:))))
-    else if (index_of_group > 0 .and. .not. found) then
+    else if (by_number .and. .not. found) then
       call conversation%say('This program does not ask for that; "remove '//which//'" takes it away.')
     else if (.not. found) then
       call conversation%say('That is no answer that can be changed; list shows their numbers, ? tells more.')
@@ -244,19 +236,11 @@ contains
     character(len=*), intent(in) :: what
     logical, intent(out) :: found
     character(len=:), allocatable :: group, name, here
-    integer :: index_of_group, entry, place
+    integer :: place
 
     associate (interview => conversation%interview)
       here = label_of(interview%due())
-      index_of_group = 0
-      if (integer_of(what) > 0) call entry_with_number(interview%draft, integer_of(what), index_of_group, entry)
-      if (index_of_group > 0) then
-        group = interview%draft%groups(index_of_group)%name
-        place = interview%draft%place_of(index_of_group)
-        name = interview%draft%groups(index_of_group)%entries(entry)%name
-      else
-        call named_entry(interview%draft, what, group, place, name)
-      end if
+      call entry_meant(interview%draft, what, group, place, name)
       found = group /= ''
       if (.not. found) then
         call conversation%say('That is nothing that can be removed; list shows the numbers of the answers.')

@@ -8,7 +8,7 @@ module mech9_summary
   use mech9_topics, only: is_numbered
   implicit none
   private
-  public :: print_summary, entry_with_number, number_of_entry, named_entry, title_of
+  public :: print_summary, number_of_entry, entry_meant, title_of
 
   integer, parameter :: line_width = 79, indent = 4
   !> Words longer than this mean no entry.
@@ -105,6 +105,28 @@ contains
       end do
     end do
   end function number_of_entry
+
+  !> What the number of an answer means, or words that name it: a group, its place, and a name, empty where only
+  !> a group is named. `group` is empty where they mean nothing.
+  pure subroutine entry_meant(draft, which, group, place, name, by_number)
+    type(draft_type), intent(in) :: draft
+    character(len=*), intent(in) :: which
+    character(len=:), allocatable, intent(out) :: group, name
+    integer, intent(out) :: place
+    logical, intent(out), optional :: by_number    !< an answer has this number
+    integer :: i, entry
+
+    i = 0
+    if (integer_of(which) > 0) call entry_with_number(draft, integer_of(which), i, entry)
+    if (present(by_number)) by_number = i > 0
+    if (i > 0) then
+      group = draft%groups(i)%name
+      place = draft%place_of(i)
+      name = draft%groups(i)%entries(entry)%name
+    else
+      call named_entry(draft, which, group, place, name)
+    end if
+  end subroutine entry_meant
 
   !> What "pair 3 axis", "time end" or "load 2" means: a group, its place, and a name, empty where none is
   !> said. Where the group is one for each coordinate, its number is the coordinate's. `group` is empty where the
