@@ -1,14 +1,18 @@
 !> Families of mechanisms for the tests of blocks, mobility and assembly, assembled where every
-!> coordinate is zero: each pair is an axis that both of its links share there. Uses the model.
+!> coordinate is zero: each pair is an axis that both of its links share there. Uses the model and planning.
 module mech9_mechanism_families
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_vector, random_unit
+  use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame
   implicit none
   private
-  public :: axis_type, planar_axes, spatial_axes, spherical_axes, home_mechanism
+  public :: axis_type, planar_axes, spatial_axes, spherical_axes, home_mechanism, plan_at_home
   public :: class_three, class_four, double_butterfly, ten_links, crank_row, lazy_tongs, random_links, stewart_platform
 
   !> An axis in the home position.
@@ -38,6 +42,19 @@ contains
       end associate
     end do
   end subroutine home_mechanism
+
+  !> Whether the mechanism with these links and axes can be planned in its home position.
+  subroutine plan_at_home(n_links, links, axes, cq, err)
+    integer, intent(in) :: n_links, links(:, :), cq(:)
+    type(axis_type), intent(in) :: axes(:)
+    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: state
+
+    call home_mechanism(n_links, links, axes, cq, mechanism)
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  end subroutine plan_at_home
 
   !> Pivots at random places of a plane; of every `slide_each` pairs one slides (0: none).
   function planar_axes(n, slide_each, random) result(axes)

@@ -8,7 +8,7 @@ program test_overconstrained
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_mechanism_families, only: axis_type, home_mechanism
+  use mech9_mechanism_families, only: axis_type, home_mechanism, plan_at_home
   use mech9_plan_checks, only: check_order, check_closed, block_sizes
   use mech9_testing, only: tester_type
   implicit none
@@ -146,13 +146,9 @@ contains
     character(len=*), intent(in) :: name
     integer, intent(in) :: n_links, links(:, :), cq(:)
     type(axis_type), intent(in) :: axes(:)
-    type(mechanism_type) :: mechanism
-    type(plan_type) :: plan
-    type(state_type) :: state
     type(error_type), allocatable :: err
 
-    call home_mechanism(n_links, links, axes, cq, mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call plan_at_home(n_links, links, axes, cq, err)
     call test%has_error(err, exit_structure, name)
   end subroutine fails
 end program test_overconstrained

@@ -3,11 +3,7 @@
 program test_singular_home
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_structure
-  use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_mechanism_families, only: axis_type, home_mechanism, crank_row
+  use mech9_mechanism_families, only: axis_type, plan_at_home, crank_row
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -87,13 +83,9 @@ contains
     character(len=*), intent(in) :: name
     integer, intent(in) :: n_links, links(:, :), cq(:)
     type(axis_type), intent(in) :: axes(:)
-    type(mechanism_type) :: mechanism
-    type(plan_type) :: plan
-    type(state_type) :: state
     type(error_type), allocatable :: err
 
-    call home_mechanism(n_links, links, axes, cq, mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call plan_at_home(n_links, links, axes, cq, err)
     call test%no_error(err, name)
   end subroutine serves
 
@@ -101,13 +93,9 @@ contains
     character(len=*), intent(in) :: name
     integer, intent(in) :: n_links, links(:, :), cq(:)
     type(axis_type), intent(in) :: axes(:)
-    type(mechanism_type) :: mechanism
-    type(plan_type) :: plan
-    type(state_type) :: state
     type(error_type), allocatable :: err
 
-    call home_mechanism(n_links, links, axes, cq, mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call plan_at_home(n_links, links, axes, cq, err)
     call test%has_error(err, exit_structure, name)
   end subroutine fails
 end program test_singular_home
