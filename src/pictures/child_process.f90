@@ -18,7 +18,7 @@ module mech9_child_process
     character(len=:), allocatable :: said   !< on standard error, the beginning of it
   end type child_outcome_type
 
-  integer(c_int), parameter :: standard_input = 0, standard_error = 2
+  integer(c_int), parameter :: standard_input = 0, standard_output = 1, standard_error = 2
   !> What the child answers where the program cannot be started, as shells do.
   integer(c_int), parameter :: not_found = 127
   !> Bytes of what it says that are kept.
@@ -89,22 +89,27 @@ module mech9_child_process
 contains
 
   !> Run a program and wait for its end. A program that is not there, or that fails, is no error: the outcome
-  !> says so. Its standard output is that of this program.
-  subroutine run_child(words, input, outcome, err, folder)
+  !> says so. Its standard output is that of this program, unless it is dropped.
+  subroutine run_child(words, input, outcome, err, folder, drop_output)
     type(string_type), intent(in) :: words(:)       !< the program, looked for in PATH, and its arguments
     character(len=*), intent(in) :: input           !< what it reads from standard input
     type(child_outcome_type), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: err
     character(len=*), intent(in), optional :: folder   !< where it works; here unless given
-    integer(c_int) :: from, to, process, status, ignored
+    logical, intent(in), optional :: drop_output       !< nobody sees its standard output
+    integer(c_int) :: from, to, drop, process, status, ignored
 
     outcome%said = ''
+    drop = standard_output
+    if (present(drop_output)) then
+      if (drop_output) drop = c_memfd_create('dropped'//c_null_char, 0_c_int)
+    end if
     from = c_memfd_create('input'//c_null_char, 0_c_int)
     to = c_memfd_create('said'//c_null_char, 0_c_int)
     process = -1
-    if (from >= 0 .and. to >= 0) then
+    if (min(from, to, drop) >= 0) then
       call fill(from, input, err)
-      if (.not. allocated(err)) call start(words, from, to, process, folder)
+      if (.not. allocated(err)) call start(words, from, to, drop, process, folder)
     end if
     if (process < 0 .and. .not. allocated(err)) &
       call raise(err, exit_file, 'cannot start '//words(1)%text//': '//reason(error_number()))
@@ -117,6 +122,7 @@ contains
     end if
     if (from >= 0) ignored = c_close(from)
     if (to >= 0) ignored = c_close(to)
+    if (drop > standard_error) ignored = c_close(drop)
   end subroutine run_child
 
   !> Write the input from the beginning of its file; the place where the child reads stays there.
@@ -141,9 +147,9 @@ contains
 
   !> The second process, which becomes the program. Everything it needs is made before it begins: between
   !> fork and exec only system calls are safe.
-  subroutine start(words, from, to, process, folder)
+  subroutine start(words, from, to, drop, process, folder)
     type(string_type), intent(in) :: words(:)
-    integer(c_int), intent(in) :: from, to
+    integer(c_int), intent(in) :: from, to, drop    !< its standard input, error and output
     integer(c_int), intent(out) :: process          !< negative: it could not be made
     character(len=*), intent(in), optional :: folder
     character(kind=c_char, len=:), allocatable, target :: letters
@@ -167,7 +173,7 @@ contains
     if (present(folder)) place = folder//c_null_char
     process = c_fork()
     if (process /= 0) return
-    status = min(c_dup2(from, standard_input), c_dup2(to, standard_error), c_chdir(place))
+    status = min(c_dup2(from, standard_input), c_dup2(to, standard_error), c_dup2(drop, standard_output), c_chdir(place))
     if (status >= 0) status = c_execvp(list(1), list)
     call c_exit_at_once(not_found)
   end subroutine start

@@ -66,7 +66,7 @@ contains
       call put_frame(title, scene, film, projection, 1 + (i - 1)*stride, script)
     end do
     call script%page%line('unset output')
-    call run_gnuplot(script%page%text(), found, err)
+    call run_gnuplot(script%page%text(), found, err, picture=path)
     if (.not. allocated(err) .and. .not. found) &
       call raise(err, exit_file, 'a GIF is drawn by gnuplot, which is not here; install '//gnuplot_package// &
                  ', or let the name end in .html or .svg')

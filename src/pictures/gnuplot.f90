@@ -1,8 +1,12 @@
-!> gnuplot as a process, and text made harmless in its scripts. Uses error, text, printable,
-!> child_process.
+!> gnuplot as a process, and text made harmless in its scripts. Uses error, text, path, file_bytes, text_file,
+!> printable, child_process.
 module mech9_gnuplot
+  use, intrinsic :: iso_fortran_env, only: int64
   use mech9_error, only: error_type, raise, exit_file
   use mech9_text, only: string_type, to_text
+  use mech9_path, only: ending_of
+  use mech9_file_bytes, only: read_bytes
+  use mech9_text_file, only: text_file_type
   use mech9_printable, only: printable
   use mech9_child_process, only: child_outcome_type, run_child
   implicit none
@@ -11,6 +15,10 @@ module mech9_gnuplot
 
   !> What installs it, for messages.
   character(len=*), parameter :: gnuplot_package = 'gnuplot (Debian: apt-get install gnuplot-nox)'
+  !> How many bytes may stand behind the last mark of a picture.
+  integer, parameter :: ends_of_lines = 4, check_sum = 4
+  !> The trailer of a GIF, its last byte.
+  character(len=*), parameter :: gif_end = ';'
 
 contains
 
@@ -59,21 +67,62 @@ contains
   end function quoted_path
 
   !> Let gnuplot carry out a script. Where it is not there, `found` is false; where it fails, the error
-  !> says why.
-  subroutine run_gnuplot(script, found, err, folder)
+  !> says why. Where gnuplot cannot open the picture it draws on standard output: with `picture` that is dropped.
+  subroutine run_gnuplot(script, found, err, folder, picture)
     character(len=*), intent(in) :: script
     logical, intent(out) :: found
     type(error_type), allocatable, intent(out) :: err
     character(len=*), intent(in), optional :: folder   !< where it works; here unless given
+    character(len=*), intent(in), optional :: picture  !< the file that the script makes, seen from here
     type(child_outcome_type) :: outcome
     type(string_type) :: words(1)
 
     found = .false.
     words(1)%text = 'gnuplot'
-    call run_child(words, script, outcome, err, folder)
+    call run_child(words, script, outcome, err, folder, drop_output=present(picture))
     if (allocated(err)) return
     found = outcome%found
-    if (found .and. outcome%code /= 0) &
+    if (.not. found) return
+    if (present(picture)) call check_picture(picture, outcome%code /= 0, err)
+    if (outcome%code /= 0 .and. .not. allocated(err)) &
       call raise(err, exit_file, 'gnuplot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%said)))
   end subroutine run_gnuplot
+
+  !> Whether a picture can be written, and was written to its end: gnuplot does not notice that a disk is full.
+  subroutine check_picture(path, failed, err)
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: failed                      !< gnuplot ended with an error: only why is asked
+    type(error_type), allocatable, intent(out) :: err
+    type(text_file_type) :: file
+    character(len=:), allocatable :: bytes, last
+    integer(int64) :: length
+    integer :: after
+
+    if (failed) then
+      ! where it cannot be opened the system's words are plainer than those of gnuplot
+      call file%open(path, err)
+      if (.not. allocated(err)) call file%close(err)
+      return
+    end if
+    inquire (file=path, size=length)
+    bytes = ''
+    ! what has no size, as a device, might be read without end
+    if (length > 0) call read_bytes(path, bytes, err)
+    if (allocated(err)) return
+    after = ends_of_lines
+    select case (ending_of(path))
+    case ('svg')
+      last = '</svg>'
+    case ('pdf')
+      last = '%%EOF'
+    case ('png')
+      last = 'IEND'
+      after = check_sum
+    case default
+      last = gif_end
+      after = 0
+    end select
+    if (index(bytes(max(1, len(bytes) - len(last) - after + 1):), last) == 0) &
+      call raise(err, exit_file, 'the picture could not be written to its end; is the disk full?')
+  end subroutine check_picture
 end module mech9_gnuplot

@@ -137,7 +137,7 @@ contains
     if (.not. allocated(err)) call file%close(err)
     if (allocated(err)) return
     if (folder == '') folder = '.'
-    call run_gnuplot(script, found, err, folder)
+    call run_gnuplot(script, found, err, folder, self%picture)
     call add_place(err, 'no plot '//self%picture)
     if (allocated(err)) return
     if (found) then

@@ -1,9 +1,9 @@
 !> Pictures of the mechanism itself that a run is asked for: a sketch, a moving picture.
-!> Uses error, text, mechanism, plan, state, the pictures floor, command_line.
+!> Uses error, path, mechanism, plan, state, the pictures floor, command_line.
 module mech9_picture_requests
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data
-  use mech9_text, only: lower
+  use mech9_path, only: ending_of
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -38,7 +38,7 @@ module mech9_picture_requests
     procedure :: print_words
   end type picture_requests_type
 
-  character(len=*), parameter :: endings(*) = [character(len=5) :: '.html', '.svg', '.gif']
+  character(len=*), parameter :: moving_kinds(*) = [character(len=4) :: 'html', 'svg', 'gif']
 
 contains
 
@@ -56,9 +56,14 @@ contains
     requests%animation = mechanism%output%animation
     if (options%has('animate')) requests%animation = options%argument('animate')
     requests%with_masses = program_name == 'mech9d'
-    if (requests%animation /= '' .and. all(endings /= ending_of(requests%animation))) then
+    if (requests%sketch /= '' .and. kind_of(requests%sketch) /= 'svg') then
+      call raise(err, merge(exit_usage, exit_data, options%has('sketch')), "'"//requests%sketch// &
+                 "' is no name of a sketch; it must end in .svg")
+      return
+    end if
+    if (requests%animation /= '' .and. all(moving_kinds /= kind_of(requests%animation))) then
       call raise(err, merge(exit_usage, exit_data, options%has('animate')), "'"//requests%animation// &
-                 "' is no moving picture; the name must end in .html, .svg or .gif")
+                 "' is no name of a moving picture; it must end in .html, .svg or .gif")
       return
     end if
     if (options%has('view')) then
@@ -152,29 +157,26 @@ contains
     type(scene_type) :: scene
     logical :: page
 
-    page = moving .and. ending_of(path) == '.html'
+    page = moving .and. kind_of(path) == 'html'
     call fit_projection(mechanism, film, skeleton, view, page .and. .not. planar, projection)
     call make_scene(mechanism, film, skeleton, projection, planar, self%with_masses, scene)
     if (.not. moving) then
       call save_sketch(path, mechanism%title, scene, film, projection, 1, err)
     else if (page) then
       call save_html_film(path, mechanism%title, scene, film, projection, err)
-    else if (ending_of(path) == '.gif') then
+    else if (kind_of(path) == 'gif') then
       call save_gif_film(path, mechanism%title, scene, film, projection, err)
     else
       call save_svg_film(path, mechanism%title, scene, film, projection, err)
     end if
   end subroutine save_one
 
-  !> The ending of a file's name in lower case, with its dot; .htm counts as .html.
-  pure function ending_of(path) result(ending)
+  !> What kind of picture a file's name means: its ending in lower case; htm counts as html.
+  pure function kind_of(path) result(kind)
     character(len=*), intent(in) :: path
-    character(len=:), allocatable :: ending
-    integer :: dot
+    character(len=len(ending_of(path)) + 1) :: kind
 
-    dot = index(path, '.', back=.true.)
-    ending = ''
-    if (dot > index(path, '/', back=.true.)) ending = lower(path(dot:))
-    if (ending == '.htm') ending = '.html'
-  end function ending_of
+    kind = ending_of(path)
+    if (kind == 'htm') kind = 'html'
+  end function kind_of
 end module mech9_picture_requests

@@ -9,6 +9,7 @@ import json
 import math
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -349,6 +350,8 @@ def check_refusals(checks, programs, folder):
             (['--sketch', 'a.svg', '--set', "output.view='1,2'"], 3, 'is no view'),
             (['--animate', 'a.html', '--check'], 2, '--check makes none'),
             (['--animate', 'a.html', '--range'], 2, '--range makes none'),
+            (['--sketch', 'a.png'], 2, 'must end in .svg'),
+            (['--set', "output.sketch='a'"], 3, 'must end in .svg'),
             (['--animate', 'a.mp4'], 2, '.html, .svg or .gif'),
             (['--set', "output.animation='a'"], 3, '.html, .svg or .gif'),
             (['--sketch', 'nowhere/a.svg'], 8, 'nowhere/a.svg'),
@@ -359,6 +362,19 @@ def check_refusals(checks, programs, folder):
         checks.equal(done.returncode, code, f'{why}: its exit code')
         checks.true(words in done.stderr, f'{why}: says why', done.stderr)
         checks.true('Backtrace' not in done.stderr, f'{why}: no backtrace')
+
+
+def check_no_place(checks, programs, folder):
+    """A film of gnuplot that cannot be opened, and one on a full disk, which gnuplot takes for done."""
+    os.mkdir(os.path.join(folder, 'folder.gif'))
+    targets = {'folder.gif': 'Is a directory', 'nowhere/a.gif': 'No such file'}
+    if os.path.exists('/dev/full'):
+        os.symlink('/dev/full', os.path.join(folder, 'full.gif'))
+        targets['full.gif'] = 'disk full'
+    for target, words in targets.items():
+        done = run(f'{programs}/mech9k', example('fig1'), '--no-write', '--quiet', '--animate', target, folder=folder)
+        checks.equal((done.returncode, done.stdout), (8, ''), f'{target}: its exit code, nothing on standard output')
+        checks.true(target in done.stderr and words in done.stderr, f'{target}: says why', done.stderr)
 
 
 def check_large(checks, programs, folder):
@@ -398,6 +414,8 @@ def main():
         check_gif(checks, programs, folder)
         check_hostile_title(checks, programs, folder)
         check_refusals(checks, programs, folder)
+        if shutil.which('gnuplot'):
+            check_no_place(checks, programs, folder)
         check_large(checks, programs, folder)
     checks.finish()
 

@@ -133,6 +133,21 @@ def test_dynamics(folder):
         checks.true(float(place) > 15, 'an upward label is within the picture: its base is farther in than letters are high', place)
 
 
+def test_no_place(folder):
+    """A picture that cannot be opened, and one on a full disk: gnuplot itself takes both for done."""
+    os.mkdir(os.path.join(folder, 'folder.svg'))
+    targets = {'folder.svg': 'Is a directory'}
+    if os.path.exists('/dev/full'):
+        for ending in ('svg', 'png', 'pdf'):
+            os.symlink('/dev/full', os.path.join(folder, 'full.' + ending))
+            targets['full.' + ending] = 'disk full'
+    for target, words in targets.items():
+        done = run(mech9k, FIG1, '--quiet', '--table', 'kept.dat', '--plot', target + ':q1', folder=folder)
+        checks.true(done.returncode == 8 and target in done.stderr and words in done.stderr, f'{target}: told', done.stderr)
+        checks.equal(done.stdout, '', f'{target}: nothing on standard output')
+        checks.equal(len(read_table(read(os.path.join(folder, 'kept.dat')))['t']), 101, f'{target}: the table is whole')
+
+
 def test_hostile(folder):
     # a line end cannot stand in a title, but in the name of a file
     name = HOSTILE.replace('/', '') + '\n| x'
@@ -233,7 +248,7 @@ def test_without_gnuplot(folder):
 
 tests = [test_refusals, test_without_gnuplot]
 if shutil.which('gnuplot'):
-    tests += [test_beside_table, test_without_table, test_dynamics, test_hostile, test_terminal]
+    tests += [test_beside_table, test_without_table, test_dynamics, test_no_place, test_hostile, test_terminal]
 else:
     print('gnuplot is not here: only what is said without it is checked')
 for test in tests:

@@ -14,15 +14,17 @@ contains
     call test_codes(tester)
     call test_words(tester)
     call test_much_input(tester)
+    call test_dropped_output(tester)
     call tester%finish()
   end subroutine run_tests
 
   !> sh -c SCRIPT NAME WORD, with an input.
-  subroutine run_shell(script, word, input, outcome, err, folder)
+  subroutine run_shell(script, word, input, outcome, err, folder, drop_output)
     character(len=*), intent(in) :: script, word, input
     type(child_outcome_type), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: err
     character(len=*), intent(in), optional :: folder
+    logical, intent(in), optional :: drop_output
     type(string_type) :: words(5)
 
     words(1)%text = 'sh'
@@ -30,7 +32,7 @@ contains
     words(3)%text = script
     words(4)%text = 'name'
     words(5)%text = word
-    call run_child(words, input, outcome, err, folder)
+    call run_child(words, input, outcome, err, folder, drop_output)
   end subroutine run_shell
 
   subroutine test_codes(tester)
@@ -81,4 +83,19 @@ contains
     call tester%is_true(verify(outcome%said, ' 1000000'//achar(10)) == 0 .and. index(outcome%said, '1000000') > 0, &
                         'all of the input arrives')
   end subroutine test_much_input
+
+  !> Standard output that is dropped goes to another file than that of this program, and blocks nothing.
+  subroutine test_dropped_output(tester)
+    type(tester_type), intent(inout) :: tester
+    type(child_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    character(len=*), parameter :: script = &
+      'if [ /proc/self/fd/1 -ef /proc/$PPID/fd/1 ]; then echo same >&2; else cat; echo other >&2; fi'
+
+    call run_shell(script, '', repeat('0123456789', 100000), outcome, err, drop_output=.true.)
+    call tester%no_error(err, 'dropped output')
+    call tester%is_true(index(outcome%said, 'other') > 0, 'dropped output is not that of this program')
+    call run_shell(script, '', '', outcome, err)
+    call tester%is_true(index(outcome%said, 'same') > 0, 'output that is not dropped is')
+  end subroutine test_dropped_output
 end program test_child_process
