@@ -1,11 +1,10 @@
-!> gnuplot as a process, and text made harmless in its scripts. Uses error, text, path, file_bytes, text_file,
-!> printable, child_process.
+!> gnuplot as a process, and text made harmless in its scripts. Uses error, text, path, text_file, printable,
+!> child_process.
 module mech9_gnuplot
   use, intrinsic :: iso_fortran_env, only: int64
   use mech9_error, only: error_type, raise, exit_file
   use mech9_text, only: string_type, to_text
   use mech9_path, only: ending_of
-  use mech9_file_bytes, only: read_bytes
   use mech9_text_file, only: text_file_type
   use mech9_printable, only: printable
   use mech9_child_process, only: child_outcome_type, run_child
@@ -15,8 +14,8 @@ module mech9_gnuplot
 
   !> What installs it, for messages.
   character(len=*), parameter :: gnuplot_package = 'gnuplot (Debian: apt-get install gnuplot-nox)'
-  !> How many bytes may stand behind the last mark of a picture.
-  integer, parameter :: ends_of_lines = 4, check_sum = 4
+  !> Bytes that hold the last mark of a picture, and what may stand behind it: line ends, a check sum.
+  integer, parameter :: longest_end = 12
   !> The trailer of a GIF, its last byte.
   character(len=*), parameter :: gif_end = ';'
 
@@ -94,9 +93,8 @@ contains
     logical, intent(in) :: failed                      !< gnuplot ended with an error: only why is asked
     type(error_type), allocatable, intent(out) :: err
     type(text_file_type) :: file
-    character(len=:), allocatable :: bytes, last
-    integer(int64) :: length
-    integer :: after
+    character(len=longest_end) :: last
+    logical :: whole
 
     if (failed) then
       ! where it cannot be opened the system's words are plainer than those of gnuplot
@@ -104,25 +102,35 @@ contains
       if (.not. allocated(err)) call file%close(err)
       return
     end if
-    inquire (file=path, size=length)
-    bytes = ''
-    ! what has no size, as a device, might be read without end
-    if (length > 0) call read_bytes(path, bytes, err)
-    if (allocated(err)) return
-    after = ends_of_lines
+    call read_end(path, last)
     select case (ending_of(path))
     case ('svg')
-      last = '</svg>'
+      whole = index(last, '</svg>') > 0
     case ('pdf')
-      last = '%%EOF'
+      whole = index(last, '%%EOF') > 0
     case ('png')
-      last = 'IEND'
-      after = check_sum
+      whole = index(last, 'IEND') > 0
     case default
-      last = gif_end
-      after = 0
+      whole = last(longest_end:) == gif_end
     end select
-    if (index(bytes(max(1, len(bytes) - len(last) - after + 1):), last) == 0) &
-      call raise(err, exit_file, 'the picture could not be written to its end; is the disk full?')
+    if (.not. whole) call raise(err, exit_file, 'the picture could not be written to its end; is the disk full?')
   end subroutine check_picture
+
+  !> The last bytes of a file; blanks where there are none, as of a device.
+  subroutine read_end(path, last)
+    character(len=*), intent(in) :: path
+    character(len=longest_end), intent(out) :: last
+    character(len=longest_end) :: bytes
+    integer(int64) :: length
+    integer :: unit, status
+
+    last = ''
+    inquire (file=path, size=length)
+    if (length < longest_end) return
+    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=status)
+    if (status /= 0) return
+    read (unit, pos=length - longest_end + 1, iostat=status) bytes
+    close (unit)
+    if (status == 0) last = bytes
+  end subroutine read_end
 end module mech9_gnuplot

@@ -303,7 +303,7 @@ def gif_frames(data):
 
 def check_gif(checks, programs, folder):
     path = os.path.join(folder, 'film.gif')
-    words = [f'{programs}/mech9k', example('fig1'), '--no-write', '--animate', path, '--set', 'time.intervals=6']
+    words = [f'{programs}/mech9k', example('fig1'), '--no-write', '--animate', path, '--set', 'time.intervals=20']
     environment = dict(os.environ, PATH=folder)
     done = subprocess.run(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
     checks.equal(done.returncode, 8, 'without gnuplot there is no GIF')
@@ -317,7 +317,7 @@ def check_gif(checks, programs, folder):
     with open(path, 'rb') as file:
         data = file.read()
     checks.equal(data[:6], b'GIF89a', 'it begins as one')
-    checks.equal(gif_frames(data), 7, 'it has a frame for each output')
+    checks.equal(gif_frames(data), 21, 'it has a frame for each output')
     checks.true(b'NETSCAPE2.0' in data, 'and repeats')
 
 
