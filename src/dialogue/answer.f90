@@ -1,5 +1,6 @@
 !> What was typed at a question, held against its row of the grammar as the reader of data files does.
-!> Uses text, grammar, source, document, parser, item_merge, item_check, diagnostics, draft_source.
+!> Uses text, grammar, source, document, parser, item_merge, item_check, diagnostics, printable,
+!> draft_source.
 module mech9_answer
   use mech9_text, only: lower, to_text
   use mech9_source, only: source_type, span_type, source_from_text
@@ -9,6 +10,7 @@ module mech9_answer
   use mech9_item_merge, only: expand_repeats
   use mech9_item_check, only: check_item
   use mech9_diagnostics, only: diagnostics_type, printable
+  use mech9_printable, only: with_escapes
   use mech9_draft_source, only: values_text
   implicit none
   private
@@ -99,20 +101,8 @@ contains
   pure function quoted(line) result(text)
     character(len=*), intent(in) :: line
     character(len=:), allocatable :: text
-    integer :: i, n
 
-    allocate (character(len=2*len(line) + 2) :: text)
-    text(1:1) = ''''
-    n = 1
-    do i = 1, len(line)
-      n = n + 1
-      text(n:n) = line(i:i)
-      if (line(i:i) /= '''') cycle
-      n = n + 1
-      text(n:n) = ''''
-    end do
-    text(n + 1:n + 1) = ''''
-    text = text(:n + 1)
+    text = ''''//with_escapes(line, '''', [''''''])//''''
   end function quoted
 
   pure function switch_text(line) result(text)

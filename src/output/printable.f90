@@ -2,7 +2,7 @@
 module mech9_printable
   implicit none
   private
-  public :: printable, column_name, utf8_length
+  public :: printable, column_name, with_escapes, utf8_length
 
 contains
 
@@ -39,6 +39,40 @@ contains
     end do
     if (name == '') name = '_'
   end function column_name
+
+  !> Letters of the text when some stand as escapes. Before the function whose length it is.
+  pure integer function escaped_length(text, letters, escapes) result(length)
+    character(len=*), intent(in) :: text, letters, escapes(:)
+    integer :: i, k
+
+    length = len(text)
+    do i = 1, len(text)
+      k = index(letters, text(i:i))
+      if (k > 0) length = length + len_trim(escapes(k)) - 1
+    end do
+  end function escaped_length
+
+  !> The text with escapes for the letters that mean something of their own where it is going to stand.
+  pure function with_escapes(text, letters, escapes) result(safe)
+    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: letters      !< those
+    character(len=*), intent(in) :: escapes(:)   !< for each of them, padded with blanks
+    character(len=escaped_length(text, letters, escapes)) :: safe
+    integer :: i, k, n, length
+
+    n = 0
+    do i = 1, len(text)
+      k = index(letters, text(i:i))
+      if (k == 0) then
+        n = n + 1
+        safe(n:n) = text(i:i)
+      else
+        length = len_trim(escapes(k))
+        safe(n + 1:n + length) = escapes(k)
+        n = n + length
+      end if
+    end do
+  end function with_escapes
 
   pure logical function is_control(letter)
     character, intent(in) :: letter

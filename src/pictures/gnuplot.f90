@@ -6,7 +6,7 @@ module mech9_gnuplot
   use mech9_text, only: string_type, to_text
   use mech9_path, only: ending_of
   use mech9_text_file, only: text_file_type
-  use mech9_printable, only: printable
+  use mech9_printable, only: printable, with_escapes
   use mech9_child_process, only: child_outcome_type, run_child
   implicit none
   private
@@ -26,16 +26,8 @@ contains
   pure function quoted(text) result(string)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: string
-    character(len=len(text)) :: clean
-    integer :: i
 
-    clean = printable(text)
-    string = ''''
-    do i = 1, len(clean)
-      string = string//clean(i:i)
-      if (clean(i:i) == '''') string = string//''''
-    end do
-    string = string//''''
+    string = ''''//with_escapes(printable(text), '''', [''''''])//''''
   end function quoted
 
   !> The name of a file as a string of gnuplot. A path that begins with a folder is only ever a file: `<`,

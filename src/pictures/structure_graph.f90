@@ -11,7 +11,7 @@ module mech9_structure_graph
   use mech9_plan, only: plan_type, block_type
   use mech9_planning, only: chain_names
   use mech9_text_file, only: text_file_type
-  use mech9_printable, only: printable
+  use mech9_printable, only: printable, with_escapes
   use mech9_child_process, only: child_outcome_type, run_child
   implicit none
   private
@@ -162,19 +162,7 @@ contains
   pure function quoted(text) result(string)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: string
-    character(len=len(text)) :: clean
-    integer :: i
 
-    clean = printable(text)
-    string = '"'
-    do i = 1, len(clean)
-      if (scan(clean(i:i), '"\') > 0) string = string//'\'
-      if (clean(i:i) == '&') then
-        string = string//'&amp;'
-      else
-        string = string//clean(i:i)
-      end if
-    end do
-    string = string//'"'
+    string = '"'//with_escapes(printable(text), '"\&', [character(len=5) :: '\"', '\\', '&amp;'])//'"'
   end function quoted
 end module mech9_structure_graph

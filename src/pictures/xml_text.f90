@@ -2,7 +2,7 @@
 module mech9_xml_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
-  use mech9_printable, only: printable
+  use mech9_printable, only: printable, with_escapes
   implicit none
   private
   public :: xml_text, decimal
@@ -13,27 +13,8 @@ contains
   pure function xml_text(text) result(xml)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: xml
-    character(len=len(text)) :: clean
-    integer :: i
 
-    clean = printable(text)
-    xml = ''
-    do i = 1, len(clean)
-      select case (clean(i:i))
-      case ('&')
-        xml = xml//'&amp;'
-      case ('<')
-        xml = xml//'&lt;'
-      case ('>')
-        xml = xml//'&gt;'
-      case ('"')
-        xml = xml//'&quot;'
-      case ("'")
-        xml = xml//'&#39;'
-      case default
-        xml = xml//clean(i:i)
-      end select
-    end do
+    xml = with_escapes(printable(text), '&<>"''', [character(len=6) :: '&amp;', '&lt;', '&gt;', '&quot;', '&#39;'])
   end function xml_text
 
   !> A number with at most two decimals and no more letters than it needs: 12.5, -0.25, 7.

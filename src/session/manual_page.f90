@@ -1,7 +1,8 @@
 !> The manual page of a program, in the language of man(7). Uses help_text, options, the input floor's tables and
-!> help, version, text.
+!> help, printable, version, text.
 module mech9_manual_page
   use mech9_text, only: to_text, starts_with
+  use mech9_printable, only: with_escapes
   use mech9_options, only: options_table
   use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group
   use mech9_data_help, only: takes_text, meaning_text, use_text
@@ -165,28 +166,7 @@ contains
   pure function escaped(words) result(text)
     character(len=*), intent(in) :: words
     character(len=:), allocatable :: text
-    integer :: i
 
-    text = ''
-    do i = 1, len(words)
-      select case (words(i:i))
-      case ('\')
-        text = text//'\e'
-      case ('-')
-        text = text//'\-'
-      case ('''')
-        text = text//'\(aq'
-      case ('"')
-        text = text//'\(dq'
-      case ('^')
-        text = text//'\(ha'
-      case ('~')
-        text = text//'\(ti'
-      case ('`')
-        text = text//'\(ga'
-      case default
-        text = text//words(i:i)
-      end select
-    end do
+    text = with_escapes(words, '\-''"^~`', [character(len=5) :: '\e', '\-', '\(aq', '\(dq', '\(ha', '\(ti', '\(ga'])
   end function escaped
 end module mech9_manual_page
