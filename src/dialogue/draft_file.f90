@@ -7,7 +7,7 @@ module mech9_draft_file
   use mech9_document, only: document_type
   use mech9_parser, only: read_document
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_text_file, only: text_file_type
+  use mech9_text_file, only: save_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_draft_text, only: draft_text_type, write_draft
   use mech9_draft_source, only: draft_from_document
@@ -29,19 +29,13 @@ contains
     character(len=*), intent(in) :: bookmark       !< empty: the data file is finished
     character(len=*), intent(in) :: program_name
     type(error_type), allocatable, intent(out) :: err
-    type(error_type), allocatable :: at_close
-    type(text_file_type) :: file
     type(draft_text_type) :: written
     character(len=:), allocatable :: remark
 
     remark = ''
     if (bookmark /= '') remark = mark//bookmark//' ('//program_name//' --resume '//path//')'
     call write_draft(draft, remark, written)
-    call file%open(path, err)
-    if (allocated(err)) return
-    call file%write(written%text, err)
-    call file%close(at_close)
-    if (.not. allocated(err)) call move_alloc(at_close, err)
+    call save_text(path, written%text, err)
   end subroutine save_draft
 
   !> Read a data file as a draft, and its bookmark, empty where it has none. What cannot be read stands in the diagnostics.

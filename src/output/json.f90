@@ -1,5 +1,5 @@
 !> A writer of JSON for reports: objects, arrays, numbers, texts, truth values.
-!> Uses mech9_text, mech9_printable, mech9_page and the base.
+!> Uses mech9_text, mech9_printable, mech9_text_file, mech9_page and the base.
 !>
 !>     call json%begin_object()
 !>     call json%add('positions', 101)
@@ -13,6 +13,7 @@ module mech9_json
   use mech9_error, only: error_type, raise, exit_internal
   use mech9_text, only: to_text
   use mech9_printable, only: utf8_length
+  use mech9_text_file, only: save_text
   use mech9_page, only: page_type
   implicit none
   private
@@ -173,15 +174,12 @@ contains
     class(json_type), intent(in) :: self
     character(len=*), intent(in) :: path   !< '-' is standard output
     type(error_type), allocatable, intent(out) :: err
-    type(page_type) :: whole
 
     if (self%wrong .or. self%depth /= 0 .or. self%page%is_empty()) then
       call raise(err, exit_internal, 'the report '//path//' was not composed as a whole document')
       return
     end if
-    whole = self%page
-    call whole%put(line_end)
-    call whole%save(path, err)
+    call save_text(path, self%page%text()//line_end, err)
   end subroutine save_document
 
   subroutine begin(self, opening, closing, name)

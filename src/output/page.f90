@@ -1,7 +1,7 @@
 !> A page: text that is put together in memory and saved as a file. Uses error, text_file.
 module mech9_page
   use mech9_error, only: error_type
-  use mech9_text_file, only: text_file_type
+  use mech9_text_file, only: save_text
   implicit none
   private
   public :: page_type
@@ -69,13 +69,7 @@ contains
     class(page_type), intent(in) :: self
     character(len=*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: err
-    type(error_type), allocatable :: close_error
-    type(text_file_type) :: file
 
-    call file%open(path, err)
-    if (allocated(err)) return
-    if (self%used > 0) call file%write(self%buffer(:self%used), err)
-    call file%close(close_error)
-    if (.not. allocated(err)) call move_alloc(close_error, err)
+    call save_text(path, self%text(), err)
   end subroutine save_page
 end module mech9_page

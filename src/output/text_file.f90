@@ -10,7 +10,7 @@ module mech9_text_file
   use mech9_system_error, only: error_number, reason, interrupted_call
   implicit none
   private
-  public :: text_file_type
+  public :: text_file_type, save_text
 
   integer(c_int), parameter :: standard_output = 1
   integer(c_int), parameter :: permissions = int(o'666', c_int)   !< less what the user masks
@@ -109,4 +109,19 @@ contains
     if (c_close(descriptor) /= 0) &
       call raise(err, exit_file, 'cannot finish '//self%path//': '//reason(error_number()))
   end subroutine close_file
+
+  !> Write a file of this text. Errors are exit_file; the first one is told, and the file is closed in any case.
+  subroutine save_text(path, text, err)
+    character(len=*), intent(in) :: path   !< '-' is standard output
+    character(len=*), intent(in) :: text   !< of whole lines
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: at_close
+    type(text_file_type) :: file
+
+    call file%open(path, err)
+    if (allocated(err)) return
+    call file%write(text, err)
+    call file%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine save_text
 end module mech9_text_file

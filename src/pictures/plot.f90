@@ -6,7 +6,7 @@ module mech9_plot
   use mech9_error, only: error_type, raise, add_place, exit_usage, exit_file
   use mech9_text, only: string_type, to_text
   use mech9_path, only: folder_of, name_of, ending_of, with_ending
-  use mech9_text_file, only: text_file_type
+  use mech9_text_file, only: save_text
   use mech9_result_sink, only: result_sink_type
   use mech9_gnuplot, only: run_gnuplot, gnuplot_package
   use mech9_terminal_size, only: find_terminal_size
@@ -123,7 +123,6 @@ contains
     class(plot_type), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: script_path, script, source, folder
-    type(text_file_type) :: file
     logical :: found
 
     script_path = with_ending(self%picture, script_ending)
@@ -132,9 +131,7 @@ contains
     if (can_be_read(self%table) .and. folder_of(self%table) == folder) source = name_of(self%table)
     script = picture_script(self%title, self%request%curves, self%data, name_of(self%picture), name_of(script_path), &
                             source)
-    call file%open(script_path, err)
-    if (.not. allocated(err)) call file%write(script, err)
-    if (.not. allocated(err)) call file%close(err)
+    call save_text(script_path, script, err)
     if (allocated(err)) return
     if (folder == '') folder = '.'
     call run_gnuplot(script, found, err, folder, self%picture)

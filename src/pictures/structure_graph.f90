@@ -10,12 +10,12 @@ module mech9_structure_graph
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_planning, only: chain_names
-  use mech9_text_file, only: text_file_type
+  use mech9_text_file, only: save_text
   use mech9_printable, only: printable, with_escapes
   use mech9_child_process, only: child_outcome_type, run_child
   implicit none
   private
-  public :: save_structure_graph, structure_graph
+  public :: save_structure_graph
 
   character, parameter :: line_end = achar(10)
   !> Colours that people with any kind of colour vision tell apart, in turn for the blocks.
@@ -37,7 +37,6 @@ contains
     character(len=:), allocatable, intent(out) :: said   !< a line for the user
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: text, text_path
-    type(text_file_type) :: file
 
     text = structure_graph(mechanism, plan)
     select case (ending_of(path))
@@ -47,9 +46,7 @@ contains
       text_path = path
     end select
     said = 'graph: '//path
-    call file%open(text_path, err)
-    if (.not. allocated(err)) call file%write(text, err)
-    if (.not. allocated(err)) call file%close(err)
+    call save_text(text_path, text, err)
     if (allocated(err) .or. text_path == path) return
     call draw(path, text, text_path, said, err)
     call add_place(err, 'no picture of the structure')

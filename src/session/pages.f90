@@ -3,7 +3,7 @@
 module mech9_pages
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, exit_done
-  use mech9_text_file, only: text_file_type
+  use mech9_text_file, only: save_text
   use mech9_system, only: exit_program
   use mech9_manual_page, only: manual_page
   use mech9_bash_completion, only: bash_completion
@@ -21,8 +21,8 @@ contains
     integer :: i
 
     do i = 1, size(programs)
-      call write_file(programs(i)//'.1', manual_page(programs(i)), err)
-      if (.not. allocated(err)) call write_file(programs(i)//'.bash', bash_completion(programs(i)), err)
+      call save_text(programs(i)//'.1', manual_page(programs(i)), err)
+      if (.not. allocated(err)) call save_text(programs(i)//'.bash', bash_completion(programs(i)), err)
       if (allocated(err)) then
         write (error_unit, '(a)') err%message
         call exit_program(err%code)
@@ -30,14 +30,4 @@ contains
     end do
     call exit_program(exit_done)
   end subroutine write_pages
-
-  subroutine write_file(path, text, err)
-    character(len=*), intent(in) :: path, text
-    type(error_type), allocatable, intent(out) :: err
-    type(text_file_type) :: file
-
-    call file%open(path, err)
-    if (.not. allocated(err)) call file%write(text, err)
-    if (.not. allocated(err)) call file%close(err)
-  end subroutine write_file
 end module mech9_pages
