@@ -13,7 +13,7 @@ module mech9_dynamic_report
   use mech9_integration_methods, only: integration_methods
   use mech9_integrator, only: integration_statistics_type
   use mech9_dynamic_run, only: dynamic_run_type
-  use mech9_run_words, only: duration, each, add_provenance, add_structure
+  use mech9_run_words, only: duration, each, begin_report, add_structure
   implicit none
   private
   public :: print_dynamic_report, save_dynamic_report, print_coefficients
@@ -116,11 +116,7 @@ contains
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call json%begin_object()
-    call add_provenance(json, 'mech9d')
-    call json%add('title', mechanism%title)
-    call json%add('exit_code', exit_code)
-    call json%add('table', table_path)
+    call begin_report(json, 'mech9d', mechanism, exit_code, table_path)
     call dynamic_facts(mechanism, plan, outcome, run, facts)
     call facts%to_json(json)
     call add_coefficients(json, plan, run%coefficients)

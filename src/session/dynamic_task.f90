@@ -8,7 +8,7 @@ module mech9_dynamic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_task, only: task_type, answers_only, print_check, announce, draw
+  use mech9_task, only: task_type, answers_only, print_check, begin_run, end_run
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
@@ -67,10 +67,8 @@ contains
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      call print_check(options, mechanism, plan, start, diagnostics)
+      call print_check(options, pictures, mechanism, plan, start, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
-      if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
-      if (allocated(err)) call diagnostics%add_error(err)
     else
       call carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
     end if
@@ -91,14 +89,10 @@ contains
     type(hdf5_sink_type), pointer :: hdf5
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
+    logical :: ready
 
-    call announce(options, mechanism, plan)
-    if (pictures%any_wanted()) run%film = pictures%film_for(mechanism, mechanism%time%intervals + 1)
-    call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
-    if (allocated(err)) then
-      call diagnostics%add_error(err)
-      return
-    end if
+    call begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
+    if (.not. ready) return
     call dynamic_facts(mechanism, plan, outcome, run, facts)
     call results%write_facts(facts)
     hdf5 => results%hdf5()
@@ -109,10 +103,7 @@ contains
     call dynamic_facts(mechanism, plan, outcome, run, facts)
     call results%write_facts(facts, diagnostics%code())
     if (associated(hdf5)) call write_events(hdf5, run)
-    call results%close(err)
-    if (allocated(err)) call diagnostics%add_error(err)
-    if (.not. options%has('quiet')) call results%print_words(error_unit)
-    if (allocated(run%film)) call draw(options, pictures, mechanism, run%film, diagnostics)
+    call end_run(options, pictures, mechanism, run, results, diagnostics)
     if (.not. options%has('report')) return
     call save_dynamic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
                              outcome, run, err)

@@ -10,7 +10,7 @@ module mech9_kinematic_report
   use mech9_plan, only: plan_type
   use mech9_tracking, only: tracker_type, words_of_block
   use mech9_recording, only: recording_outcome_type
-  use mech9_run_words, only: duration, each, add_structure, add_provenance
+  use mech9_run_words, only: duration, each, begin_report, add_structure
   implicit none
   private
   public :: print_kinematic_report, save_kinematic_report, kinematic_facts
@@ -89,11 +89,7 @@ contains
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call json%begin_object()
-    call add_provenance(json, 'mech9k')
-    call json%add('title', mechanism%title)
-    call json%add('exit_code', exit_code)
-    call json%add('table', table_path)
+    call begin_report(json, 'mech9k', mechanism, exit_code, table_path)
     call kinematic_facts(plan, outcome, tracker, facts)
     call facts%to_json(json)
     call add_structure(json, mechanism, plan)

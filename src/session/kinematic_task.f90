@@ -8,7 +8,7 @@ module mech9_kinematic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_task, only: task_type, answers_only, print_check, announce, draw
+  use mech9_task, only: task_type, answers_only, print_check, begin_run, end_run
   use mech9_range_text, only: print_ranges
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
@@ -67,9 +67,7 @@ contains
       return
     end if
     if (answers_only(options)) then
-      call print_check(options, mechanism, plan, start, diagnostics)
-      if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
-      if (allocated(err)) call diagnostics%add_error(err)
+      call print_check(options, pictures, mechanism, plan, start, diagnostics)
       return
     end if
     if (options%has('range')) then
@@ -93,14 +91,10 @@ contains
     type(facts_type) :: facts
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
+    logical :: ready
 
-    call announce(options, mechanism, plan)
-    if (pictures%any_wanted()) run%film = pictures%film_for(mechanism, mechanism%time%intervals + 1)
-    call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
-    if (allocated(err)) then
-      call diagnostics%add_error(err)
-      return
-    end if
+    call begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
+    if (.not. ready) return
     call kinematic_facts(plan, outcome, run%tracker, facts)
     call results%write_facts(facts)
     call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
@@ -109,10 +103,7 @@ contains
     if (allocated(err)) call diagnostics%add_error(err)
     call kinematic_facts(plan, outcome, run%tracker, facts)
     call results%write_facts(facts, diagnostics%code())
-    call results%close(err)
-    if (allocated(err)) call diagnostics%add_error(err)
-    if (.not. options%has('quiet')) call results%print_words(error_unit)
-    if (allocated(run%film)) call draw(options, pictures, mechanism, run%film, diagnostics)
+    call end_run(options, pictures, mechanism, run, results, diagnostics)
     if (.not. options%has('report')) return
     call save_kinematic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
                                outcome, run%tracker, err)

@@ -8,7 +8,7 @@ module mech9_run_words
   use mech9_version, only: version, revision, compiler
   implicit none
   private
-  public :: duration, each, add_provenance, add_structure
+  public :: duration, each, begin_report, add_structure
 
 contains
 
@@ -36,16 +36,23 @@ contains
     end if
   end function duration
 
-  !> Which program this was.
-  subroutine add_provenance(json, program_name)
+  !> What a report begins with: which program this was, what it ran and what came of it.
+  subroutine begin_report(json, program_name, mechanism, exit_code, table_path)
     type(json_type), intent(inout) :: json
     character(len=*), intent(in) :: program_name
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: exit_code               !< that the program is going to answer
+    character(len=*), intent(in) :: table_path     !< '-' is standard output; empty: no table
 
+    call json%begin_object()
     call json%add('program', program_name)
     call json%add('version', version)
     call json%add('revision', revision)
     call json%add('compiler', compiler())
-  end subroutine add_provenance
+    call json%add('title', mechanism%title)
+    call json%add('exit_code', exit_code)
+    call json%add('table', table_path)
+  end subroutine begin_report
 
   !> The structural vectors and the blocks.
   subroutine add_structure(json, mechanism, plan)

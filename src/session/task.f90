@@ -1,6 +1,6 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
 !> Uses command_line, mechanism, plan, state, mobility_report,
-!> assemblies_text, plan_text, structure_graph, diagnostics, kept_rows, film, picture_requests.
+!> assemblies_text, plan_text, structure_graph, diagnostics, kept_rows, film, picture_requests, results, recording.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
@@ -13,13 +13,15 @@ module mech9_task
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_picture_requests, only: picture_requests_type
+  use mech9_results, only: results_type
+  use mech9_recording, only: motion_source_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
   use mech9_plan_text, only: print_structure, print_mobility, print_mobility_report, print_plan
   implicit none
   private
-  public :: task_type, answers_only, print_check, announce, draw
+  public :: task_type, answers_only, print_check, begin_run, end_run
 
   type, abstract :: task_type
     character(len=6) :: program_name = ''
@@ -61,16 +63,16 @@ contains
                    .or. options%has('graph')
   end function answers_only
 
-  !> Answer --check, --plan, --branches and --graph.
-  subroutine print_check(options, mechanism, plan, start, diagnostics)
+  !> Answer --check, --plan, --branches and --graph, and --sketch beside them.
+  subroutine print_check(options, pictures, mechanism, plan, start, diagnostics)
     type(command_line_type), intent(in) :: options
+    type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start      !< assembled
     type(diagnostics_type), intent(inout) :: diagnostics
     type(mobility_report_type) :: report
-    character(len=16) :: name
-    integer :: k
+    type(error_type), allocatable :: err
 
     if (options%has('check')) then
       call report_mobility(mechanism, plan, start, report)
@@ -81,14 +83,25 @@ contains
     if (options%has('plan')) call print_plan(output_unit, mechanism, plan)
     if (options%has('branches')) call print_assemblies(output_unit, mechanism, plan, start, options%number('starts', 100))
     if (options%has('graph')) call draw_graph(options, mechanism, plan, diagnostics)
-    if (.not. options%has('check')) return
+    if (options%has('check')) call print_start(mechanism, start)
+    if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
+    if (allocated(err)) call diagnostics%add_error(err)
+  end subroutine print_check
+
+  !> The coordinates at the start.
+  subroutine print_start(mechanism, start)
+    type(mechanism_type), intent(in) :: mechanism
+    type(state_type), intent(in) :: start
+    character(len=16) :: name
+    integer :: k
+
     write (output_unit, '(a)') 'assembled at the start:'
     do k = 1, size(mechanism%pairs)
       write (name, '(a,i0)') 'q', k
       write (output_unit, '(2x,a8,es24.16)') name, &
         start%q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular)
     end do
-  end subroutine print_check
+  end subroutine print_start
 
   !> Answer --graph.
   subroutine draw_graph(options, mechanism, plan, diagnostics)
@@ -107,7 +120,42 @@ contains
     end if
   end subroutine draw_graph
 
-  !> Before a run: the title, and with --verbose the structure and the plan.
+  !> Before a run: tell what runs, and open what takes its results. Not `ready` after an error.
+  subroutine begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
+    type(command_line_type), intent(in) :: options
+    type(picture_requests_type), intent(in) :: pictures
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    class(motion_source_type), intent(inout) :: run
+    type(results_type), intent(out) :: results
+    type(diagnostics_type), intent(inout) :: diagnostics
+    logical, intent(out) :: ready
+    type(error_type), allocatable :: err
+
+    call announce(options, mechanism, plan)
+    if (pictures%any_wanted()) run%film = pictures%film_for(mechanism, mechanism%time%intervals + 1)
+    call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
+    ready = .not. allocated(err)
+    if (.not. ready) call diagnostics%add_error(err)
+  end subroutine begin_run
+
+  !> After a run: close its results, draw the mechanism, and say what was written.
+  subroutine end_run(options, pictures, mechanism, run, results, diagnostics)
+    type(command_line_type), intent(in) :: options
+    type(picture_requests_type), intent(in) :: pictures
+    type(mechanism_type), intent(in) :: mechanism
+    class(motion_source_type), intent(in) :: run
+    type(results_type), intent(inout) :: results
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(error_type), allocatable :: err
+
+    call results%close(err)
+    if (allocated(err)) call diagnostics%add_error(err)
+    if (.not. options%has('quiet')) call results%print_words(error_unit)
+    if (allocated(run%film)) call draw(options, pictures, mechanism, run%film, diagnostics)
+  end subroutine end_run
+
+  !> The title, and with --verbose the structure and the plan.
   subroutine announce(options, mechanism, plan)
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
@@ -120,7 +168,7 @@ contains
     call print_plan(error_unit, mechanism, plan)
   end subroutine announce
 
-  !> After a run: the pictures of the mechanism that are asked for, and a word on each.
+  !> The pictures of the mechanism that are asked for, and a word on each.
   subroutine draw(options, pictures, mechanism, film, diagnostics)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
