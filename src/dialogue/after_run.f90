@@ -4,7 +4,7 @@
 module mech9_after_run
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
-  use mech9_text, only: string_type, to_text, lower, join
+  use mech9_text, only: string_type, lower, join
   use mech9_diagnostics, only: printable
   use mech9_kept_rows, only: kept_rows_type
   use mech9_rows_text, only: rows_text, columns_that_fit

@@ -1,9 +1,8 @@
 !> A data file in the making: groups of names with their values as text, in an order that reads well.
-!> Uses text, numeral, grammar.
+!> Uses numeral, grammar.
 !>
 !> A group is spoken of by its name and its place among the groups of that name, from 1 on.
 module mech9_draft
-  use mech9_text, only: to_text
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_grammar, only: find_group_row, find_item_rows
   implicit none

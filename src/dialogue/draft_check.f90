@@ -2,7 +2,7 @@
 !> the draft. Uses text, source, grammar, structure, mechanism, document, parser, reader, diagnostics, draft,
 !> draft_text.
 module mech9_draft_check
-  use mech9_text, only: to_text, starts_with
+  use mech9_text, only: to_text
   use mech9_source, only: span_type, source_from_text
   use mech9_grammar, only: item_table, rows_of_group, takes_kind
   use mech9_structure, only: structure_type

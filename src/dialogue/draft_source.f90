@@ -1,5 +1,5 @@
 !> A draft from an existing data file: what it says and the comments above its groups. Uses error, text, source,
-!> document, checker, lookup, matrix_items, draft, diagnostics.
+!> document, checker, matrix_items, draft, diagnostics.
 module mech9_draft_source
   use mech9_error, only: place_type
   use mech9_text, only: to_text, join, string_type

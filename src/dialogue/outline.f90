@@ -1,6 +1,5 @@
 !> What a conversation knows beside the draft itself: how the structure is given, which seldom names are
-!> asked for, which coordinates are independent; and the groups that follow from it. Uses text, grammar, topics,
-!> draft.
+!> asked for, which coordinates are independent; and the groups that follow from it. Uses text, grammar, draft.
 module mech9_outline
   use mech9_text, only: to_text, lower
   use mech9_grammar, only: item_table, find_item_rows, item_row_for_kind

@@ -1,5 +1,5 @@
 !> Lagrange's equations in planar arithmetic: columns of frames, inertia of links and forces on them, in the
-!> plane. Uses kinds, body, mechanism, the plan and the motion in the plane.
+!> plane. Uses kinds, body, inertia, the plan and the motion in the plane.
 !>
 !> A column is (angular velocity, velocity of the frame's origin) per unit rate of an independent coordinate.
 module mech9_planar_lagrange

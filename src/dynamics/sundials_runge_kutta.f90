@@ -3,7 +3,7 @@
 module mech9_sundials_runge_kutta
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_associated, c_int, c_long, c_double, c_loc, c_funloc
   use mech9_kinds, only: wp, long
-  use mech9_integration_methods, only: integration_method_type, integration_methods
+  use mech9_integration_methods, only: integration_method_type
   use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand
   use mech9_step_choice, only: next_step_length, safety
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &

@@ -7,7 +7,7 @@ module mech9_drive_reader
   use mech9_spline, only: build_spline
   use mech9_structure, only: structure_type
   use mech9_pair, only: pair_slot_type
-  use mech9_drive, only: drive_type, drive_slot_type
+  use mech9_drive, only: drive_slot_type
   use mech9_polynomial_drive, only: polynomial_drive_type
   use mech9_harmonic_drive, only: harmonic_drive_type
   use mech9_table_drive, only: table_drive_type

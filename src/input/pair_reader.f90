@@ -1,5 +1,5 @@
 !> Pairs from the groups &pair of a checked document. Uses kinds, error, text, pose, the pairs of the
-!> model and of the user, source, document, lookup, diagnostics.
+!> model and of the user, document, lookup, diagnostics.
 module mech9_pair_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -7,7 +7,7 @@ module mech9_scanner
   use mech9_text, only: lower
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_source, only: span_type
-  use mech9_document, only: value_type, subscript_type, value_null, value_integer, value_real, value_logical, &
+  use mech9_document, only: value_type, subscript_type, value_integer, value_real, value_logical, &
                             value_text, value_word, value_bad
   use mech9_diagnostics, only: diagnostics_type
   implicit none

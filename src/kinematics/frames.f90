@@ -1,5 +1,5 @@
 !> First part of the plan: steps and frames from the structural vectors, with constant poses folded.
-!> Uses kinds, pose, pair, structure, mechanism, plan, plan_size.
+!> Uses kinds, pose, pair, structural_vectors, mechanism, plan, plan_size.
 !>
 !> A closed chain joins two known links by links that are new. These are reached from both ends, so
 !> that no frame is farther from the frame of link 1 than need be; the last step meets a link that

@@ -1,5 +1,5 @@
 !> How many independent equations each closed chain offers while it moves on its own. Uses kinds, error,
-!> random, plan, state, closure, solver, assembly.
+!> random, plan, state, solver, assembly.
 !>
 !> Most loops offer as many as their space of motions has dimensions. Overconstrained ones, such as
 !> Bennett's, offer fewer: their screws are dependent at every closed position, though not at others.

@@ -1,5 +1,5 @@
 !> Planar arithmetic: poses, velocities and accelerations of frames that keep one normal, and how these
-!> look in space. Uses kinds, pose, planar_plan.
+!> look in space. Uses kinds, planar_plan.
 !>
 !> A pose is (cosine, sine, x, y) in frame 0 of the plane; a velocity is the angular velocity about the
 !> normal and the velocity of the frame's origin, an acceleration likewise.

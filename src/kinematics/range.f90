@@ -1,11 +1,11 @@
 !> How far each independent coordinate can go with the others held where they are. Uses kinds, error,
-!> mechanism, polynomial_drive, plan, state, following, special_position, tracking.
+!> mechanism, polynomial_drive, plan, state, special_position, tracking.
 module mech9_range
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
   use mech9_polynomial_drive, only: polynomial_drive_type
-  use mech9_plan, only: plan_type, step_type
+  use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_special_position, only: dead_point
   use mech9_tracking, only: tracker_type, start_tracking, advance

@@ -11,7 +11,7 @@ module mech9_special_position
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type, block_type
+  use mech9_plan, only: plan_type
   use mech9_following, only: follower_type, step_towards
   implicit none
   private

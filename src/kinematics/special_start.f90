@@ -1,6 +1,5 @@
 !> Starting where a block is singular: which ways lead on, and the first steps where there is only one.
-!> Uses kinds, error, text, lapack, hermite, mechanism, plan, state, closure, solver, motion, following,
-!> passage.
+!> Uses kinds, error, lapack, hermite, mechanism, plan, state, closure, solver, motion, following, passage.
 !>
 !> There the rates are not determined by J x' = -F_t alone: x' = p + z n with n from the null space of J.
 !> What second derivatives must satisfy, along the vector w that J^T takes to zero, is a quadratic

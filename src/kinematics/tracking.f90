@@ -7,7 +7,7 @@ module mech9_tracking
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, acceleration_known
+  use mech9_state, only: state_type
   use mech9_solver, only: solve_rates, solve_accelerations
   use mech9_conditioning, only: conditioning_type
   use mech9_closure, only: closing_error

@@ -1,5 +1,5 @@
 !> A film as a page that a browser plays, with nothing from elsewhere: the first picture, the places of everything
-!> in every frame, and a script. Uses kinds, error, text, rotation, film, view, projection, scene, svg_picture,
+!> in every frame, and a script. Uses kinds, error, text, rotation, film, projection, scene, svg_picture,
 !> film_script, page, xml_text.
 module mech9_html_film
   use mech9_kinds, only: wp
@@ -8,7 +8,7 @@ module mech9_html_film
   use mech9_rotation, only: quaternion
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, label, in_thread
+  use mech9_scene, only: scene_type, label, in_thread
   use mech9_svg_picture, only: put_picture
   use mech9_film_script, only: put_script
   use mech9_page, only: page_type

@@ -1,4 +1,4 @@
-!> How things look: colours, widths, and the marks of joints and points. Uses kinds, text, xml_text, scene.
+!> How things look: colours, widths, and the marks of joints and points. Uses kinds, xml_text, scene.
 !>
 !> The colours are those of Okabe and Ito, which people who see colours differently tell apart, each with a
 !> light tint; outlines are dark, so that pictures can be read in grey.

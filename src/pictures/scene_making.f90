@@ -1,5 +1,5 @@
 !> From a mechanism and its film to a scene: paths and guides, links, springs, pairs, points and labels.
-!> Uses kinds, rotation, text, mechanism, spring_load, film, pair_axes, skeleton, projection, scene,
+!> Uses kinds, text, mechanism, spring_load, film, pair_axes, skeleton, projection, scene,
 !> scene_paths, link_shapes, pair_symbols.
 module mech9_scene_making
   use mech9_kinds, only: wp

@@ -1,5 +1,5 @@
 !> A film as one SVG that moves by itself, without a script, so that it also plays where a page shows it as a
-!> picture. Uses kinds, error, text, film, projection, scene, drawing, picture_style, svg_picture, page, xml_text.
+!> picture. Uses kinds, error, film, projection, scene, drawing, picture_style, svg_picture, page, xml_text.
 module mech9_svg_film
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,13 +1,12 @@
 !> A frame of a film as a picture in SVG, alone or as the part of a page that a script moves.
-!> Uses kinds, error, text, rotation, film, view, projection, scene, drawing, picture_style, page, xml_text.
+!> Uses kinds, error, text, film, projection, scene, drawing, picture_style, page, xml_text.
 module mech9_svg_picture
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, open_path, closed_path, facing_path, segments, spring, mark, label, in_plate, &
-                         in_trace
+  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, colour_of, style_sheet, mark_svg
   use mech9_page, only: page_type

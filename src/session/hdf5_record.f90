@@ -1,7 +1,7 @@
 !> What an HDF5 file of results holds besides the rows: where they come from, and the structure they belong to.
 !> Uses text, lapack, mechanism, hdf5_file, command_line, version.
 module mech9_hdf5_record
-  use mech9_text, only: string_type, to_text
+  use mech9_text, only: to_text
   use mech9_lapack, only: ilaver
   use mech9_mechanism, only: mechanism_type
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version

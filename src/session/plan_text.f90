@@ -1,11 +1,11 @@
-!> Structure and plan in words, for --structure, --check and --plan. Uses text, structure, mechanism,
+!> Structure and plan in words, for --structure, --check and --plan. Uses text, structural_vectors, mechanism,
 !> plan, mobility_report, planning, dynamics_plan.
 module mech9_plan_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text, some_of
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type, block_type
+  use mech9_plan, only: plan_type
   use mech9_mobility_report, only: mobility_report_type
   use mech9_planning, only: chain_names
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan

@@ -3,7 +3,7 @@
 module mech9_integration_problems
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp, pi
-  use mech9_error, only: error_type, raise, exit_internal, exit_singular
+  use mech9_error, only: error_type, raise, exit_singular
   use mech9_ode_system, only: ode_system_type
   use mech9_integrator, only: integrator_type, integration_statistics_type
   implicit none

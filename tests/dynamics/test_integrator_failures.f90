@@ -4,7 +4,7 @@ program test_integrator_failures
   use mech9_error, only: error_type, exit_internal, exit_data, exit_singular, exit_integrator
   use mech9_integration_methods, only: integration_methods
   use mech9_integrator, only: integrator_type, integration_statistics_type
-  use mech9_integration_problems, only: explosion_type, obstacle_type, rotation_type, stiff_type, orbit_type, &
+  use mech9_integration_problems, only: explosion_type, obstacle_type, rotation_type, orbit_type, &
     orbit_start, integrate
   use mech9_testing, only: tester_type
   implicit none

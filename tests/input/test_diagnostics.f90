@@ -1,7 +1,7 @@
 !> How errors are shown: place, line, carets, order, number, exit code.
 program test_diagnostics
   use mech9_error, only: error_type, place_type, raise, exit_data, exit_structure, exit_file, exit_assembly, exit_done
-  use mech9_source, only: source_type, span_type, source_from_text
+  use mech9_source, only: span_type, source_from_text
   use mech9_diagnostics, only: diagnostics_type
   use mech9_testing, only: tester_type
   use mech9_input_support, only: eol, printed, count_of

@@ -2,12 +2,11 @@
 module mech9_sample_mechanisms
   use mech9_kinds, only: wp
   use mech9_pose, only: pose_type, pose_from_axis, default_zero
-  use mech9_structure, only: structure_type, structure_from_pairs
+  use mech9_structure, only: structure_from_pairs
   use mech9_finding, only: finding_type
   use mech9_transformation, only: transform
   use mech9_screw_pair, only: screw_pair_type, revolute_pair, prismatic_pair
   use mech9_polynomial_drive, only: polynomial_drive_type
-  use mech9_point, only: point_type
   use mech9_mechanism, only: mechanism_type
   implicit none
   private

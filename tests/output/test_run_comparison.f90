@@ -1,7 +1,7 @@
 !> Tests of rows kept after a run, of their list, and of two runs held against each other.
 program test_run_comparison
   use mech9_kinds, only: wp
-  use mech9_text, only: string_type, to_text
+  use mech9_text, only: string_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_rows_text, only: rows_text
   use mech9_run_comparison, only: comparison_type, compare_runs, comparison_text

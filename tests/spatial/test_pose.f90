@@ -2,7 +2,7 @@
 program test_pose
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type
-  use mech9_rotation, only: identity, cross, unit, about_axis, about_z
+  use mech9_rotation, only: identity, cross, about_axis, about_z
   use mech9_pose, only: pose_type, identity_pose, compose, inverse, transformed, pose_from_points, pose_from_axis, &
     pose_from_dh, default_zero
   use mech9_random_geometry, only: random_vector, random_unit, random_pose, largest_difference
