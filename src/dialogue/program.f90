@@ -11,7 +11,7 @@ module mech9_program
   use mech9_converse, only: converse
   implicit none
   private
-  public :: run_program, run_words
+  public :: run_program
 
 contains
 

@@ -8,7 +8,7 @@ module mech9_data_help
   implicit none
   private
   public :: write_data_help, write_data_tables
-  public :: values_text, unit_text, default_text, takes_text, meaning_text, use_text
+  public :: values_text, default_text, takes_text, meaning_text, use_text
 
   character(len=*), parameter :: indent = '      '
 

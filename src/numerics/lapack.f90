@@ -3,7 +3,7 @@ module mech9_lapack
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: ilaver, dgtsv, dgesvd, dgeqrf, dormqr, dgeqp3
+  public :: ilaver, dgtsv, dgesvd, dormqr, dgeqp3
 
   interface
     !> The version of the library.
@@ -29,16 +29,7 @@ module mech9_lapack
       integer, intent(out) :: info
     end subroutine dgesvd
 
-    !> QR factorization.
-    subroutine dgeqrf(m, n, a, lda, tau, work, lwork, info)
-      import :: wp
-      integer, intent(in) :: m, n, lda, lwork
-      real(wp), intent(inout) :: a(lda, *)
-      real(wp), intent(out) :: tau(*), work(*)
-      integer, intent(out) :: info
-    end subroutine dgeqrf
-
-    !> Product with the orthogonal factor of dgeqrf.
+    !> Product with the orthogonal factor of a QR factorization.
     subroutine dormqr(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
       import :: wp
       character, intent(in) :: side, trans

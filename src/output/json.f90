@@ -36,7 +36,6 @@ module mech9_json
     procedure :: end_object
     procedure :: begin_array
     procedure :: end_array
-    procedure :: add_null
     procedure :: save => save_document
     procedure, private :: add_real, add_integer, add_long, add_logical, add_text, add_reals
     procedure, private :: item_real, item_integer, item_long, item_logical, item_text
@@ -73,13 +72,6 @@ contains
 
     call self%finish(']')
   end subroutine end_array
-
-  subroutine add_null(self, name)
-    class(json_type), intent(inout) :: self
-    character(len=*), intent(in), optional :: name
-
-    call self%put_item('null', name)
-  end subroutine add_null
 
   subroutine add_real(self, name, value)
     class(json_type), intent(inout) :: self

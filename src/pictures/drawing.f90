@@ -7,7 +7,7 @@ module mech9_drawing
   use mech9_scene, only: scene_type, item_type, facing_path, spring, in_thread
   implicit none
   private
-  public :: drawing_type, draw_frame, drawing_order, outline_of, coil_count, coil_height, depth_steps
+  public :: drawing_type, draw_frame, drawing_order, outline_of
 
   !> Nodes on the page.
   type :: drawing_type

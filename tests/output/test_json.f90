@@ -36,7 +36,6 @@ contains
     call json%end_array()
     call json%add('ok', .true.)
     call json%add('pair', [1.5_wp, -2.0_wp])
-    call json%add_null('nothing')
     call json%end_object()
     call json%save('document.json', err)
     call tester%no_error(err, 'save')
@@ -45,8 +44,7 @@ contains
       '  "count": 3000000000,'//nl// &
       '  "list": ['//nl//'    1,'//nl//'    false,'//nl//'    "x",'//nl//'    0.25,'//nl//'    {}'//nl//'  ],'//nl// &
       '  "ok": true,'//nl// &
-      '  "pair": ['//nl//'    1.5,'//nl//'    -2'//nl//'  ],'//nl// &
-      '  "nothing": null'//nl//'}'//nl, 'the document, letter by letter')
+      '  "pair": ['//nl//'    1.5,'//nl//'    -2'//nl//'  ]'//nl//'}'//nl, 'the document, letter by letter')
   end subroutine test_document
 
   !> Every number comes back bit for bit, in the shortest form that does so among 15 to 17 digits.
