@@ -7,13 +7,12 @@ program test_branch_certainty
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_tracking, only: tracker_type, advance
   use mech9_harmonic_drive, only: harmonic_drive_type
   use mech9_sample_mechanisms, only: drive, four_bar, fig1
   use mech9_planar_mechanisms, only: two_circles, slider_crank, watt_six_bar, four_bar_type, random_crank, &
     four_bar_angle, four_bar_guess
+  use mech9_followed_motions, only: begin_motion, angle_between
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -39,27 +38,6 @@ program test_branch_certainty
 
 contains
 
-  subroutine begin(mechanism, plan, tracker)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(tracker_type), intent(out) :: tracker
-    type(state_type) :: state
-    type(error_type), allocatable :: err
-
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
-    call test%no_error(err, 'plan and assembly')
-    if (allocated(err)) call test%finish()
-    call start_tracking(mechanism, plan, state, 0.0_wp, tracker, err)
-    call test%no_error(err, 'start')
-  end subroutine begin
-
-  !> How far two angles are apart, whole turns aside.
-  real(wp) function apart(a, b)
-    real(wp), intent(in) :: a, b
-
-    apart = abs(modulo(a - b + pi, 2.0_wp*pi) - pi)
-  end function apart
-
   !> Both branches of a crank that turns fully: the angle of the rocker at every output by its triangle, and
   !> the number of its turns the same whatever the outputs.
   subroutine check_four_bar(bar, name)
@@ -77,13 +55,13 @@ contains
       call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, start, branch), mechanism)
       call drive(mechanism, 1, [start, 2.0_wp*pi])
       do n = 1, size(outputs)
-        call begin(mechanism, plan, tracker)
+        call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
         worst = 0.0_wp
         do j = 1, outputs(n)
           call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
           if (allocated(err)) exit
           angle = four_bar_angle(bar, tracker%state%q(1), branch)
-          worst = max(worst, apart(tracker%state%q(4), angle))
+          worst = max(worst, angle_between(tracker%state%q(4), angle))
         end do
         call test%no_error(err, name//' goes on')
         ! positions are known to round-off over the least pivot, and so is the closed form; the nearest
@@ -112,7 +90,7 @@ contains
       call slider_crank(crank, coupler, offset, 0.4_wp, branch, mechanism)
       call drive(mechanism, 1, [0.4_wp, 2.0_wp*pi])
       do n = 1, size(outputs)
-        call begin(mechanism, plan, tracker)
+        call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
         worst = 0.0_wp
         do j = 1, outputs(n)
           call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
@@ -145,18 +123,18 @@ contains
         call watt_six_bar(bar, at, pivot, [2.6_wp, 2.5_wp], 0.3_wp, branch, second, mechanism)
         call drive(mechanism, 1, [0.3_wp, 2.0_wp*pi])
         do n = 1, size(outputs)
-          call begin(mechanism, plan, tracker)
+          call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
           worst = 0.0_wp
           do j = 1, outputs(n)
             call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
             if (allocated(err)) exit
-            worst = max(worst, apart(tracker%state%q(4), four_bar_angle(bar, tracker%state%q(1), branch)))
+            worst = max(worst, angle_between(tracker%state%q(4), four_bar_angle(bar, tracker%state%q(1), branch)))
             swing = tracker%state%q(1) + tracker%state%q(2)
             joint = bar%crank*[cos(tracker%state%q(1)), sin(tracker%state%q(1))] &
                     + at(1)*[cos(swing), sin(swing)] + at(2)*[-sin(swing), cos(swing)]
             joint = two_circles(joint, 2.6_wp, pivot, 2.5_wp, second) - pivot
             expected = atan2(joint(2), joint(1))
-            worst = max(worst, apart(tracker%state%q(7), expected))
+            worst = max(worst, angle_between(tracker%state%q(7), expected))
           end do
           call test%no_error(err, 'a six-bar goes on')
           call test%near(worst, 0.0_wp, 1.0e-10_wp, 'a six-bar stays on its branches')
@@ -185,7 +163,7 @@ contains
     swing%angular_frequency = 2.0_wp*pi
     do n = 1, 4
       allocate (mechanism%drives(1)%drive, source=swing)
-      call begin(mechanism, plan, tracker)
+      call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
       start = tracker%state%q
       do j = 1, 10**n
         ! at the last output the drive has swung forty-seven and a quarter times

@@ -6,12 +6,11 @@ program test_special_positions
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs
+  use mech9_tracking, only: tracker_type, advance
   use mech9_harmonic_drive, only: harmonic_drive_type
   use mech9_sample_mechanisms, only: drive, four_bar
   use mech9_planar_mechanisms, only: slider_crank, watt_six_bar, four_bar_type, four_bar_guess, four_bar_limit
+  use mech9_followed_motions, only: begin_motion, angle_between
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -37,30 +36,6 @@ program test_special_positions
   call test%finish()
 
 contains
-
-  subroutine begin(mechanism, plan, tracker)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(tracker_type), intent(out) :: tracker
-    type(state_type) :: state
-    type(error_type), allocatable :: err
-    real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
-
-    q = mechanism%initial_position
-    call set_inputs(mechanism, 0.0_wp, q, dq, ddq, err)
-    call make_plan(mechanism, q, plan, state, err)
-    call test%no_error(err, 'plan and assembly')
-    if (allocated(err)) call test%finish()
-    call start_tracking(mechanism, plan, state, 0.0_wp, tracker, err)
-    call test%no_error(err, 'start')
-  end subroutine begin
-
-  !> How far two angles are apart, whole turns aside.
-  elemental real(wp) function apart(a, b)
-    real(wp), intent(in) :: a, b
-
-    apart = abs(modulo(a - b + pi, 2.0_wp*pi) - pi)
-  end function apart
 
   !> A crank that cannot turn fully because the longest and the shortest link are by `lack` too long
   !> together: it stops on both sides where coupler and rocker are in line.
@@ -116,7 +91,7 @@ contains
     integer :: n, j
 
     do n = 1, 1000, 333
-      call begin(mechanism, plan, tracker)
+      call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
       do j = 1, n
         call advance(mechanism, plan, tracker, 4.0_wp*j/n, err)
         if (allocated(err)) exit
@@ -149,7 +124,7 @@ contains
     integer :: j
 
     call drive(mechanism, 1, [start, 3.0_wp*pi, merge(0.5_wp, 0.0_wp, start < 1.0_wp)])
-    call begin(mechanism, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
     do j = 1, n
       call advance(mechanism, plan, tracker, real(j, wp)/n, err)
       if (allocated(err)) exit
@@ -157,7 +132,7 @@ contains
       ! round-off over the square of their distance from it leaves uncertain by some 1e-8 of the squares of the
       ! rates (1e-6 here; seen 1.2e-6 with another BLAS): they are the least exact, and are held to ten times that
       associate (state => tracker%state)
-        call test%near(maxval(apart(state%q(2:), expected + factors*state%q(1))), 0.0_wp, 1.0e-11_wp, name//': positions')
+        call test%near(maxval(angle_between(state%q(2:), expected + factors*state%q(1))), 0.0_wp, 1.0e-11_wp, name//': positions')
         call test%near(maxval(abs(state%dq(2:) - factors*state%dq(1))), 0.0_wp, 1.0e-9_wp, name//': rates')
         call test%near(maxval(abs(state%ddq(2:) - factors*state%ddq(1))), 0.0_wp, 1.0e-7_wp*state%dq(1)**2, &
                        name//': accelerations')
@@ -193,8 +168,8 @@ contains
     bar = four_bar_type(ground, crank, ground, crank)
     call four_bar(ground, crank, ground, crank, four_bar_guess(bar, start, -1), mechanism)
     call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin(mechanism, plan, tracker)
-    call test%is_true(apart(tracker%state%q(4), start) > 1.0_wp, 'it is not the parallelogram')
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+    call test%is_true(angle_between(tracker%state%q(4), start) > 1.0_wp, 'it is not the parallelogram')
     do j = 1, n
       call advance(mechanism, plan, tracker, real(j, wp)/n, err)
       if (allocated(err)) exit
@@ -225,7 +200,7 @@ contains
     bar = four_bar_type(short, short, long, long)
     call four_bar(short, short, long, long, four_bar_guess(bar, 0.25_wp*pi, 1), mechanism)
     call drive(mechanism, 1, [0.25_wp*pi, -3.0_wp*pi])
-    call begin(mechanism, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
     do j = 1, n
       call advance(mechanism, plan, tracker, real(j, wp)/n, err)
       if (allocated(err)) exit
@@ -233,7 +208,7 @@ contains
       half = 0.5_wp*tracker%state%q(1)
       expected = half + 0.5_wp*pi - acos(short*sin(half)/long)
       rate = (0.5_wp + 0.5_wp*short*cos(half)/sqrt(long**2 - (short*sin(half))**2))*tracker%state%dq(1)
-      call test%near(apart(tracker%state%q(4), expected), 0.0_wp, 1.0e-11_wp, 'a kite: rocker')
+      call test%near(angle_between(tracker%state%q(4), expected), 0.0_wp, 1.0e-11_wp, 'a kite: rocker')
       call test%near(tracker%state%dq(4), rate, 1.0e-8_wp, 'a kite: rate of the rocker')
     end do
     call test%no_error(err, 'a kite goes on')
@@ -252,7 +227,7 @@ contains
 
     call slider_crank(arm, arm, 0.0_wp, start, 1, mechanism)
     call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin(mechanism, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
     do j = 1, n
       call advance(mechanism, plan, tracker, real(j, wp)/n, err)
       if (allocated(err)) exit
@@ -288,7 +263,7 @@ contains
     deallocate (mechanism%drives)
     allocate (mechanism%drives(1))
     allocate (mechanism%drives(1)%drive, source=swing)
-    call begin(mechanism, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
     do j = 1, n
       call advance(mechanism, plan, tracker, real(j, wp)/n, err)
       if (allocated(err)) exit
@@ -296,7 +271,7 @@ contains
     call test%no_error(err, 'a dead point that is only touched is passed')
     ! half a period later the crank is back, and the rocker on the other side
     guess = four_bar_guess(bar, 0.7_wp*limit, -1)
-    call test%near(maxval(apart(tracker%state%q, guess)), 0.0_wp, 1.0e-9_wp, 'a touched dead point: the other side')
+    call test%near(maxval(angle_between(tracker%state%q, guess)), 0.0_wp, 1.0e-9_wp, 'a touched dead point: the other side')
   end subroutine check_touched_dead_point
 
   !> A parallelogram, and a second one on its coupler: both are flat at once.
@@ -318,12 +293,12 @@ contains
     call watt_six_bar(bar, [0.5_wp, 0.0_wp], [1.7_wp, 0.0_wp], [1.2_wp, crank], start, 1, 1, mechanism)
     mechanism%initial_position = [start, -start, start, start, 0.0_wp, start, start]
     call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin(mechanism, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
     call test%near(norm2(pin - point), 1.2_wp, 1.0e-14_wp, 'the second parallelogram closes')
     do j = 1, n
       call advance(mechanism, plan, tracker, real(j, wp)/n, err)
       if (allocated(err)) exit
-      call test%near(apart(tracker%state%q(7), tracker%state%q(1)), 0.0_wp, 1.0e-11_wp, 'two parallelograms')
+      call test%near(angle_between(tracker%state%q(7), tracker%state%q(1)), 0.0_wp, 1.0e-11_wp, 'two parallelograms')
       call test%near(tracker%state%dq(7), tracker%state%dq(1), 1.0e-8_wp, 'two parallelograms: rates')
     end do
     call test%no_error(err, 'two parallelograms go on')

@@ -5,11 +5,10 @@ program test_special_start
   use mech9_error, only: error_type, exit_singular
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_tracking, only: tracker_type, advance
   use mech9_sample_mechanisms, only: drive, four_bar
   use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit, slider_crank
+  use mech9_followed_motions, only: begin_motion
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -24,19 +23,6 @@ program test_special_start
   call test%finish()
 
 contains
-
-  subroutine begin(mechanism, plan, tracker, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(tracker_type), intent(out) :: tracker
-    type(error_type), allocatable, intent(out) :: err
-    type(state_type) :: state
-
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
-    call test%no_error(err, 'plan and assembly')
-    if (allocated(err)) call test%finish()
-    call start_tracking(mechanism, plan, state, 0.0_wp, tracker, err)
-  end subroutine begin
 
   !> A kite whose crank lies on the ground: coupler and rocker could turn together, but only one motion takes
   !> the crank along. q4 = q1/2 + 90 degrees - acos(short sin(q1/2)/long).
@@ -53,7 +39,7 @@ contains
 
     call four_bar(short, short, long, long, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], mechanism)
     call drive(mechanism, 1, [0.0_wp, speed])
-    call begin(mechanism, plan, tracker, err)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker, err)
     call test%no_error(err, 'a kite starts')
     do j = 0, n
       if (allocated(err)) exit
@@ -81,12 +67,12 @@ contains
 
     call four_bar(1.0_wp, 0.6_wp, 1.0_wp, 0.6_wp, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], mechanism)
     call drive(mechanism, 1, [0.0_wp, 1.0_wp])
-    call begin(mechanism, plan, tracker, err)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker, err)
     call refused(err, 'dq4 = 1 ', 'dq4 = -4 ')
     call slider_crank(0.3_wp, 0.3_wp, 0.0_wp, 0.5_wp*pi, 1, mechanism)
     mechanism%initial_position(4) = 0.0_wp
     call drive(mechanism, 1, [0.5_wp*pi, 2.0_wp])
-    call begin(mechanism, plan, tracker, err)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker, err)
     call refused(err, 'dq4 = -1.2 ', 'dq4 = 0 ')
   end subroutine two_ways
 
@@ -120,7 +106,7 @@ contains
     limit = four_bar_limit(bar, stretched=.true.)
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit, 1), mechanism)
     call drive(mechanism, 1, [limit, -1.0_wp])
-    call begin(mechanism, plan, tracker, err)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker, err)
     call test%has_error(err, exit_singular, 'a start at a dead point: exit code 6')
     if (allocated(err)) call test%is_true(index(err%message, 'dead point') > 0, 'the message says so')
   end subroutine dead_start

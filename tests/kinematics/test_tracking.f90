@@ -4,11 +4,10 @@ program test_tracking
   use mech9_error, only: error_type, exit_singular
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs
+  use mech9_tracking, only: tracker_type, advance
   use mech9_differentiation, only: half_width, derivatives_from_stencil
   use mech9_sample_mechanisms, only: drive, fig1, four_bar, general_loop
+  use mech9_followed_motions, only: begin_motion
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -29,28 +28,6 @@ program test_tracking
 
 contains
 
-  !> Make the plan and start at time t.
-  subroutine begin(mechanism, t, plan, tracker)
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), intent(in) :: t
-    type(plan_type), intent(out) :: plan
-    type(tracker_type), intent(out) :: tracker
-    type(state_type) :: state
-    type(error_type), allocatable :: err
-    real(wp), allocatable :: q(:), dq(:), ddq(:)
-
-    q = mechanism%initial_position
-    dq = 0.0_wp*q
-    ddq = dq
-    call set_inputs(mechanism, t, q, dq, ddq, err)
-    call test%no_error(err, 'drives have values')
-    call make_plan(mechanism, q, plan, state, err)
-    call test%no_error(err, 'plan and assembly')
-    if (allocated(err)) call test%finish()
-    call start_tracking(mechanism, plan, state, t, tracker, err)
-    call test%no_error(err, 'start')
-  end subroutine begin
-
   !> Rates and accelerations against high-order differences of the positions around t = 0.
   subroutine check_derivatives(mechanism, name)
     type(mechanism_type), intent(in) :: mechanism
@@ -63,7 +40,7 @@ contains
     real(wp) :: first, second, error
     integer :: i, k
 
-    call begin(mechanism, -half_width*h, plan, tracker)
+    call begin_motion(test, mechanism, -half_width*h, plan, tracker)
     allocate (q(-half_width:half_width, plan%n_coordinates))
     q(-half_width, :) = tracker%state%q
     do i = 1 - half_width, half_width
@@ -95,7 +72,7 @@ contains
     do per_turn = 3, 300, 33
       call four_bar(ground, crank, coupler, rocker, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], mechanism)
       call drive(mechanism, 1, [0.0_wp, 2.0_wp*pi])
-      call begin(mechanism, 0.0_wp, plan, tracker)
+      call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
       do i = 1, 3*per_turn
         t = real(i, wp)/per_turn
         call advance(mechanism, plan, tracker, t, err)
@@ -143,7 +120,7 @@ contains
     limit = acos((0.4_wp**2 + 0.35_wp**2 - 0.6_wp**2)/(2.0_wp*0.4_wp*0.35_wp))
     call four_bar(0.4_wp, 0.35_wp, 0.3_wp, 0.3_wp, [0.5_wp, 0.5_wp, 1.0_wp, 2.0_wp], mechanism)
     call drive(mechanism, 1, [0.5_wp, 1.0_wp])
-    call begin(mechanism, 0.0_wp, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
     do i = 1, 40
       call advance(mechanism, plan, tracker, 0.1_wp*i, err)
       if (allocated(err)) exit

@@ -1,0 +1,50 @@
+!> Motions followed from their start, for tests that hold them against closed forms. Uses the model, the kinematics
+!> and testing.
+module mech9_followed_motions
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_tracking, only: tracker_type, start_tracking, set_inputs
+  use mech9_testing, only: tester_type
+  implicit none
+  private
+  public :: begin_motion, angle_between
+
+contains
+
+  !> Plan and assemble at time t, and start there. Without a position the test ends.
+  subroutine begin_motion(test, mechanism, t, plan, tracker, start_error)
+    type(tester_type), intent(inout) :: test
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), intent(in) :: t
+    type(plan_type), intent(out) :: plan
+    type(tracker_type), intent(out) :: tracker
+    type(error_type), allocatable, intent(out), optional :: start_error   !< of a start that need not go well
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
+
+    q = mechanism%initial_position
+    call set_inputs(mechanism, t, q, dq, ddq, err)
+    call test%no_error(err, 'drives have values')
+    call make_plan(mechanism, q, plan, state, err)
+    call test%no_error(err, 'plan and assembly')
+    if (allocated(err)) call test%finish()
+    call start_tracking(mechanism, plan, state, t, tracker, err)
+    if (present(start_error)) then
+      call move_alloc(err, start_error)
+    else
+      call test%no_error(err, 'start')
+    end if
+  end subroutine begin_motion
+
+  !> How far two angles are apart, whole turns aside [rad].
+  elemental real(wp) function angle_between(a, b)
+    real(wp), intent(in) :: a, b
+
+    angle_between = abs(modulo(a - b + pi, 2.0_wp*pi) - pi)
+  end function angle_between
+end module mech9_followed_motions
