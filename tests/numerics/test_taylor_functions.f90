@@ -41,26 +41,7 @@ contains
     real(wp), intent(in) :: u
     real(wp) :: f
 
-    select case (number)
-    case (1); f = sqrt(u)
-    case (2); f = exp(u)
-    case (3); f = log(u)
-    case (4); f = sin(u)
-    case (5); f = cos(u)
-    case (6); f = tan(u)
-    case (7); f = asin(u)
-    case (8); f = acos(u)
-    case (9); f = atan(u)
-    case (10); f = sinh(u)
-    case (11); f = cosh(u)
-    case (12); f = tanh(u)
-    case (13); f = abs(-u)
-    case (14); f = u**1.3_wp
-    case (15); f = u**u
-    case (16); f = 2.3_wp**u
-    case (17); f = atan2(u, 0.4_wp - u)
-    case default; f = u**(-3)
-    end select
+    include 'tested_functions.inc'
   end function value_real
 
   function value_taylor(number, u) result(f)
@@ -68,26 +49,7 @@ contains
     type(taylor), intent(in) :: u
     type(taylor) :: f
 
-    select case (number)
-    case (1); f = sqrt(u)
-    case (2); f = exp(u)
-    case (3); f = log(u)
-    case (4); f = sin(u)
-    case (5); f = cos(u)
-    case (6); f = tan(u)
-    case (7); f = asin(u)
-    case (8); f = acos(u)
-    case (9); f = atan(u)
-    case (10); f = sinh(u)
-    case (11); f = cosh(u)
-    case (12); f = tanh(u)
-    case (13); f = abs(-u)
-    case (14); f = u**1.3_wp
-    case (15); f = u**u
-    case (16); f = 2.3_wp**u
-    case (17); f = atan2(u, 0.4_wp - u)
-    case default; f = u**(-3)
-    end select
+    include 'tested_functions.inc'
   end function value_taylor
 
   !> f(u(x)) by Taylor arithmetic and by differences of real numbers.
