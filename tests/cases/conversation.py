@@ -223,7 +223,7 @@ def edited_files(talks):
         for part in ('&point', 'mass=3'):
             talks.checks.true(part not in text, f'changes: {part} is not in the file', text)
         # without an answer nothing is written, and an existing file is overwritten only on request
-        done = talks.pipe(talks.mech9d, [('all is right', 'quit')], 'quit', arguments=('--edit', 'p.nml'), folder=folder)
+        talks.pipe(talks.mech9d, [('all is right', 'quit')], 'quit', arguments=('--edit', 'p.nml'), folder=folder)
         talks.checks.equal(sorted(os.listdir(folder)), ['p.nml'], 'nothing changed, nothing kept')
         steps = [('title [', 'P'), *[(p, a) for p, a in scripts.PENDULUM_TO_THE_END[1:]], ('all is right', ''), ('[both]', 'save'),
                  ('data file [p.nml]', ''), ('exists; overwrite it [no]', ''), ('data file [p.nml]', 'q.nml')]

@@ -16,6 +16,8 @@ from mech9_cases import Checks, read_table, run
 
 # What is promised of limits; the program does a thousand times better.
 LIMIT = 1e-9
+# Ground, crank, coupler and rocker of the four-bar whose conditioning is looked at.
+CONDITIONED = (0.4, 0.15, 0.35, 0.3)
 
 FOUR_BAR = """
 &mechanism title='four-bar', links=4, coordinates=4, angle_unit='deg' /
@@ -157,46 +159,36 @@ def least_singular_values(lengths, table):
     return np.array(values)
 
 
-def conditioning_of_motion(s, mech9d):
-    """The same of a four-bar whose crank is thrown: column and report of mech9d."""
-    lengths = (0.4, 0.15, 0.35, 0.3)
-    text = four_bar(lengths, (0.0, 360.0), 1.0, 90, more="""&initial coordinate=1, position=0, velocity=300 /
-&body link=2, mass=1, centre=0,0,0, inertia=0.1,0.1,0.1,0,0,0 /
-&output conditioning=.true. /""")
+def compare_conditioning(s, text, name):
+    """Column and report of a run of CONDITIONED against the least singular values of its loop."""
     report = os.path.join(s.folder, 'report.json')
-    s.program, kept = mech9d, s.program
     done = s.run(text, '--table', '-', '--report', report)
-    s.program = kept
-    if not s.checks.equal(done.returncode, 0, 'mech9d runs') or not s.checks.true(done.stdout, 'with a table', done.stderr):
+    if not s.checks.equal(done.returncode, 0, f'{name} runs') or not s.checks.true(done.stdout, f'{name}: a table', done.stderr):
         return
     table = read_table(done.stdout)
-    values = least_singular_values(lengths, table)
-    s.checks.near(table['conditioning'] / values, 1.0, 1e-11, 'mech9d: the least singular value of the loop')
+    values = least_singular_values(CONDITIONED, table)
+    s.checks.near(table['conditioning'] / values, 1.0, 1e-11, f'{name}: the least singular value of the loop')
     with open(report, encoding='utf-8') as file:
         found = json.load(file)
     least = int(np.argmin(values))
-    s.checks.near(found['least_conditioning'] / values[least], 1.0, 1e-11, 'mech9d: its least value in the report')
-    s.checks.near(found['least_conditioning_time'], table['t'][least], 1e-15, 'mech9d: and when')
-    s.checks.true('least conditioning' in done.stderr, 'mech9d: also in words', done.stderr)
+    s.checks.near(found['least_conditioning'] / values[least], 1.0, 1e-11, f'{name}: its least value in the report')
+    s.checks.near(found['least_conditioning_time'], table['t'][least], 1e-15, f'{name}: and when')
+    s.checks.true('least conditioning' in done.stderr, f'{name}: also in words', done.stderr)
 
 
 def conditioning(s):
     """The column is the least singular value of the loop's matrix; the report has its least value and when."""
-    lengths = (0.4, 0.15, 0.35, 0.3)
-    text = four_bar(lengths, (0.0, 360.0), 1.0, 90, more='&output conditioning=.true. /')
-    report = os.path.join(s.folder, 'report.json')
-    done = s.run(text, '--table', '-', '--report', report)
-    table = read_table(done.stdout)
-    values = least_singular_values(lengths, table)
-    s.checks.near(table['conditioning'] / values, 1.0, 1e-11, 'the least singular value of the loop')
-    with open(report, encoding='utf-8') as file:
-        found = json.load(file)
-    least = int(np.argmin(values))
-    s.checks.near(found['least_conditioning'] / values[least], 1.0, 1e-11, 'its least value in the report')
-    s.checks.near(found['least_conditioning_time'], table['t'][least], 1e-15, 'and when')
-    s.checks.true('least conditioning' in done.stderr, 'also in words', done.stderr)
+    text = four_bar(CONDITIONED, (0.0, 360.0), 1.0, 90, more='&output conditioning=.true. /')
+    compare_conditioning(s, text, 'mech9k')
     s.checks.true('conditioning' not in s.run(text, '--table', '-', '--set', 'output.conditioning=.false.').stdout,
                   'no column unless it is asked for')
+
+
+def conditioning_of_motion(s):
+    """The same of a four-bar whose crank is thrown."""
+    compare_conditioning(s, four_bar(CONDITIONED, (0.0, 360.0), 1.0, 90, more="""&initial coordinate=1, position=0, velocity=300 /
+&body link=2, mass=1, centre=0,0,0, inertia=0.1,0.1,0.1,0,0,0 /
+&output conditioning=.true. /"""), 'mech9d')
 
 
 def main():
@@ -204,7 +196,8 @@ def main():
         s = Cases(os.path.abspath(sys.argv[1]), folder)
         for case in (dead_point, ranges, passed, end_of_table, conditioning):
             case(s)
-        conditioning_of_motion(s, os.path.abspath(sys.argv[2]))
+        s.program = os.path.abspath(sys.argv[2])
+        conditioning_of_motion(s)
         s.checks.finish()
 
 
