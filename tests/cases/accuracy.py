@@ -13,7 +13,7 @@ import numpy as np
 
 import data_file
 import true_motion
-from mech9_cases import REFERENCE, TREE, Checks, table_of
+from mech9_cases import REFERENCE, TREE, Checks, table_of, text_of
 
 # Data file; end of one cycle; what multiplies round-off there: the worst least singular value of its chains.
 MECHANISMS = (
@@ -34,8 +34,7 @@ QUANTITIES = (('positions', 'q'), ('velocities', 'dq'), ('accelerations', 'ddq')
 
 def errors_of(checks, mech9k, name, path, end, times):
     """The errors of the three quantities, all coordinates and times together."""
-    with open(path, encoding='utf-8') as file:
-        groups = data_file.parse(file.read())
+    groups = data_file.parse(text_of(path))
     table = table_of(mech9k, path, '--set', f'time.end={end!r}', '--set', f'time.intervals={times}')
     mechanism = true_motion.Mechanism(groups)
     count = len(mechanism.pairs)

@@ -14,7 +14,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
-from mech9_cases import TREE, Checks, read_table, run, table_of
+from mech9_cases import TREE, Checks, read_table, run, table_of, text_of
 from terminal import Terminal, available
 
 PROMPT = 'show, plot, compare, change, run or done'
@@ -48,8 +48,7 @@ class Session:
     def written(self):
         """The table that the run wrote."""
         name = re.search(r"table *= *'([^']*)'", open(self.data, encoding='utf-8').read()).group(1)
-        with open(os.path.join(self.folder, name), encoding='utf-8') as file:
-            return read_table(file.read())
+        return read_table(text_of(os.path.join(self.folder, name)))
 
     def independent(self, *options):
         return table_of(self.program, self.data, *options)

@@ -11,7 +11,7 @@ import tempfile
 import xml.etree.ElementTree as xml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks
+from mech9_cases import TREE, Checks, text_of
 
 checks = Checks()
 METHODS = ['prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf']
@@ -70,8 +70,7 @@ with tempfile.TemporaryDirectory() as folder:
     done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--quick', '--programs', programs, '--output', folder],
                           capture_output=True, text=True, timeout=250)
     if checks.equal(done.returncode, 0, 'bench/run --quick'):
-        with open(os.path.join(folder, 'benchmarks.md'), encoding='utf-8') as file:
-            page = file.read()
+        page = text_of(os.path.join(folder, 'benchmarks.md'))
         tables = tables_of(page)
         checks.true('quick run' in page, 'the page says that it was a quick run')
         check_positions(tables['Time per position'])

@@ -11,7 +11,7 @@ import numpy as np
 
 import data_file
 from jets import Jet, arctan, check_coordinate, check_point, cos, sin
-from mech9_cases import POSITION, REFERENCE, Checks, run, table_of, tolerance_of
+from mech9_cases import POSITION, REFERENCE, Checks, run, table_of, text_of, tolerance_of
 
 HARMONIC = "kind='harmonic', mean=0.2, amplitude=0.7, angular_frequency=3.0, phase=0.4"
 
@@ -125,8 +125,7 @@ def second_set(s):
     for name, vectors in (('kinematics_slider_crank', 'nrg=1,2,3,4,1 nws=0,1,2,3,4 rdw=1,1,0,0,0 nrw=0,0,0,0,1'),
                           ('kinematics_fig1', 'nrg=1,2,3,4,1,1,6,5,3 nws=0,5,4,7,6,0,1,2,3 rdw=1,1,0,0,0,1,0,0,0')):
         path = os.path.join(REFERENCE, name + '.nml')
-        with open(path, encoding='utf-8') as file:
-            groups = data_file.parse(file.read())
+        groups = data_file.parse(text_of(path))
         words = dict(item.split('=') for item in vectors.split())
         given = {key: [int(number) for number in value.split(',')] for key, value in words.items()}
         text = data_file.write([(group, given if group == 'structure' else items) for group, items in groups])

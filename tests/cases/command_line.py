@@ -11,7 +11,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 import data_file
-from mech9_cases import REFERENCE, Checks, read_table, run, tolerance_of
+from mech9_cases import REFERENCE, Checks, read_table, run, text_of, tolerance_of
 
 FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
 SLIDER = os.path.join(REFERENCE, 'kinematics_slider_crank.nml')
@@ -53,13 +53,7 @@ class Session:
         return self.path(name)
 
     def table(self, name):
-        with open(self.path(name), encoding='utf-8') as file:
-            return read_table(file.read())
-
-
-def text_of(path):
-    with open(path, encoding='utf-8') as file:
-        return file.read()
+        return read_table(text_of(self.path(name)))
 
 
 def same_tables(checks, first, second, why):

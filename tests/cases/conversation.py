@@ -12,7 +12,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import dialogue_scripts as scripts
 from dialogue import Talk, answers_of, first_missing, piped
-from mech9_cases import TREE, Checks, run
+from mech9_cases import TREE, Checks, run, text_of
 from terminal import available
 
 DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
@@ -24,11 +24,6 @@ def rows_of(path):
     """The lines of a table that are no comments, as they are written."""
     with open(path, encoding='utf-8') as file:
         return [line for line in file if not line.startswith('#')]
-
-
-def text_of(path):
-    with open(path, encoding='utf-8') as file:
-        return file.read()
 
 
 class Talks:

@@ -10,7 +10,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 import data_file
-from mech9_cases import REFERENCE, Checks, table_of
+from mech9_cases import REFERENCE, Checks, table_of, text_of
 
 # Seconds, and tolerances. The five-bar whirls through nearly singular positions of whichever coordinates it is described
 # by, some twenty of them in 10 s, each over within milliseconds; its motion is chaotic. At 1e-4 the balance is between 5 and
@@ -22,8 +22,7 @@ CONSERVATIVE = {'dynamics_fig1': (100.0, (1e-6, 1e-9)),
 
 
 def groups_of(name):
-    with open(os.path.join(REFERENCE, name + '.nml'), encoding='utf-8') as file:
-        return data_file.parse(file.read())
+    return data_file.parse(text_of(os.path.join(REFERENCE, name + '.nml')))
 
 
 def table(mech9d, groups, *options):

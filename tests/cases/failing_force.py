@@ -8,7 +8,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, read_table, run
+from mech9_cases import Checks, read_table, run, text_of
 
 LAST = 0.537
 # a mass of 1 kg under a force of 1 N
@@ -42,8 +42,7 @@ def main():
             checks.true(any(abs(t - LAST) <= 0.01 for t in times), f'{method}: the message says when', done.stderr)
             checks.true('SUNDIALS' not in done.stderr and 'CVODE' not in done.stderr and 'ARK' not in done.stderr,
                         f'{method}: the integrator\'s own words do not reach the user', done.stderr)
-            with open(os.path.join(folder, 'table.dat'), encoding='utf-8') as file:
-                table = read_table(file.read())
+            table = read_table(text_of(os.path.join(folder, 'table.dat')))
             checks.equal(len(table['t']), 54, f'{method}: the rows from 0 to 0.53 s are there')
             checks.near(table['q1'], 0.5 * table['t'] ** 2, 1e-7, f'{method}: and they are right')
             os.remove(os.path.join(folder, 'table.dat'))

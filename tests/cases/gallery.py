@@ -22,7 +22,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 from gallery_list import examples
-from mech9_cases import Checks, run, table_and_report
+from mech9_cases import Checks, run, table_and_report, text_of
 
 FUNCTIONS = {name: getattr(np, name) for name in 'sin cos tan arcsin arccos arctan arctan2 sqrt exp log pi'.split()}
 FUNCTIONS.update(rad=np.radians, deg=np.degrees, first=lambda x: x[0],
@@ -91,8 +91,8 @@ def check_example(checks, example, program):
 
 def check_options(checks, example, program):
     """What the README says to try: the options between backticks are understood, whatever comes of them."""
-    with open(os.path.join(os.path.dirname(example.data), 'README.md'), encoding='utf-8') as file:
-        tried = [text for text in re.findall(r'`(--[^`]+)`', file.read()) if '...' not in text]
+    page = text_of(os.path.join(os.path.dirname(example.data), 'README.md'))
+    tried = [text for text in re.findall(r'`(--[^`]+)`', page) if '...' not in text]
     with tempfile.TemporaryDirectory() as folder:
         for text in tried:
             done = run(program, example.data, *shlex.split(text), folder=folder)

@@ -15,7 +15,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
-from mech9_cases import REFERENCE, TREE, Checks, read_table, run
+from mech9_cases import REFERENCE, TREE, Checks, read_table, run, text_of
 
 FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
 DYNAMIC_FIG1 = os.path.join(REFERENCE, 'dynamics_fig1.nml')
@@ -44,8 +44,7 @@ class Session:
         """Run with --table and --hdf5; gives the table and the path of the HDF5 file."""
         done = run(program, data, '--table', 'run.dat', '--hdf5', 'run.h5', *options, folder=self.folder)
         self.checks.equal(done.returncode, 0, f'{os.path.basename(data)} runs; stderr: {done.stderr}')
-        with open(self.path('run.dat'), encoding='utf-8') as file:
-            return read_table(file.read()), self.path('run.h5')
+        return read_table(text_of(self.path('run.dat'))), self.path('run.h5')
 
 
 def text(data_set):

@@ -9,13 +9,12 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 import data_file
-from mech9_cases import REFERENCE, Checks, read_csv, table_of, tolerance_of
+from mech9_cases import REFERENCE, Checks, read_csv, table_of, text_of, tolerance_of
 
 
 def size_of(path):
     """The size of a mechanism: the farthest that a pair stands from the origin of one of its links."""
-    with open(path, encoding='utf-8') as file:
-        groups = data_file.parse(file.read())
+    groups = data_file.parse(text_of(path))
     return max(np.linalg.norm(items[name]) for group, items in groups if group == 'pair'
                for name in ('point', 'moving_point') if name in items)
 

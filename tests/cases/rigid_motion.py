@@ -13,7 +13,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 import data_file
-from mech9_cases import ACCELERATION, POSITION, REFERENCE, VELOCITY, Checks, table_of
+from mech9_cases import ACCELERATION, POSITION, REFERENCE, VELOCITY, Checks, table_of, text_of
 
 
 def default_zero(axis):
@@ -74,8 +74,7 @@ def compare(checks, still, moved, rotation, shift, why):
 def main():
     mech9k, name, seeds = sys.argv[1], sys.argv[2], int(sys.argv[3])
     data = os.path.join(REFERENCE, name + '.nml')
-    with open(data, encoding='utf-8') as file:
-        text = file.read()
+    text = text_of(data)
     still = table_of(mech9k, data)
     checks = Checks()
     for seed in range(seeds):

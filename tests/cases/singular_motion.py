@@ -11,7 +11,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 import n_four_bar
-from mech9_cases import REFERENCE, TREE, Checks, read_csv, table_and_report
+from mech9_cases import REFERENCE, TREE, Checks, read_csv, table_and_report, text_of
 
 G = 9.81
 
@@ -67,8 +67,8 @@ def check_n_four_bar(checks, mech9d):
     for n, reference in references.items():
         # the closed form of this script against the reference's elliptic functions
         checks.near(time_of(phis[n], stiffness(n)), reference['t'], 1e-14 * 20, f'N = {n}: closed form and reference')
-        with open(example(f'n_four_bar/n_four_bar_{n}'), encoding='utf-8') as file:
-            checks.equal(file.read(), n_four_bar.data_file(n, reference['t'][-1]), f'N = {n}: the example as generated')
+        generated = n_four_bar.data_file(n, reference['t'][-1])
+        checks.equal(text_of(example(f'n_four_bar/n_four_bar_{n}')), generated, f'N = {n}: the example as generated')
     with tempfile.TemporaryDirectory() as folder:
         for n in (2, 10, 40, 200):
             data = os.path.join(folder, f'{n}.nml')
@@ -138,8 +138,7 @@ def check_pendulum_four_bar(checks, mech9d):
     """By its rocker, which stands still in every swing, and by its crank, which nothing stops: the same motion."""
     data, tolerance = example('pendulum_four_bar/pendulum_four_bar'), 1e-12
     by_rocker, report = run_with(mech9d, data, tolerance)
-    with open(data, encoding='utf-8') as file:
-        text = file.read()
+    text = text_of(data)
     start = by_rocker['q1'][0]
     text = text.replace('cq=4', 'cq=1').replace('coordinate=1, position=-1.3', f'coordinate=1, position={float(start)!r}')
     text = text.replace('position=-0.55, velocity=0', 'position=-0.55')

@@ -12,21 +12,16 @@ import tempfile
 import xml.etree.ElementTree as xml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks, run
+from mech9_cases import TREE, Checks, run, text_of
 from n_four_bar import data_file
 
 mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
 checks = Checks()
 
 
-def read(path):
-    with open(path, encoding='utf-8') as file:
-        return file.read()
-
-
 def pairs_of(data):
     """{coordinate: (links, kind, independent)} of a data file with plain &pair groups."""
-    text = re.sub(r'!.*', '', read(data))
+    text = re.sub(r'!.*', '', text_of(data))
     cq = re.search(r'cq\s*=\s*([\d\s,]+)', text).group(1)
     independent = {int(word) for word in re.findall(r'\d+', cq)}
     found = {}
@@ -59,7 +54,7 @@ def check_graph(program, data, folder, extra=()):
                 drawn[int(match.group(1))] = frozenset(map(int, words[1:3])), match.group(2), bool(match.group(3))
     checks.equal(drawn, expected, f'{name}: pairs, kinds and independent coordinates')
     checks.equal(nodes, set().union(*(links for links, _, _ in expected.values())), f'{name}: links')
-    check_blocks(program, data, read(os.path.join(folder, 'x.dot')), extra)
+    check_blocks(program, data, text_of(os.path.join(folder, 'x.dot')), extra)
 
 
 def check_blocks(program, data, text, extra):
@@ -93,7 +88,7 @@ def test_pictures(folder):
     with open(many, 'w', encoding='utf-8') as file:
         file.write(data_file(160))
     done = run(mech9d, many, '--graph', 'many.svg', folder=folder)
-    checks.true(done.returncode == 0 and read(os.path.join(folder, 'many.svg')).count('class="node"') == 322,
+    checks.true(done.returncode == 0 and text_of(os.path.join(folder, 'many.svg')).count('class="node"') == 322,
                 'hundreds of links', done.stderr)
 
 

@@ -12,7 +12,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
-from mech9_cases import REFERENCE, Checks, read_table, run
+from mech9_cases import REFERENCE, Checks, read_table, run, text_of
 
 FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
 
@@ -71,8 +71,7 @@ def main():
         for path in (plain, commas):
             done = run(program, FIG1, '--table', path, folder=folder)
             checks.equal(done.returncode, 0, f'{os.path.basename(path)} is written; stderr: {done.stderr}')
-        with open(plain, encoding='utf-8') as file:
-            table = read_table(file.read())
+        table = read_table(text_of(plain))
         test_numpy(checks, table, plain, commas)
         test_pandas(checks, table, plain, commas)
         test_gnuplot(checks, table, plain, commas, folder)

@@ -64,6 +64,12 @@ def run(program, *arguments, folder=None, stdin='', timeout=120):
                           timeout=timeout)
 
 
+def text_of(path):
+    """All that stands in a file."""
+    with open(path, encoding='utf-8') as file:
+        return file.read()
+
+
 def read_table(text):
     """Columns by name of a table of results (lines of '#', a line of names, rows of numbers)."""
     lines = [line for line in text.splitlines() if not line.startswith('#')]
@@ -81,8 +87,7 @@ def table_of(program, data, *options):
         done = run(program, os.path.abspath(data), '--table', path, *options, folder=folder)
         if done.returncode != 0:
             raise RuntimeError(f'{program} {data} ended with {done.returncode}:\n{done.stderr}')
-        with open(path, encoding='utf-8') as file:
-            return read_table(file.read())
+        return read_table(text_of(path))
 
 
 def table_and_report(program, data, *options):
