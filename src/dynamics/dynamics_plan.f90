@@ -1,6 +1,6 @@
 !> The plan of dynamics: which links have inertia, and on which independent coordinates each frame
 !> depends. Uses kinds, pose, inertia, mechanism, plan, planar_motion, planar_lagrange,
-!> articulated_bodies.
+!> planar_block, articulated_bodies.
 !>
 !> Columns of Jacobians are kept only where a frame depends on the independent coordinate: frame s has
 !> the entries first(s) .. first(s+1)-1 of one long list. All frames of a closed block share one set of
@@ -13,6 +13,7 @@ module mech9_dynamics_plan
   use mech9_plan, only: plan_type, block_type
   use mech9_planar_motion, only: to_plane
   use mech9_planar_lagrange, only: planar_body_type, planar_body
+  use mech9_planar_block, only: planar_block_type, list_loops
   use mech9_articulated_bodies, only: articulated_type, new_articulated, add_to_frame
   implicit none
   private
@@ -30,7 +31,8 @@ module mech9_dynamics_plan
 
   type :: dynamics_plan_type
     type(frame_body_type), allocatable :: bodies(:)    !< none of link 1, none without mass
-    type(planar_body_type), allocatable :: planar_bodies(:)   !< the same in planar arithmetic, if it is used
+    type(planar_body_type), allocatable :: planar_bodies(:)   !< the same in planar arithmetic, if it is used,
+    type(planar_block_type), allocatable :: planar_blocks(:)  !< and the blocks
     real(wp) :: gravity(3) = 0.0_wp                    !< in the axes of frame 0, or of the plane [m/s^2]
     integer, allocatable :: place_of(:)                !< (M) number of a coordinate among the independent ones, 0
     integer, allocatable :: first(:)                   !< (0:M+1) first entry of each frame
@@ -64,6 +66,7 @@ contains
     end do
     call find_bodies(mechanism, plan, dynamics)
     call find_columns(plan, dynamics)
+    if (plan%planar%used) call list_planar_blocks(plan, dynamics)
     call find_carriers(plan, dynamics)
     dynamics%open_chains = size(plan%closures) == 0
     if (dynamics%open_chains .and. .not. plan%planar%used) call lay_out_open_chains(plan, dynamics)
@@ -133,6 +136,18 @@ contains
     end do
     call resize(dynamics%first(m + 1) - 1, dynamics)
   end subroutine find_columns
+
+  !> What the loops of each block hold.
+  subroutine list_planar_blocks(plan, dynamics)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer :: b
+
+    allocate (dynamics%planar_blocks(size(plan%blocks)))
+    do b = 1, size(plan%blocks)
+      call list_loops(plan, b, dynamics%first, dynamics%column, dynamics%place_of, dynamics%planar_blocks(b))
+    end do
+  end subroutine list_planar_blocks
 
   !> Lists of entries of another length, what they hold kept.
   pure subroutine resize(n, dynamics)

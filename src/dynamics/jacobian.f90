@@ -30,11 +30,12 @@ module mech9_jacobian
 
 contains
 
-  !> Room for the entries that the dynamics plan lists, all zero.
+  !> Room for the entries that the dynamics plan lists, all zero but what independent coordinates are to themselves.
   pure function new_jacobian(plan, dynamics) result(jacobian)
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(in) :: dynamics
     type(jacobian_type) :: jacobian
+    integer :: s, e
 
     if (plan%planar%used) then
       allocate (jacobian%flat(3, size(dynamics%column)), source=0.0_wp)
@@ -42,6 +43,12 @@ contains
       allocate (jacobian%w(3, size(dynamics%column)), jacobian%v(3, size(dynamics%column)), source=0.0_wp)
     end if
     allocate (jacobian%b(size(dynamics%column)), source=0.0_wp)
+    do s = 1, plan%n_coordinates
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        if (plan%steps(s)%dependent) cycle
+        if (dynamics%column(e) == dynamics%place_of(plan%steps(s)%coordinate)) jacobian%b(e) = 1.0_wp
+      end do
+    end do
   end function new_jacobian
 
   !> The entries of a block's frames and its part of B = dq/dq_i. Frames must be in place, the block's
@@ -58,10 +65,9 @@ contains
     integer :: s, e, c
 
     do s = block%first_step, block%last_step
+      if (.not. plan%steps(s)%dependent) cycle
       do e = dynamics%first(s), dynamics%first(s + 1) - 1
         jacobian%b(e) = expected(e)
-        if (plan%steps(s)%dependent) cycle
-        jacobian%b(e) = merge(1.0_wp, 0.0_wp, dynamics%column(e) == dynamics%place_of(plan%steps(s)%coordinate))
       end do
     end do
     if (size(block%unknowns) > 0) then

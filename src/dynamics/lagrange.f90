@@ -1,6 +1,7 @@
 !> Lagrange's equations in the independent coordinates, (19): coefficients of motion, velocity terms and
-!> generalized forces from the Jacobians of the frames. Uses the kinematics floor, mechanism, loads,
-!> cholesky, dynamics_plan, jacobian, planar_lagrange, articulated_bodies, planar_articulated.
+!> generalized forces from the Jacobians of the frames. Uses kinds, error, text, rotation, cholesky, mechanism, plan,
+!> state, motion, dynamics_plan, lagrange_work, block_motion, generalized_forces, planar_lagrange, articulated_bodies,
+!> planar_articulated.
 !>
 !> (21) and the terms of (19) that are squares of rates are not differentiated: with the Jacobians J_c of
 !> mass centres and J_w of angular velocities,
@@ -11,78 +12,26 @@
 !> accelerations: the plan says where articulated bodies give them.
 module mech9_lagrange
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data, exit_singular
+  use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_rotation, only: turn, turn_back, cross
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_mechanism, only: mechanism_type
-  use mech9_motion_view, only: motion_view_type
-  use mech9_force_sum, only: force_sum_type, new_force_sum
-  use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, acceleration_known
-  use mech9_motion, only: spread_velocities, spread_accelerations, link_motion
-  use mech9_closure, only: closure_rates
-  use mech9_solver, only: block_work_type, new_block_work, factorize_block
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_motion, only: spread_velocities, spread_accelerations
   use mech9_dynamics_plan, only: dynamics_plan_type, frame_body_type
-  use mech9_planar_lagrange, only: add_inertia, planar_wrench, add_link_force
-  use mech9_articulated_bodies, only: articulated_work_type, new_articulated_work, solve_open_chains
-  use mech9_planar_articulated, only: planar_work_type, new_planar_work, solve_in_plane
-  use mech9_jacobian, only: jacobian_type, new_jacobian, find_jacobian, noise_of_rates
+  use mech9_lagrange_work, only: lagrange_work_type
+  use mech9_block_motion, only: move_block
+  use mech9_generalized_forces, only: collect_loads, collect_forces, torque_on_frame
+  use mech9_planar_lagrange, only: add_inertia, planar_wrench
+  use mech9_articulated_bodies, only: solve_open_chains
+  use mech9_planar_articulated, only: solve_in_plane
   implicit none
   private
-  public :: lagrange_work_type, new_lagrange_work, find_motion, find_equations, complete_accelerations, show_state
-
-  !> Blocks whose least pivot is below this are at a singular position.
-  real(wp), parameter :: singular = 1.0e-9_wp
-
-  !> Scratch and results of one evaluation, sized once.
-  type :: lagrange_work_type
-    type(block_work_type), allocatable :: blocks(:)
-    type(jacobian_type) :: jacobian
-    !> What rates and accelerations are expected to be, by continuation from before: B, entry by entry, and
-    !> the accelerations that rates alone give. They only count beside noise; zero will do.
-    real(wp), allocatable :: expected_b(:)
-    real(wp), allocatable :: expected_ddq(:)
-    !> Of find_equations, and of find_motion where the plan does without articulated bodies.
-    real(wp), allocatable :: coefficients(:, :)      !< a_pr, lower triangle
-    real(wp), allocatable :: factors(:, :)
-    real(wp), allocatable :: velocity_terms(:)       !< h_p
-    real(wp), allocatable :: forces(:)               !< Q_p
-    real(wp), allocatable :: accelerations(:)        !< of the independent coordinates
-    type(motion_view_type) :: view
-    type(force_sum_type) :: sum
-    type(articulated_work_type) :: articulated       !< of open chains, or in the plane:
-    type(planar_work_type) :: planar
-  end type lagrange_work_type
+  public :: find_motion, find_equations, complete_accelerations
 
 contains
-
-  !> Scratch for a mechanism with this plan.
-  function new_lagrange_work(plan, dynamics) result(work)
-    type(plan_type), intent(in) :: plan
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(lagrange_work_type) :: work
-    integer :: b, n
-
-    n = size(plan%independent)
-    allocate (work%blocks(size(plan%blocks)))
-    do b = 1, size(plan%blocks)
-      work%blocks(b) = new_block_work(plan%blocks(b))
-    end do
-    work%jacobian = new_jacobian(plan, dynamics)
-    allocate (work%expected_b(size(dynamics%column)), work%expected_ddq(plan%n_coordinates), source=0.0_wp)
-    allocate (work%coefficients(n, n), work%factors(n, n), source=0.0_wp)
-    allocate (work%velocity_terms(n), work%forces(n), work%accelerations(n), source=0.0_wp)
-    allocate (work%view%links(plan%n_links))
-    allocate (work%view%q(plan%n_coordinates), work%view%dq(plan%n_coordinates), source=0.0_wp)
-    work%sum = new_force_sum(plan%n_links, plan%n_coordinates)
-    if (.not. dynamics%open_chains) return
-    if (plan%planar%used) then
-      work%planar = new_planar_work(plan%n_coordinates)
-    else
-      work%articulated = new_articulated_work(plan%n_coordinates)
-    end if
-  end function new_lagrange_work
 
   !> Rates of the dependent coordinates and accelerations of the independent ones, for closed positions
   !> (frames in place) and the rates of the independent coordinates in `state`. Dependent accelerations
@@ -129,7 +78,10 @@ contains
     type(error_type), allocatable, intent(out) :: err
     integer :: b
 
-    state%ddq(plan%independent) = 0.0_wp
+    do b = 1, size(plan%independent)
+      state%ddq(plan%independent(b)) = 0.0_wp
+    end do
+    work%expects = .false.
     do b = 1, size(plan%blocks)
       call move_block(plan, dynamics, b, state, work, err)
       if (allocated(err)) return
@@ -179,70 +131,6 @@ contains
                            work%accelerations, found)
   end subroutine move_open_chains
 
-  !> Rates and Jacobians of one block, and its accelerations from rates alone.
-  subroutine move_block(plan, dynamics, b, state, work, err)
-    type(plan_type), intent(in) :: plan
-    type(dynamics_plan_type), intent(in) :: dynamics
-    integer, intent(in) :: b
-    type(state_type), intent(inout) :: state
-    type(lagrange_work_type), intent(inout) :: work
-    type(error_type), allocatable, intent(out) :: err
-    integer :: i, s, e
-    real(wp) :: rate
-
-    associate (block => plan%blocks(b))
-      if (size(block%unknowns) > 0) then
-        call factorize_block(plan, block, state, work%blocks(b))
-        if (work%blocks(b)%equations%conditioning() < singular) then
-          call raise(err, exit_singular, 'a closed chain is in a singular position for these independent coordinates')
-          return
-        end if
-      end if
-      call find_jacobian(plan, dynamics, block, state, work%expected_b, work%blocks(b), work%jacobian)
-      do i = 1, size(block%unknowns)
-        s = block%unknowns(i)
-        rate = 0.0_wp
-        do e = dynamics%first(s), dynamics%first(s + 1) - 1
-          rate = rate + work%jacobian%b(e)*state%dq(plan%independent(dynamics%column(e)))
-        end do
-        state%dq(plan%steps(s)%coordinate) = rate
-      end do
-      call spread_velocities(plan, block%first_step, block%last_step, state)
-      call find_bias(plan, block, work%expected_ddq, state, work%blocks(b))
-    end associate
-  end subroutine move_block
-
-  !> Accelerations that rates alone give a block, from what is expected; see find_jacobian.
-  subroutine find_bias(plan, block, expected, state, work)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    real(wp), intent(in) :: expected(:)       !< (M)
-    type(state_type), intent(inout) :: state
-    type(block_work_type), intent(inout) :: work
-    real(wp) :: scale
-    integer :: i, k
-
-    if (size(block%unknowns) == 0) then
-      call spread_accelerations(plan, block%first_step, block%last_step, state)
-      return
-    end if
-    scale = 0.0_wp
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%ddq(k) = expected(k)
-      scale = max(scale, (state%dq(k)/plan%unit_of(k))**2)
-    end do
-    call spread_accelerations(plan, block%first_step, block%last_step, state)
-    call closure_rates(plan, block, state, acceleration_known, work%right)
-    work%right = -work%right
-    call work%equations%solve(work%right, work%change, noise=noise_of_rates*scale)
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%ddq(k) = state%ddq(k) + work%change(i)*plan%unit_of(k)
-    end do
-    call spread_accelerations(plan, block%first_step, block%last_step, state)
-  end subroutine find_bias
-
   !> a_pr (21) and the velocity terms of (19).
   subroutine collect_inertia(dynamics, state, work)
     type(dynamics_plan_type), intent(in) :: dynamics
@@ -253,12 +141,15 @@ contains
     work%coefficients = 0.0_wp
     work%velocity_terms = 0.0_wp
     work%forces = 0.0_wp
+    if (allocated(dynamics%planar_bodies)) then
+      call add_inertia(size(dynamics%planar_bodies), dynamics%planar_bodies, size(state%q), size(dynamics%column), &
+                       dynamics%first, dynamics%column, work%jacobian%flat, state%planar%pose, state%planar%velocity, &
+                       state%planar%acceleration, dynamics%gravity(1:2), size(work%forces), work%coefficients, &
+                       work%velocity_terms, work%forces)
+      return
+    end if
     do i = 1, size(dynamics%bodies)
-      if (allocated(dynamics%planar_bodies)) then
-        call add_planar_body(dynamics, i, state, work)
-      else
-        call add_body(dynamics, dynamics%bodies(i), state, work)
-      end if
+      call add_body(dynamics, dynamics%bodies(i), state, work)
     end do
   end subroutine collect_inertia
 
@@ -297,22 +188,6 @@ contains
     end do
   end subroutine add_body
 
-  pure subroutine add_planar_body(dynamics, i, state, work)
-    type(dynamics_plan_type), intent(in) :: dynamics
-    integer, intent(in) :: i
-    type(state_type), intent(in) :: state
-    type(lagrange_work_type), intent(inout) :: work
-    integer :: f, first, last
-
-    f = dynamics%planar_bodies(i)%frame
-    first = dynamics%first(f)
-    last = dynamics%first(f + 1) - 1
-    call add_inertia(dynamics%planar_bodies(i), last - first + 1, size(work%forces), dynamics%column(first:last), &
-                     work%jacobian%flat(:, first:last), state%planar%pose(:, f), state%planar%velocity(:, f), &
-                     state%planar%acceleration(:, f), dynamics%gravity(1:2), work%coefficients, &
-                     work%velocity_terms, work%forces)
-  end subroutine add_planar_body
-
   !> The body's inertia tensor, in fixed axes, times a vector.
   pure function inertia_times(body, r, vector) result(product)
     type(frame_body_type), intent(in) :: body
@@ -322,103 +197,6 @@ contains
 
     product = turn(r, turn(body%inertia, turn_back(r, vector)))
   end function inertia_times
-
-  !> What the loads exert, on links and on coordinates.
-  subroutine collect_loads(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
-    type(lagrange_work_type), intent(inout) :: work
-    type(error_type), allocatable, intent(out) :: err
-    integer :: i
-
-    if (size(mechanism%loads) == 0) return
-    call show_state(plan, dynamics, state, work%view)
-    call work%sum%clear()
-    do i = 1, size(mechanism%loads)
-      call mechanism%loads(i)%load%apply(work%view, work%sum, err)
-      if (allocated(err)) return
-    end do
-  end subroutine collect_loads
-
-  !> Q_p (25) of what the loads exert.
-  pure subroutine collect_forces(plan, dynamics, state, work)
-    type(plan_type), intent(in) :: plan
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
-    type(lagrange_work_type), intent(inout) :: work
-    integer :: i, e, p, s
-
-    do i = 2, plan%n_links
-      if (.not. dynamics%load_links(i)) cycle
-      call add_forces_on_link(plan, dynamics, state, i, work)
-    end do
-    do i = 1, plan%n_coordinates
-      if (.not. abs(work%sum%generalized(i)) > 0.0_wp) cycle
-      s = plan%step_of(i)
-      do e = dynamics%first(s), dynamics%first(s + 1) - 1
-        p = dynamics%column(e)
-        work%forces(p) = work%forces(p) + work%jacobian%b(e)*work%sum%generalized(i)
-      end do
-    end do
-  end subroutine collect_forces
-
-  pure subroutine add_forces_on_link(plan, dynamics, state, link, work)
-    type(plan_type), intent(in) :: plan
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
-    integer, intent(in) :: link
-    type(lagrange_work_type), intent(inout) :: work
-    real(wp) :: torque(3)
-    integer :: f, first, last, e, p
-
-    f = plan%frame_of(link)
-    first = dynamics%first(f)
-    last = dynamics%first(f + 1) - 1
-    if (plan%planar%used) then
-      call add_link_force(plan%planar, link, last - first + 1, dynamics%column(first:last), &
-                          work%jacobian%flat(:, first:last), state%planar%pose(:, f), work%sum%force(:, link), &
-                          work%sum%torque(:, link), work%forces)
-      return
-    end if
-    torque = torque_on_frame(plan, state, link, work)
-    do e = first, last
-      p = dynamics%column(e)
-      work%forces(p) = work%forces(p) + dot_product(work%jacobian%v(:, e), work%sum%force(:, link)) &
-                       + dot_product(work%jacobian%w(:, e), torque)
-    end do
-  end subroutine add_forces_on_link
-
-  !> Torque of the loads on a link about the origin of its frame.
-  pure function torque_on_frame(plan, state, link, work) result(torque)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
-    integer, intent(in) :: link
-    type(lagrange_work_type), intent(in) :: work
-    real(wp) :: torque(3), arm(3)
-
-    arm = work%view%links(link)%p - plan%origin - state%p(:, plan%frame_of(link))
-    torque = work%sum%torque(:, link) + cross(arm, work%sum%force(:, link))
-  end function torque_on_frame
-
-  !> The state as loads see it: the links' own systems in that of link 1.
-  pure subroutine show_state(plan, dynamics, state, view)
-    type(plan_type), intent(in) :: plan
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
-    type(motion_view_type), intent(inout) :: view
-    integer :: i
-
-    view%t = state%t
-    view%q = state%q
-    view%dq = state%dq
-    ! link 1 stays where it is
-    do i = 2, plan%n_links
-      if (.not. dynamics%load_links(i)) cycle
-      call link_motion(plan, state, i, view%links(i)%r, view%links(i)%p, view%links(i)%omega, view%links(i)%v)
-    end do
-  end subroutine show_state
 
   !> After find_motion: the accelerations of all coordinates and frames, for results.
   pure subroutine complete_accelerations(plan, dynamics, work, state)

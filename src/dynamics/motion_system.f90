@@ -1,5 +1,5 @@
 !> The motion as differential equations for an integrator. Uses the kinematics floor, mechanism,
-!> ode_system, dynamics_plan, lagrange.
+!> ode_system, dynamics_plan, lagrange_work, lagrange, generalized_forces.
 !>
 !> The vector that is integrated holds all coordinates and the rates of the independent ones. An
 !> evaluation takes the positions as they are, and the chains are closed after each accepted step:
@@ -16,8 +16,9 @@ module mech9_motion_system
   use mech9_planning, only: chain_names
   use mech9_ode_system, only: ode_system_type
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion, find_equations, &
-    complete_accelerations, show_state
+  use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
+  use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
+  use mech9_generalized_forces, only: show_state
   implicit none
   private
   public :: motion_system_type, set_motion_system
@@ -25,14 +26,6 @@ module mech9_motion_system
   !> Largest change of a coordinate, in its unit, by which closing may move what the integrator found:
   !> its error is far below; more, and the chains might close on another branch.
   real(wp), parameter :: trusted_correction = 0.02_wp
-
-  !> What the next rates are expected from.
-  type :: past_type
-    logical :: known = .false.
-    real(wp) :: t = 0.0_wp
-    real(wp), allocatable :: b(:)      !< dependent rates per independent ones, as in the Jacobian
-    real(wp), allocatable :: ddq(:)    !< (M) accelerations that rates alone give
-  end type past_type
 
   type, extends(ode_system_type) :: motion_system_type
     type(mechanism_type) :: mechanism
@@ -43,7 +36,6 @@ module mech9_motion_system
     integer(long) :: iterations = 0                  !< of Newton's method, all blocks
     !> Trials with a worse conditioned block are refused: a step must not cross a singular position unseen.
     real(wp) :: refuse_below = 0.0_wp
-    type(past_type), private :: past(2)              !< the last two settled states, the later one first
     logical, private :: just_settled = .false.
   contains
     procedure :: size_of_vector
@@ -105,7 +97,6 @@ contains
     call take(self, t, y)
     call place_frames(self%plan, 1, self%plan%n_coordinates, self%state, err)
     if (allocated(err)) return
-    call expect(self)
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
     if (self%conditioning() < self%refuse_below) then
@@ -122,23 +113,6 @@ contains
     end do
   end subroutine rate
 
-  !> What B and the accelerations from rates are expected to be at the state's time, by a straight line
-  !> through the last two settled states.
-  pure subroutine expect(self)
-    class(motion_system_type), intent(inout) :: self
-    real(wp) :: part
-
-    if (.not. self%past(1)%known) return
-    if (self%past(2)%known) then
-      part = (self%state%t - self%past(1)%t)/(self%past(1)%t - self%past(2)%t)
-      self%work%expected_b = self%past(1)%b + part*(self%past(1)%b - self%past(2)%b)
-      self%work%expected_ddq = self%past(1)%ddq + part*(self%past(1)%ddq - self%past(2)%ddq)
-    else
-      self%work%expected_b = self%past(1)%b
-      self%work%expected_ddq = self%past(1)%ddq
-    end if
-  end subroutine expect
-
   !> Keep what the first evaluation after an accepted step found there.
   pure subroutine remember(self)
     class(motion_system_type), intent(inout) :: self
@@ -146,18 +120,7 @@ contains
     self%just_settled = .false.
     ! nothing to expect where all coordinates are independent
     if (size(self%plan%closures) == 0) return
-    if (self%past(1)%known) then
-      ! no straight line through two states at one time
-      if (.not. abs(self%state%t - self%past(1)%t) > 0.0_wp) return
-      self%past(2)%known = .true.
-      self%past(2)%t = self%past(1)%t
-      self%past(2)%b = self%past(1)%b
-      self%past(2)%ddq = self%past(1)%ddq
-    end if
-    self%past(1)%known = .true.
-    self%past(1)%t = self%state%t
-    self%past(1)%b = self%work%jacobian%b
-    self%past(1)%ddq = self%state%ddq
+    call self%work%expectation%remember(self%state%t, self%work%jacobian%b, self%state%ddq)
   end subroutine remember
 
   !> Positions and independent rates of a vector into the state.
@@ -208,7 +171,6 @@ contains
     class(motion_system_type), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: err
 
-    call expect(self)
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)

@@ -72,35 +72,40 @@ contains
     end do
   end subroutine spread_columns
 
-  !> Add a body's coefficients of motion, velocity terms, and weights.
-  pure subroutine add_inertia(body, k, n, numbers, columns, f, v, a, gravity, coefficients, velocity_terms, forces)
-    type(planar_body_type), intent(in) :: body
-    integer, intent(in) :: k                      !< columns of its frame
-    integer, intent(in) :: n                      !< independent coordinates
-    integer, intent(in) :: numbers(k)             !< of the columns' coordinates among them
-    real(wp), intent(in) :: columns(3, k)
-    real(wp), intent(in) :: f(4), v(3), a(3)      !< pose, velocity and acceleration of the frame
+  !> Add the bodies' coefficients of motion, velocity terms, and weights.
+  pure subroutine add_inertia(n_bodies, bodies, m, n_entries, entries, numbers, columns, f, v, a, gravity, n, &
+                              coefficients, velocity_terms, forces)
+    integer, intent(in) :: n_bodies, m, n_entries, n          !< bodies, steps, entries, independent coordinates
+    type(planar_body_type), intent(in) :: bodies(n_bodies)
+    integer, intent(in) :: entries(0:m + 1)                   !< as in the dynamics plan
+    integer, intent(in) :: numbers(n_entries)                 !< of the entries' coordinates among the independent ones
+    real(wp), intent(in) :: columns(3, n_entries)
+    real(wp), intent(in) :: f(4, 0:m), v(3, 0:m), a(3, 0:m)   !< poses, velocities and accelerations of the frames
     real(wp), intent(in) :: gravity(2)
     real(wp), intent(inout) :: coefficients(n, n), velocity_terms(n), forces(n)
     real(wp) :: x, y, force_x, force_y, torque, c_x, c_y, spin
-    integer :: p, r
+    integer :: i, s, e, d, p, r
 
-    x = f(1)*body%centre(1) - f(2)*body%centre(2)
-    y = f(2)*body%centre(1) + f(1)*body%centre(2)
-    force_x = body%mass*(a(2) - a(1)*y - v(1)**2*x)
-    force_y = body%mass*(a(3) + a(1)*x - v(1)**2*y)
-    torque = body%inertia*a(1)
-    do p = 1, k
-      c_x = columns(2, p) - columns(1, p)*y
-      c_y = columns(3, p) + columns(1, p)*x
-      velocity_terms(numbers(p)) = velocity_terms(numbers(p)) + c_x*force_x + c_y*force_y + columns(1, p)*torque
-      c_x = body%mass*c_x
-      c_y = body%mass*c_y
-      forces(numbers(p)) = forces(numbers(p)) + c_x*gravity(1) + c_y*gravity(2)
-      spin = x*c_y - y*c_x + body%inertia*columns(1, p)
-      do r = p, k
-        coefficients(numbers(r), numbers(p)) = coefficients(numbers(r), numbers(p)) &
-          + columns(1, r)*spin + columns(2, r)*c_x + columns(3, r)*c_y
+    do i = 1, n_bodies
+      s = bodies(i)%frame
+      x = f(1, s)*bodies(i)%centre(1) - f(2, s)*bodies(i)%centre(2)
+      y = f(2, s)*bodies(i)%centre(1) + f(1, s)*bodies(i)%centre(2)
+      force_x = bodies(i)%mass*(a(2, s) - a(1, s)*y - v(1, s)**2*x)
+      force_y = bodies(i)%mass*(a(3, s) + a(1, s)*x - v(1, s)**2*y)
+      torque = bodies(i)%inertia*a(1, s)
+      do e = entries(s), entries(s + 1) - 1
+        p = numbers(e)
+        c_x = columns(2, e) - columns(1, e)*y
+        c_y = columns(3, e) + columns(1, e)*x
+        velocity_terms(p) = velocity_terms(p) + c_x*force_x + c_y*force_y + columns(1, e)*torque
+        c_x = bodies(i)%mass*c_x
+        c_y = bodies(i)%mass*c_y
+        forces(p) = forces(p) + c_x*gravity(1) + c_y*gravity(2)
+        spin = x*c_y - y*c_x + bodies(i)%inertia*columns(1, e)
+        do d = e, entries(s + 1) - 1
+          r = numbers(d)
+          coefficients(r, p) = coefficients(r, p) + columns(1, d)*spin + columns(2, d)*c_x + columns(3, d)*c_y
+        end do
       end do
     end do
   end subroutine add_inertia

@@ -9,7 +9,7 @@ module mech9_least_squares
   use mech9_householder, only: householder, reflect, back_substitute
   implicit none
   private
-  public :: least_squares_type
+  public :: least_squares_type, nearly_dependent
 
   !> From this number of columns on LAPACK is called.
   integer, parameter :: lapack_from = 24

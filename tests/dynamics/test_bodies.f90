@@ -10,7 +10,8 @@ program test_bodies
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_equations, find_motion
+  use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
+  use mech9_lagrange, only: find_equations, find_motion
   use mech9_coordinate_load, only: coordinate_load_type
   use mech9_spring_load, only: spring_load_type
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame

@@ -12,7 +12,8 @@ program test_open_chains
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange, only: lagrange_work_type, new_lagrange_work, find_motion, find_equations, complete_accelerations
+  use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
+  use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame, general_loop
   use mech9_curved_pair, only: curved_pair_type
   use mech9_loaded_mechanisms, only: five_bar, load_everything, without_loads, add_body

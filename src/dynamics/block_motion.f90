@@ -1,0 +1,175 @@
+!> Rates and Jacobians of one block, and its accelerations from rates alone. Uses kinds, error, least_squares, the
+!> kinematics floor, dynamics_plan, jacobian, planar_block, lagrange_work.
+module mech9_block_motion
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_least_squares, only: nearly_dependent
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type, acceleration_known
+  use mech9_motion, only: spread_velocities, spread_accelerations
+  use mech9_closure, only: closure_rates
+  use mech9_solver, only: block_work_type, factorize_block
+  use mech9_dynamics_plan, only: dynamics_plan_type
+  use mech9_jacobian, only: find_jacobian, noise_of_rates
+  use mech9_planar_block, only: fill_columns, add_earlier, move_frames
+  use mech9_lagrange_work, only: lagrange_work_type
+  implicit none
+  private
+  public :: move_block
+
+  !> Blocks whose least pivot is below this are at a singular position.
+  real(wp), parameter :: singular = 1.0e-9_wp
+
+contains
+
+  !> Move block b: frames must be in place, the rates of the independent coordinates known, earlier blocks done.
+  !> Fails with exit_singular in a singular position.
+  subroutine move_block(plan, dynamics, b, state, work, err)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    integer, intent(in) :: b
+    type(state_type), intent(inout) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: conditioning
+
+    associate (block => plan%blocks(b))
+      if (size(block%unknowns) == 0) then
+        call move_as_expected(plan, dynamics, b, state, work)
+        return
+      end if
+      if (plan%planar%used) then
+        associate (flat => dynamics%planar_blocks(b), a => work%blocks(b)%equations%a)
+          call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, &
+                            state%planar%pose, state%planar%slide, plan%length, size(a, 1), size(a, 2), a)
+        end associate
+        call work%blocks(b)%equations%factorize()
+      else
+        call factorize_block(plan, block, state, work%blocks(b))
+      end if
+      conditioning = work%blocks(b)%equations%conditioning()
+      if (conditioning < singular) then
+        call raise(err, exit_singular, 'a closed chain is in a singular position for these independent coordinates')
+      else if (plan%planar%used .and. conditioning >= nearly_dependent) then
+        call move_in_plane(plan, dynamics, b, state, work)
+      else
+        call expect(state%t, work)
+        call move_as_expected(plan, dynamics, b, state, work)
+      end if
+    end associate
+  end subroutine move_block
+
+  !> What B and the accelerations from rates are expected to be, once in an evaluation.
+  pure subroutine expect(t, work)
+    real(wp), intent(in) :: t
+    type(lagrange_work_type), intent(inout) :: work
+
+    if (.not. work%expects) call work%expectation%continue_to(t, work%expected_b, work%expected_ddq)
+    work%expects = .true.
+  end subroutine expect
+
+  !> In planar arithmetic, where nothing is lost in noise: each frame is moved once, then once more with the
+  !> accelerations of the dependent coordinates.
+  subroutine move_in_plane(plan, dynamics, b, state, work)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    integer, intent(in) :: b
+    type(state_type), intent(inout) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    integer :: i, j, k
+
+    associate (block => plan%blocks(b), flat => dynamics%planar_blocks(b), equations => work%blocks(b)%equations, &
+               right => work%blocks(b)%right, change => work%blocks(b)%change, motion => state%planar)
+      call fill_columns(size(flat%independent), flat%independent, plan%n_coordinates, plan%planar%steps, motion%pose, &
+                        motion%slide, plan%length, size(work%sides, 1), flat%columns, work%sides)
+      call add_earlier(size(flat%earlier), flat%earlier, plan%n_coordinates, motion%pose, size(work%jacobian%b), &
+                       work%jacobian%flat, plan%length, size(work%sides, 1), flat%columns, work%sides)
+      do j = 1, flat%columns
+        k = plan%independent(dynamics%column(dynamics%first(block%first_step) + j - 1))
+        call equations%solve(work%sides(:block%equations, j), change)
+        do i = 1, size(block%unknowns)
+          work%jacobian%b(dynamics%first(block%unknowns(i)) + j - 1) = -change(i)*plan%unit_of(block%coordinates(i)) &
+                                                                       /plan%unit_of(k)
+        end do
+      end do
+      call find_rates(plan, dynamics, block, work%jacobian%b, state%dq)
+      call move_frames(plan%n_coordinates, size(work%jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
+                       dynamics%first, dynamics%parent_entry, dynamics%carries, work%jacobian%b, state%dq, motion%pose, &
+                       motion%slide, work%jacobian%flat, motion%velocity, motion%acceleration)
+      call closure_rates(plan, block, state, acceleration_known, right)
+      call equations%solve(right, change)
+      do i = 1, size(block%unknowns)
+        k = block%coordinates(i)
+        state%ddq(k) = -change(i)*plan%unit_of(k)
+      end do
+      call spread_accelerations(plan, block%first_step, block%last_step, state)
+    end associate
+  end subroutine move_in_plane
+
+  !> In general: from what is expected, which stays where the equations say no more than noise.
+  subroutine move_as_expected(plan, dynamics, b, state, work)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    integer, intent(in) :: b
+    type(state_type), intent(inout) :: state
+    type(lagrange_work_type), intent(inout) :: work
+
+    associate (block => plan%blocks(b))
+      call find_jacobian(plan, dynamics, block, state, work%expected_b, work%blocks(b), work%jacobian)
+      call find_rates(plan, dynamics, block, work%jacobian%b, state%dq)
+      call spread_velocities(plan, block%first_step, block%last_step, state)
+      call find_bias(plan, block, work%expected_ddq, state, work%blocks(b))
+    end associate
+  end subroutine move_as_expected
+
+  !> Rates of the dependent coordinates of a block, B times those of the independent ones.
+  pure subroutine find_rates(plan, dynamics, block, b, dq)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(block_type), intent(in) :: block
+    real(wp), intent(in) :: b(:)              !< (entries)
+    real(wp), intent(inout) :: dq(:)          !< (M)
+    real(wp) :: rate
+    integer :: i, s, e
+
+    do i = 1, size(block%unknowns)
+      s = block%unknowns(i)
+      rate = 0.0_wp
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        rate = rate + b(e)*dq(plan%independent(dynamics%column(e)))
+      end do
+      dq(block%coordinates(i)) = rate
+    end do
+  end subroutine find_rates
+
+  !> Accelerations that rates alone give a block, from what is expected; see find_jacobian.
+  subroutine find_bias(plan, block, expected, state, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    real(wp), intent(in) :: expected(:)       !< (M)
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    real(wp) :: scale
+    integer :: i, k
+
+    if (size(block%unknowns) == 0) then
+      call spread_accelerations(plan, block%first_step, block%last_step, state)
+      return
+    end if
+    scale = 0.0_wp
+    do i = 1, size(block%unknowns)
+      k = block%coordinates(i)
+      state%ddq(k) = expected(k)
+      scale = max(scale, (state%dq(k)/plan%unit_of(k))**2)
+    end do
+    call spread_accelerations(plan, block%first_step, block%last_step, state)
+    call closure_rates(plan, block, state, acceleration_known, work%right)
+    work%right = -work%right
+    call work%equations%solve(work%right, work%change, noise=noise_of_rates*scale)
+    do i = 1, size(block%unknowns)
+      k = block%coordinates(i)
+      state%ddq(k) = state%ddq(k) + work%change(i)*plan%unit_of(k)
+    end do
+    call spread_accelerations(plan, block%first_step, block%last_step, state)
+  end subroutine find_bias
+end module mech9_block_motion

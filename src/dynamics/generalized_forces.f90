@@ -1,0 +1,117 @@
+!> What loads exert and the generalized forces Q_p (25) of it. Uses kinds, error, rotation, mechanism, motion_view,
+!> plan, state, motion, dynamics_plan, planar_lagrange, lagrange_work.
+module mech9_generalized_forces
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_rotation, only: cross
+  use mech9_mechanism, only: mechanism_type
+  use mech9_motion_view, only: motion_view_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_motion, only: link_motion
+  use mech9_dynamics_plan, only: dynamics_plan_type
+  use mech9_planar_lagrange, only: add_link_force
+  use mech9_lagrange_work, only: lagrange_work_type
+  implicit none
+  private
+  public :: collect_loads, collect_forces, torque_on_frame, show_state
+
+contains
+
+  !> What the loads exert, on links and on coordinates.
+  subroutine collect_loads(mechanism, plan, dynamics, state, work, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    if (size(mechanism%loads) == 0) return
+    call show_state(plan, dynamics, state, work%view)
+    call work%sum%clear()
+    do i = 1, size(mechanism%loads)
+      call mechanism%loads(i)%load%apply(work%view, work%sum, err)
+      if (allocated(err)) return
+    end do
+  end subroutine collect_loads
+
+  !> Q_p (25) of what the loads exert.
+  pure subroutine collect_forces(plan, dynamics, state, work)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    type(lagrange_work_type), intent(inout) :: work
+    integer :: i, e, p, s
+
+    do i = 2, plan%n_links
+      if (.not. dynamics%load_links(i)) cycle
+      call add_forces_on_link(plan, dynamics, state, i, work)
+    end do
+    do i = 1, plan%n_coordinates
+      if (.not. abs(work%sum%generalized(i)) > 0.0_wp) cycle
+      s = plan%step_of(i)
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        p = dynamics%column(e)
+        work%forces(p) = work%forces(p) + work%jacobian%b(e)*work%sum%generalized(i)
+      end do
+    end do
+  end subroutine collect_forces
+
+  pure subroutine add_forces_on_link(plan, dynamics, state, link, work)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: link
+    type(lagrange_work_type), intent(inout) :: work
+    real(wp) :: torque(3)
+    integer :: f, first, last, e, p
+
+    f = plan%frame_of(link)
+    first = dynamics%first(f)
+    last = dynamics%first(f + 1) - 1
+    if (plan%planar%used) then
+      call add_link_force(plan%planar, link, last - first + 1, dynamics%column(first:last), &
+                          work%jacobian%flat(:, first:last), state%planar%pose(:, f), work%sum%force(:, link), &
+                          work%sum%torque(:, link), work%forces)
+      return
+    end if
+    torque = torque_on_frame(plan, state, link, work)
+    do e = first, last
+      p = dynamics%column(e)
+      work%forces(p) = work%forces(p) + dot_product(work%jacobian%v(:, e), work%sum%force(:, link)) &
+                       + dot_product(work%jacobian%w(:, e), torque)
+    end do
+  end subroutine add_forces_on_link
+
+  !> Torque of the loads on a link about the origin of its frame.
+  pure function torque_on_frame(plan, state, link, work) result(torque)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: link
+    type(lagrange_work_type), intent(in) :: work
+    real(wp) :: torque(3), arm(3)
+
+    arm = work%view%links(link)%p - plan%origin - state%p(:, plan%frame_of(link))
+    torque = work%sum%torque(:, link) + cross(arm, work%sum%force(:, link))
+  end function torque_on_frame
+
+  !> The state as loads see it: the links' own systems in that of link 1.
+  pure subroutine show_state(plan, dynamics, state, view)
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(state_type), intent(in) :: state
+    type(motion_view_type), intent(inout) :: view
+    integer :: i
+
+    view%t = state%t
+    view%q = state%q
+    view%dq = state%dq
+    ! link 1 stays where it is
+    do i = 2, plan%n_links
+      if (.not. dynamics%load_links(i)) cycle
+      call link_motion(plan, state, i, view%links(i)%r, view%links(i)%p, view%links(i)%omega, view%links(i)%v)
+    end do
+  end subroutine show_state
+end module mech9_generalized_forces
