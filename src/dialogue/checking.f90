@@ -2,11 +2,11 @@
 !> mechanism together. Uses error, the model, the kinematics, task, plan_text, draft_check, conversation, correcting.
 module mech9_checking
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_structure
   use mech9_text, only: to_text
   use mech9_diagnostics, only: diagnostics_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
@@ -93,14 +93,11 @@ contains
     type(state_type), intent(in) :: start
     type(mobility_report_type) :: report
     character(len=:), allocatable :: text
-    real(wp) :: unit
     integer :: k
 
     text = 'Put together at the start with'
     do k = 1, size(mechanism%pairs)
-      unit = 1.0_wp
-      if (mechanism%pairs(k)%pair%angular) unit = mechanism%angle_unit
-      text = text//' q'//to_text(k)//' = '//to_text(start%q(k)/unit)
+      text = text//' q'//to_text(k)//' = '//to_text(start%q(k)/unit_of(mechanism, k))
       if (k < size(mechanism%pairs)) text = text//','
     end do
     text = text//'.'

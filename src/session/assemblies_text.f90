@@ -1,8 +1,9 @@
-!> The assemblies of a mechanism in words, for --branches. Uses kinds, text, mechanism, plan, state, branches.
+!> The assemblies of a mechanism in words, for --branches.
+!> Uses text, mechanism, result_units, plan, state, branches.
 module mech9_assemblies_text
-  use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_branches, only: assembly_list_type, find_assemblies
@@ -34,7 +35,7 @@ contains
       write (unit, '(a)') '! assembly '//to_text(i)//', from '//to_text(list%found(i))//' starts'//words
       do k = 1, plan%n_coordinates
         if (.not. plan%steps(plan%step_of(k))%dependent) cycle
-        write (number, '(es24.16)') list%q(k, i)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular)
+        write (number, '(es24.16)') list%q(k, i)/unit_of(mechanism, k)
         write (unit, '(a)') '&initial coordinate='//to_text(k)//', position='//trim(adjustl(number))//' /'
       end do
     end do

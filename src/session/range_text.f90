@@ -1,9 +1,10 @@
-!> The ranges of the independent coordinates in words, for --range. Uses kinds, text, mechanism, plan, state,
-!> range, tracking.
+!> The ranges of the independent coordinates in words, for --range.
+!> Uses kinds, text, mechanism, result_units, plan, state, range, tracking.
 module mech9_range_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_range, only: range_type, end_type, find_range, ends_at_limit, ends_round, ends_otherwise
@@ -35,17 +36,11 @@ contains
     do i = 1, size(plan%independent)
       k = plan%independent(i)
       call find_range(mechanism, plan, start, k, range)
-      factor = 1.0_wp
-      name = 'm'
-      if (mechanism%pairs(k)%pair%kind_name() == 'user') then
-        name = '1'
-      else if (mechanism%pairs(k)%pair%angular) then
-        factor = 1.0_wp/mechanism%angle_unit
-        name = merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
-      end if
+      factor = 1.0_wp/unit_of(mechanism, k)
+      name = trim(unit_name(mechanism, k))
       write (unit, '(a)') column('q'//to_text(k), 6)//column(to_text(factor*range%start, digits), width)// &
         column(value_of(range%lower, factor), width)//column(value_of(range%upper, factor), width)// &
-        column(name, 6)//reasons(plan, range, factor, trim(name))
+        column(name, 6)//reasons(plan, range, factor, name)
     end do
   end subroutine print_ranges
 

@@ -1,14 +1,14 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
-!> Uses command_line, mechanism, plan, state, mobility_report,
-!> assemblies_text, plan_text, structure_graph, diagnostics, kept_rows, film, picture_requests, results, recording.
+!> Uses command_line, mechanism, result_units, plan, state, mobility_report, assemblies_text, plan_text,
+!> structure_graph, diagnostics, kept_rows, film, picture_requests, results, recording.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-  use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of
   use mech9_film, only: film_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -99,7 +99,7 @@ contains
     do k = 1, size(mechanism%pairs)
       write (name, '(a,i0)') 'q', k
       write (output_unit, '(2x,a8,es24.16)') name, &
-        start%q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular)
+        start%q(k)/unit_of(mechanism, k)
     end do
   end subroutine print_start
 

@@ -1,0 +1,33 @@
+!> The units of coordinates in results and messages, which are those of the data file. Uses kinds, mechanism.
+module mech9_result_units
+  use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
+  implicit none
+  private
+  public :: unit_of, unit_name
+
+contains
+
+  !> One unit of coordinate k of the results, in rad or m.
+  pure real(wp) function unit_of(mechanism, k)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: k
+
+    unit_of = 1.0_wp
+    if (mechanism%pairs(k)%pair%angular) unit_of = mechanism%angle_unit
+  end function unit_of
+
+  !> Its name; '1' where only the user's own pair knows it.
+  pure character(len=3) function unit_name(mechanism, k)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: k
+
+    if (mechanism%pairs(k)%pair%kind_name() == 'user') then
+      unit_name = '1'
+    else if (.not. mechanism%pairs(k)%pair%angular) then
+      unit_name = 'm'
+    else
+      unit_name = merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
+    end if
+  end function unit_name
+end module mech9_result_units
