@@ -68,7 +68,7 @@ contains
       if (.not. allocated(best)) best = motions
       if (size(motions, 2) < size(best, 2)) best = motions
     end do
-    call explain_choice(plan, best, wanted, text)
+    call explain_choice(best, wanted, text)
     call raise(err, exit_structure, text)
   end subroutine judge_choice
 
@@ -113,8 +113,7 @@ contains
   end subroutine find_positions
 
   !> What is wrong with a choice of independent coordinates, and what would serve.
-  subroutine explain_choice(plan, motions, wanted, text)
-    type(plan_type), intent(in) :: plan
+  subroutine explain_choice(motions, wanted, text)
     real(wp), intent(in) :: motions(:, :)
     logical, intent(in) :: wanted(:)
     character(len=:), allocatable, intent(out) :: text

@@ -32,7 +32,6 @@ module mech9_picture_requests
     logical :: with_masses = .false.          !< bodies count in this program
   contains
     procedure :: any_wanted
-    procedure :: film_for
     procedure :: save => save_pictures
     procedure :: save_start
     procedure :: print_words
@@ -81,16 +80,6 @@ contains
 
     any_wanted = self%sketch /= '' .or. self%animation /= ''
   end function any_wanted
-
-  !> An empty film for a run of so many outputs.
-  pure function film_for(self, mechanism, outputs) result(film)
-    class(picture_requests_type), intent(in) :: self
-    type(mechanism_type), intent(in) :: mechanism
-    integer, intent(in) :: outputs
-    type(film_type) :: film
-
-    film = new_film(mechanism, outputs)
-  end function film_for
 
   !> Make the sketch of an assembled position, without a run. Errors are exit_file.
   subroutine save_start(self, mechanism, plan, start, err)

@@ -9,7 +9,7 @@ module mech9_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of
-  use mech9_film, only: film_type
+  use mech9_film, only: film_type, new_film
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_picture_requests, only: picture_requests_type
@@ -133,7 +133,7 @@ contains
     type(error_type), allocatable :: err
 
     call announce(options, mechanism, plan)
-    if (pictures%any_wanted()) run%film = pictures%film_for(mechanism, mechanism%time%intervals + 1)
+    if (pictures%any_wanted()) run%film = new_film(mechanism, mechanism%time%intervals + 1)
     call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)
