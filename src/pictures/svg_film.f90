@@ -63,7 +63,7 @@ contains
     duration = max(shortest, min(longest, abs(film%times(film%n_frames) - film%times(1))))
   end function duration_of
 
-  !> An item with what it is in each frame.
+  !> An item with what it is in each frame. Where nothing moves, in a viewer or a print, the first frame stands.
   subroutine put_moving(item, number, drawings, symbol, duration, page)
     type(item_type), intent(in) :: item
     integer, intent(in) :: number
@@ -72,9 +72,10 @@ contains
     real(wp), intent(in) :: duration               !< [s]
     type(page_type), intent(inout) :: page
 
-    call page%put(opening_of(item, number)//'>')
+    call page%put(opening_of(item, number))
     select case (item%shape)
     case (mark, label)
+      call page%put(' transform="translate('//place_of(item, drawings(1))//')">')
       call page%put('<animateTransform attributeName="transform" type="translate"'//timing(duration))
       call put_values(item, drawings, symbol, page)
       call page%put('"/>')
@@ -84,6 +85,7 @@ contains
         call page%put(label_svg(item))
       end if
     case default
+      call page%put('>')
       call put_moving_path(item, drawings, symbol, duration, '', page)
       if (styles(item%style)%has_edge) call put_moving_path(item, drawings, symbol, duration, ' class="i"', page)
     end select
@@ -97,7 +99,8 @@ contains
     character(len=*), intent(in) :: class
     type(page_type), intent(inout) :: page
 
-    call page%put('<path'//class//'><animate attributeName="d"'//timing(duration))
+    call page%put('<path'//class//' d="'//path_in(item, drawings(1), symbol)//'">')
+    call page%put('<animate attributeName="d"'//timing(duration))
     call put_values(item, drawings, symbol, page)
     call page%put('"/></path>')
   end subroutine put_moving_path
@@ -115,7 +118,6 @@ contains
     type(drawing_type), intent(in) :: drawings(:)
     real(wp), intent(in) :: symbol
     type(page_type), intent(inout) :: page
-    character(len=:), allocatable :: path
     integer :: i
 
     do i = 1, size(drawings)
@@ -123,10 +125,19 @@ contains
       if (item%shape == mark .or. item%shape == label) then
         call page%put(place_of(item, drawings(i)))
       else
-        path = path_of(item, outline_of(item, drawings(i), symbol))
-        if (path == '') path = 'M0 0'
-        call page%put(path)
+        call page%put(path_in(item, drawings(i), symbol))
       end if
     end do
   end subroutine put_values
+
+  !> The path of an item in a frame; where it is not seen, one without length, as an animation needs one.
+  pure function path_in(item, drawing, symbol) result(path)
+    type(item_type), intent(in) :: item
+    type(drawing_type), intent(in) :: drawing
+    real(wp), intent(in) :: symbol
+    character(len=:), allocatable :: path
+
+    path = path_of(item, outline_of(item, drawing, symbol))
+    if (path == '') path = 'M0 0'
+  end function path_in
 end module mech9_svg_film
