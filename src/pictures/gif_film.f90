@@ -9,7 +9,8 @@ module mech9_gif_film
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label, in_pin, in_cross, in_cam, &
-                         as_stand, as_ring, as_ball, as_dot, as_centre, as_free
+                         as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
+                         as_input
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, colour_of, ink, edge
   use mech9_svg_film, only: duration_of
@@ -23,7 +24,11 @@ module mech9_gif_film
 
   !> A GIF of more frames is larger than it is worth.
   integer, parameter :: most_frames = 120
-  character(len=*), parameter :: grey = '#d0d0d0', white = '#ffffff', none = ''
+  !> Dots for each px of other pictures: gnuplot does not smooth the edges of a GIF, what shows it smaller does.
+  real(wp), parameter :: zoom = 1.5_wp
+  !> Any font without serifs that can be scaled [pt].
+  character(len=*), parameter :: font = 'sans,12'
+  character(len=*), parameter :: grey = '#d0d0d0', white = '#ffffff', hatch = '#555555', none = ''
   !> Steps of a quarter of a circle.
   integer, parameter :: quarter = 4
 
@@ -57,8 +62,9 @@ contains
     frames = (film%n_frames + stride - 1)/stride
     delay = max(2, nint(100.0_wp*duration_of(film)/frames))
     script%symbol = projection%symbol
-    size = to_text(nint(projection%width))//','//to_text(nint(projection%height))
-    call script%page%line('set terminal gif animate delay '//to_text(delay)//' loop 0 size '//size//' noenhanced medium')
+    size = to_text(nint(zoom*projection%width))//','//to_text(nint(zoom*projection%height))
+    call script%page%line('set terminal gif animate delay '//to_text(delay)//' loop 0 size '//size//' noenhanced font "'// &
+                          font//'" linewidth '//decimal(zoom))
     call script%page%line('set output '//quoted_path(path))
     call script%page%line('unset border; unset tics; unset key; set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0')
     call script%page%line('set xrange [0:'//decimal(projection%width)//']; set yrange ['//decimal(projection%height)//':0]')
@@ -238,13 +244,17 @@ contains
     real(wp), intent(in) :: at(2)
     type(script_type), intent(inout) :: script
     real(wp) :: s, down
+    integer :: i
 
     s = script%symbol
     select case (item%style)
     case (as_stand)
       down = sign(15.0_wp, item%shift(2))*s
       call script%polygon(reshape([at, at + [-9.0_wp*s, down], at + [9.0_wp*s, down]], [2, 3]), '#e8e8e8', ink, 1.5_wp)
-      call script%polyline(reshape([at + [-14.0_wp*s, down], at + [14.0_wp*s, down]], [2, 2]), ink, 2.0_wp)
+      call script%polyline(reshape([at + [-14.0_wp*s, down], at + [14.0_wp*s, down]], [2, 2]), ink, 1.5_wp)
+      do i = -2, 2
+        call script%polyline(reshape([at + [6*i*s, down], at + [(6*i - 4)*s, 1.4_wp*down]], [2, 2]), hatch, 1.0_wp)
+      end do
     case (as_ring)
       call script%circle(at, 5.0_wp*s, white, ink, 1.5_wp)
     case (as_ball)
@@ -268,7 +278,15 @@ contains
 
     colour = ink
     if (item%link > 0) colour = dark_colours(colour_of(item%link))
-    call put_text(item%text, at, trim(merge('left ', 'right', item%shift(1) >= 0.0_wp)), colour, script)
+    if (item%style == as_input) colour = dark_colours(2)
+    select case (item%style)
+    case (as_name)
+      call put_text(item%text, at, 'left', colour, script)
+    case (as_number)
+      call put_text(item%text, at, 'center', colour, script)
+    case default
+      call put_text(item%text, at, 'right', colour, script)
+    end select
   end subroutine put_label
 
   subroutine put_text(text, at, side, colour, script)
