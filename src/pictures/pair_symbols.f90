@@ -12,12 +12,11 @@ module mech9_pair_symbols
   use mech9_pair_axes, only: turning, sliding, screwing, free
   use mech9_skeleton, only: skeleton_type, place_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, open_path, facing_path, segments, spring, mark, label, in_guide, in_ground, in_hatch, &
-                         in_block, in_pin, in_pin_end, in_cross, in_thread, as_stand, as_ring, as_ball, as_free, &
-                         as_coordinate, as_input
+  use mech9_scene, only: scene_type, open_path, facing_path, segments, spring, mark, in_guide, in_ground, in_hatch, &
+                         in_block, in_pin, in_pin_end, in_cross, in_thread, as_stand, as_ring, as_ball, as_free
   implicit none
   private
-  public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_coordinate_names
+  public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, names_of
 
   !> Nodes of pairs, and which pairs are one joint.
   type :: symbols_type
@@ -269,6 +268,7 @@ contains
     end if
   end subroutine add_joint
 
+  !> The names of the coordinates of some pairs.
   pure function names_of(pairs) result(names)
     integer, intent(in) :: pairs(:)
     character(len=:), allocatable :: names
@@ -358,20 +358,4 @@ contains
       end do
     end associate
   end subroutine add_pin
-
-  !> The names of the coordinates beside their joints.
-  subroutine add_coordinate_names(independent, symbols, scene)
-    logical, intent(in) :: independent(:)         !< (M)
-    type(symbols_type), intent(in) :: symbols
-    type(scene_type), intent(inout) :: scene
-    integer, allocatable :: pairs(:)
-    integer :: joint, k
-
-    do joint = 1, size(symbols%joint)
-      if (symbols%joint(joint) /= joint) cycle
-      pairs = pack([(k, k=1, size(symbols%joint))], symbols%joint == joint)
-      call scene%add_item(label, merge(as_input, as_coordinate, any(independent(pairs))), symbols%node(pairs(1):pairs(1)), &
-                          text=names_of(pairs), shift=[-8.0_wp, merge(16.0_wp, -8.0_wp, symbols%hangs(joint))])
-    end do
-  end subroutine add_coordinate_names
 end module mech9_pair_symbols

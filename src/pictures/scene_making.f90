@@ -1,6 +1,6 @@
 !> From a mechanism and its film to a scene: paths and guides, links, springs, pairs, points and labels.
-!> Uses kinds, text, mechanism, spring_load, film, pair_axes, skeleton, projection, scene,
-!> scene_paths, link_shapes, pair_symbols.
+!> Uses kinds, text, mechanism, spring_load, film, pair_axes, skeleton, projection, scene, scene_paths, link_shapes,
+!> label_places, pair_symbols, coordinate_names.
 module mech9_scene_making
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -14,7 +14,9 @@ module mech9_scene_making
                          in_tube, in_spring, as_dot, as_centre, as_name, as_number
   use mech9_scene_paths, only: add_paths, add_curves
   use mech9_link_shapes, only: distinct_points, find_shape
-  use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_coordinate_names
+  use mech9_label_places, only: number_place
+  use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
+  use mech9_coordinate_names, only: add_coordinate_names
   implicit none
   private
   public :: make_scene
@@ -68,7 +70,7 @@ contains
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
     scene%last_sorted = scene%n_items
     call add_points(mechanism, with_masses, scene)
-    call add_names(mechanism, skeleton, symbols, outlines, scene)
+    call add_names(mechanism, film, skeleton, projection, symbols, outlines, scene)
   end subroutine make_scene
 
   !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
@@ -260,29 +262,27 @@ contains
     end do
   end subroutine add_points
 
-  !> Numbers of the links in their middles, and names of the coordinates beside their pairs.
-  subroutine add_names(mechanism, skeleton, symbols, outlines, scene)
+  !> Numbers of the links, and names of the coordinates beside their pairs.
+  subroutine add_names(mechanism, film, skeleton, projection, symbols, outlines, scene)
     type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
     type(symbols_type), intent(in) :: symbols
     type(outline_type), intent(in) :: outlines(:)
     type(scene_type), intent(inout) :: scene
-    real(wp) :: middle(3)
     integer :: link, node
 
     if (size(outlines) <= most_labelled) then
       do link = 2, size(outlines)
         associate (outline => outlines(link))
           if (outline%count < 2) cycle
-          ! of a bar not quite the middle, where the mass centre is often
-          middle = sum(outline%points(:, :outline%count), 2)/outline%count
-          if (outline%count == 2) middle = 0.6_wp*outline%points(:, 1) + 0.4_wp*outline%points(:, 2)
-          call scene%add_node(link, middle, node)
+          call scene%add_node(link, number_place(outline%points(:, :outline%count), same*skeleton%size), node)
           call scene%add_item(label, as_number, [node], link, text=to_text(link))
         end associate
       end do
     end if
     if (size(skeleton%places) <= most_labelled) &
-      call add_coordinate_names(mechanism%structure%independent, symbols, scene)
+      call add_coordinate_names(mechanism%structure%independent, film, projection, symbols, scene)
   end subroutine add_names
 end module mech9_scene_making

@@ -270,6 +270,13 @@ def check_moving_svg(checks, programs, folder):
     checks.equal({len(one.get('values').split(';')) for one in moving}, {31}, 'each has a value for each frame')
     checks.equal({(one.get('repeatCount'), one.get('dur')) for one in moving}, {('indefinite', moving[0].get('dur'))},
                  'and all begin again together')
+    # a viewer that plays nothing shows what an element says itself
+    for group in svg.iter(SVG + 'g'):
+        for one in group.findall(SVG + 'animateTransform'):
+            checks.equal(group.get('transform'), f"translate({one.get('values').split(';')[0]})", 'a place of its own: the first')
+    for path in svg.iter(SVG + 'path'):
+        for one in path.findall(SVG + 'animate'):
+            checks.equal(path.get('d'), one.get('values').split(';')[0], 'a form of its own: the first')
 
 
 def check_thinning(checks, programs, folder):
