@@ -49,6 +49,7 @@ module mech9_integrator
   contains
     procedure :: create
     procedure :: step
+    procedure :: interpolate
     procedure :: correct
     procedure :: restart
     procedure :: limit
@@ -134,30 +135,44 @@ contains
   end subroutine check_tolerances
 
   !> One accepted step from where the integration stands, towards t_stop and never beyond; the last one
-  !> ends exactly there. On failure t and y are those of the last accepted step.
-  subroutine step(self, t_stop, t, y, err)
+  !> ends exactly there. With `farthest` a step may go on beyond t_stop, to there at most. On failure t and y are
+  !> those of the last accepted step.
+  subroutine step(self, t_stop, t, y, err, farthest)
     class(integrator_type), intent(inout) :: self
     real(wp), intent(in) :: t_stop                      !< may lie before the start [s]
     real(wp), intent(inout) :: t                        !< where it ends [s]
     real(wp), intent(inout) :: y(:)
     type(error_type), allocatable, intent(out) :: err
-    real(wp) :: t_new
+    real(wp), intent(in), optional :: farthest          !< in the same direction [s]
+    real(wp) :: t_new, t_last
 
     t = self%t
     y = self%y
     if (.not. abs(t_stop - self%t) > 0.0_wp) return
+    t_last = t_stop
+    if (present(farthest)) t_last = farthest
     call count_steps(self, t_stop, err)
-    if (.not. allocated(err)) call take_step(self, t_stop, t_new, err)
+    if (.not. allocated(err)) call take_step(self, t_last, t_new, err)
     if (allocated(err)) return
     self%t = t_new
     self%y = self%trial
     self%fresh = .false.
-    self%stopped = abs(t_new - t_stop) <= 0.0_wp
+    self%stopped = abs(t_new - t_last) <= 0.0_wp
     self%steps = self%steps + 1
     self%steps_to_stop = self%steps_to_stop + 1
     t = self%t
     y = self%y
   end subroutine step
+
+  !> What the method takes for y at a time within the last step, if it can tell; see its stepper.
+  subroutine interpolate(self, t, y, found)
+    class(integrator_type), intent(inout) :: self
+    real(wp), intent(in) :: t                           !< [s]
+    real(wp), intent(out) :: y(:)
+    logical, intent(out) :: found
+
+    call self%stepper%interpolate(t, y, found)
+  end subroutine interpolate
 
   !> Count the steps to each stop. Fails when there were too many.
   subroutine count_steps(self, t_stop, err)

@@ -1,5 +1,5 @@
 !> The motion as differential equations for an integrator. Uses the kinematics floor, mechanism,
-!> ode_system, dynamics_plan, lagrange_work, lagrange, generalized_forces.
+!> ode_system, dynamics_plan, expectation, lagrange_work, lagrange, generalized_forces.
 !>
 !> The vector that is integrated holds all coordinates and the rates of the independent ones. An
 !> evaluation takes the positions as they are, and the chains are closed after each accepted step:
@@ -16,6 +16,7 @@ module mech9_motion_system
   use mech9_planning, only: chain_names
   use mech9_ode_system, only: ode_system_type
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_expectation, only: expectation_type
   use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
   use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
   use mech9_generalized_forces, only: show_state
@@ -26,6 +27,8 @@ module mech9_motion_system
   !> Largest change of a coordinate, in its unit, by which closing may move what the integrator found:
   !> its error is far below; more, and the chains might close on another branch.
   real(wp), parameter :: trusted_correction = 0.02_wp
+  !> The same between two steps, where the position is known as well as at their ends.
+  real(wp), parameter :: trusted_between = 1.0e-3_wp
 
   type, extends(ode_system_type) :: motion_system_type
     type(mechanism_type) :: mechanism
@@ -42,8 +45,12 @@ module mech9_motion_system
     procedure :: vector
     procedure :: rate
     procedure :: settle
+    procedure :: close_near
+    procedure :: move_to
+    procedure :: resume
     procedure :: present
     procedure :: conditioning
+    procedure :: signs
   end type motion_system_type
 
 contains
@@ -145,27 +152,83 @@ contains
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: y(:)
     type(error_type), allocatable, intent(out) :: err
-    type(newton_outcome_type) :: outcome
-    integer :: b, i
+    integer :: failed, i
 
     call take(self, t, y)
-    do b = 1, size(self%plan%blocks)
-      call close_block(self%plan, self%plan%blocks(b), self%state, self%work%blocks(b), outcome, err)
-      if (allocated(err)) return
-      self%iterations = self%iterations + outcome%iterations
-      if (.not. outcome%converged .or. outcome%correction > trusted_correction) then
-        call raise(err, exit_singular, chain_names(self%plan%blocks(b))//' cannot be closed near the position at t = '// &
-                   to_text(t, 10)//' s')
-        return
-      end if
-    end do
+    call close_chains(self, trusted_correction, failed, err)
+    if (allocated(err)) return
+    if (failed > 0) then
+      call raise(err, exit_singular, chain_names(self%plan%blocks(failed))//' cannot be closed near the position at t = '// &
+                 to_text(t, 10)//' s')
+      return
+    end if
     do i = 1, self%plan%n_coordinates
       y(i) = self%state%q(i)
     end do
     self%just_settled = .true.
   end subroutine settle
 
-  !> At the start or after `settle`: all velocities and accelerations of the state, and the state as
+  !> Close the chains of the present state. `failed` is the block that does not close, or only by a change of
+  !> more than the trusted one; 0 where all do.
+  subroutine close_chains(self, trusted, failed, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: trusted              !< change of a coordinate, in its unit
+    integer, intent(out) :: failed
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: outcome
+    integer :: b
+
+    failed = 0
+    do b = 1, size(self%plan%blocks)
+      call close_block(self%plan, self%plan%blocks(b), self%state, self%work%blocks(b), outcome, err)
+      if (allocated(err)) return
+      self%iterations = self%iterations + outcome%iterations
+      failed = b
+      if (.not. outcome%converged .or. outcome%correction > trusted) return
+    end do
+    failed = 0
+  end subroutine close_chains
+
+  !> A state between two settled ones, and all its velocities and accelerations: y is where the integrator takes it to
+  !> be, and the chains are closed there. `ok` is false where they are not certain to close on the same branch.
+  subroutine close_near(self, t, y, ok, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    logical, intent(out) :: ok
+    type(error_type), allocatable, intent(out) :: err
+    integer :: failed
+
+    ok = .false.
+    call take(self, t, y)
+    call close_chains(self, trusted_between, failed, err)
+    if (allocated(err) .or. failed > 0) return
+    call self%present(err)
+    ok = .not. allocated(err)
+  end subroutine close_near
+
+  !> A settled state, and all its velocities and accelerations.
+  subroutine move_to(self, t, y, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)                 !< as settled
+    type(error_type), allocatable, intent(out) :: err
+
+    call take(self, t, y)
+    call place_frames(self%plan, 1, self%plan%n_coordinates, self%state, err)
+    if (.not. allocated(err)) call self%present(err)
+  end subroutine move_to
+
+  !> Go on with what was expected before steps that led aside.
+  pure subroutine resume(self, expectation)
+    class(motion_system_type), intent(inout) :: self
+    type(expectation_type), intent(in) :: expectation
+
+    self%work%expectation = expectation
+    self%just_settled = .false.
+  end subroutine resume
+
+  !> With all frames in place: all velocities and accelerations of the state, and the state as
   !> loads see it in work%view, for results.
   subroutine present(self, err)
     class(motion_system_type), intent(inout) :: self
@@ -188,4 +251,16 @@ contains
       conditioning = min(conditioning, self%work%blocks(b)%equations%conditioning())
     end do
   end function conditioning
+
+  !> Of the determinants of the blocks' Jacobians at the last evaluation; those of a branch change in singular positions
+  !> only.
+  subroutine signs(self, found)
+    class(motion_system_type), intent(inout) :: self
+    integer, intent(out) :: found(:)             !< (blocks)
+    integer :: b
+
+    do b = 1, size(self%work%blocks)
+      found(b) = self%work%blocks(b)%equations%determinant_sign()
+    end do
+  end subroutine signs
 end module mech9_motion_system

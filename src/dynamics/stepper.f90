@@ -27,6 +27,7 @@ module mech9_stepper
   type, abstract :: stepper_type
   contains
     procedure(advance_interface), deferred :: advance
+    procedure(interpolate_interface), deferred :: interpolate
     procedure(correct_interface), deferred :: correct
     procedure(restart_interface), deferred :: restart
     procedure(limit_interface), deferred :: limit
@@ -46,6 +47,16 @@ module mech9_stepper
       real(wp), intent(out) :: y(:)
       integer, intent(out) :: outcome
     end subroutine advance_interface
+
+    !> What the method itself takes for y at a time within the last step; `found` is false where it has no way to
+    !> tell it as accurately as the ends of steps.
+    subroutine interpolate_interface(self, t, y, found)
+      import :: stepper_type, wp
+      class(stepper_type), intent(inout) :: self
+      real(wp), intent(in) :: t                !< [s]
+      real(wp), intent(out) :: y(:)
+      logical, intent(out) :: found
+    end subroutine interpolate_interface
 
     !> Go on from y, changed a little, instead of what the last step gave.
     subroutine correct_interface(self, t, y, outcome)

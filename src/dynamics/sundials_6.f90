@@ -1,8 +1,10 @@
-!> What is particular to SUNDIALS 6: the modules of its parts, contexts, messages. Uses SUNDIALS' own modules.
+!> What is particular to SUNDIALS 6: the modules of its parts, contexts, messages. Uses short_vectors, SUNDIALS' own
+!> modules.
 module mech9_sundials_6
-  use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_int, c_int64_t, c_char, c_funloc
+  use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_int, c_int64_t, c_char, c_funloc, c_f_pointer
+  use mech9_short_vectors, only: linear_combination
   use fsundials_context_mod, only: FSUNContext_Create, FSUNContext_Free
-  use fsundials_nvector_mod, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy
+  use fsundials_nvector_mod, only: N_Vector, N_Vector_Ops, FN_VGetArrayPointer, FN_VDestroy
   use fsundials_matrix_mod, only: SUNMatrix, FSUNMatDestroy
   use fsundials_linearsolver_mod, only: SUNLinearSolver, FSUNLinSolFree
   use fsundials_nonlinearsolver_mod, only: SUNNonlinearSolver, FSUNNonlinSolFree
@@ -12,7 +14,8 @@ module mech9_sundials_6
   private
   public :: N_Vector, FN_VGetArrayPointer, FN_VDestroy, SUNMatrix, FSUNMatDestroy
   public :: SUNLinearSolver, FSUNLinSolFree, SUNNonlinearSolver, FSUNNonlinSolFree
-  public :: index_kind, last_stage_mistaken, open_context, close_context, silence_erkstep, silence_cvode
+  public :: index_kind, last_stage_mistaken, open_context, close_context, silence_erkstep, silence_cvode, &
+    quicken
 
   !> Kind of the integers that count the parts of vectors and matrices.
   integer, parameter :: index_kind = c_int64_t
@@ -60,6 +63,15 @@ contains
     nothing = c_null_ptr
     flag = FCVodeSetErrHandlerFn(memory, c_funloc(say_nothing), nothing)
   end subroutine silence_cvode
+
+  !> Let sums of this vector and of those made after it be formed our own way.
+  subroutine quicken(vector)
+    type(N_Vector), intent(inout) :: vector
+    type(N_Vector_Ops), pointer :: operations
+
+    call c_f_pointer(vector%ops, operations)
+    operations%nvlinearcombination = c_funloc(linear_combination)
+  end subroutine quicken
 
   !> Called by SUNDIALS with a message for the terminal; what it means is told by the flag it returns.
   subroutine say_nothing(code, from_module, from_function, message, context) bind(c)

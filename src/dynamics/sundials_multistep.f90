@@ -13,7 +13,7 @@ module mech9_sundials_multistep
   use fcvode_mod, only: FCVodeCreate, FCVodeFree, FCVodeInit, FCVodeReInit, FCVode, FCVodeSVtolerances, &
     FCVodeSetUserData, FCVodeSetLinearSolver, FCVodeSetNonlinearSolver, FCVodeSetJacFn, FCVodeSetMaxHnilWarns, &
     FCVodeSetMaxErrTestFails, FCVodeSetMaxConvFails, FCVodeSetInitStep, FCVodeSetMaxStep, FCVodeSetStopTime, &
-    FCVodeGetNonlinearSystemData, FCVodeGetCurrentStep, FCVodeGetLastStep, FCVodeGetLastOrder, &
+    FCVodeGetNonlinearSystemData, FCVodeGetDky, FCVodeGetCurrentStep, FCVodeGetLastStep, FCVodeGetLastOrder, &
     FCVodeGetNumErrTestFails, FCVodeGetNumStepSolveFails, &
     CV_ADAMS, CV_BDF, CV_ONE_STEP, CV_SUCCESS, CV_TSTOP_RETURN, CV_TOO_MUCH_ACC, CV_ERR_FAILURE, CV_CONV_FAILURE, &
     CV_LSETUP_FAIL, CV_LSOLVE_FAIL, CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, &
@@ -47,6 +47,7 @@ module mech9_sundials_multistep
     real(wp) :: last_step = 0.0_wp                                !< 0 before the first one since a restart [s]
   contains
     procedure :: advance
+    procedure :: interpolate
     procedure :: correct
     procedure :: restart
     procedure :: limit
@@ -216,6 +217,17 @@ contains
       meaning = refused
     end select
   end function meaning
+
+  !> By the polynomial through the values that the method goes on from.
+  subroutine interpolate(self, t, y, found)
+    class(multistep_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(out) :: y(:)
+    logical, intent(out) :: found
+
+    found = FCVodeGetDky(self%memory, t, 0_c_int, self%vector) == 0
+    y = self%values
+  end subroutine interpolate
 
   !> Keeps step and order.
   subroutine correct(self, t, y, outcome)

@@ -9,7 +9,7 @@ module mech9_sundials_runge_kutta
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     too_accurate, out_of_memory, refused
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, index_kind, last_stage_mistaken, &
-    open_context, close_context, silence_erkstep
+    open_context, close_context, silence_erkstep, quicken
   use mech9_sundials_system, only: system_box_type, evaluate_rate, settle_step
   use farkode_mod, only: FARKodeButcherTable_Create, FARKodeButcherTable_Free, ARK_SUCCESS, ARK_TSTOP_RETURN, &
     ARK_ONE_STEP, ARK_ERR_FAILURE, ARK_TOO_MUCH_ACC, ARK_RHSFUNC_FAIL, ARK_FIRST_RHSFUNC_ERR, ARK_REPTD_RHSFUNC_ERR, &
@@ -41,6 +41,7 @@ module mech9_sundials_runge_kutta
     real(wp) :: last_step = 0.0_wp    !< 0 before the first one [s]
   contains
     procedure :: advance
+    procedure :: interpolate
     procedure :: correct
     procedure :: restart
     procedure :: limit
@@ -73,6 +74,7 @@ contains
     if (.not. associated(stepper%vector)) return
     flag = FN_VEnableFusedOps_Serial(stepper%vector, 1_c_int)   ! a tenth to a fifth faster
     if (flag /= 0) return
+    call quicken(stepper%vector)
     stepper%values => FN_VGetArrayPointer(stepper%vector)
     stepper%values = y
     stepper%memory = FERKStepCreate(c_funloc(evaluate_rate), t, stepper%vector, stepper%context)
@@ -227,6 +229,17 @@ contains
       meaning = refused
     end select
   end function meaning
+
+  !> Not at the order of the method.
+  subroutine interpolate(self, t, y, found)
+    class(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(out) :: y(:)
+    logical, intent(out) :: found
+
+    y = self%values
+    found = abs(t - self%t) <= 0.0_wp
+  end subroutine interpolate
 
   !> Takes one evaluation of the rate that would not be needed otherwise.
   subroutine correct(self, t, y, outcome)

@@ -42,16 +42,19 @@ contains
   end subroutine build_hermite
 
   !> Values and first two derivatives at x.
-  pure subroutine evaluate(self, x, y, dy, ddy)
+  pure subroutine evaluate(self, x, y, dy, ddy, points)
     class(hermite_type), intent(in) :: self
     real(wp), intent(in) :: x
     real(wp), intent(out) :: y(:), dy(:), ddy(:)
-    integer :: i
+    integer, intent(in), optional :: points       !< of the polynomials through so many of the first points
+    integer :: i, n
 
+    n = size(self%x)
+    if (present(points)) n = 3*points
     y = 0.0_wp
     dy = 0.0_wp
     ddy = 0.0_wp
-    do i = size(self%x), 1, -1
+    do i = n, 1, -1
       ddy = ddy*(x - self%x(i)) + 2.0_wp*dy
       dy = dy*(x - self%x(i)) + y
       y = y*(x - self%x(i)) + self%d(:, i)

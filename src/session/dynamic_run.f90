@@ -13,7 +13,9 @@ module mech9_dynamic_run
   use mech9_tracking, only: largest_closure
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_coordinate_choice, only: best_independent, with_independent
+  use mech9_expectation, only: expectation_type
   use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_between_steps, only: between_steps_type
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_columns, only: kinematic_columns
   use mech9_recording, only: motion_source_type
@@ -41,7 +43,15 @@ module mech9_dynamic_run
     real(wp), allocatable :: y(:)                 !< the integrated vector
     real(wp), allocatable :: coefficients(:, :)   !< a_pr at the start, lower triangle
     type(event_type), allocatable :: events(:)
-    real(wp) :: t = 0.0_wp
+    real(wp) :: t = 0.0_wp                        !< of the end of the last step [s]
+    real(wp) :: end = 0.0_wp                      !< steps may go to there at most [s]
+    type(between_steps_type) :: between           !< outputs inside a step
+    type(integrator_type) :: aside                !< goes onto outputs that are not certain otherwise
+    real(wp), allocatable :: y_aside(:)
+    real(wp) :: t_aside = 0.0_wp                  !< where it stands [s]
+    logical :: has_aside = .false.
+    logical :: steps_onto = .false.               !< no step may go beyond the next output
+    real(wp) :: conditioning_here = 0.0_wp        !< at the end of the last step
     real(wp) :: look_below = doubtful             !< conditioning at which other coordinates are looked for
     logical :: started = .false.
     type(integration_statistics_type) :: before   !< of the integrators before the present one
@@ -53,8 +63,14 @@ module mech9_dynamic_run
     procedure :: row_at
     procedure :: statistics
     procedure :: close => close_run
+    procedure, private :: go_to
     procedure, private :: step
+    procedure, private :: look_between
+    procedure, private :: insert
+    procedure, private :: step_aside
+    procedure, private :: step_back
     procedure, private :: start_integrator
+    procedure, private :: create
     procedure, private :: stop_integrator
     procedure, private :: change_coordinates
   end type dynamic_run_type
@@ -100,6 +116,7 @@ contains
     if (mechanism%output%conditioning) &
       call run%columns%append('conditioning', '1', 'least singular value of the worst chains')
     run%t = mechanism%time%start
+    run%end = mechanism%time%end
     allocate (run%events(0))
     allocate (run%system)
     call set_motion_system(mechanism, plan, start, run%system, err)
@@ -117,11 +134,7 @@ contains
     integer :: used
 
     if (self%started) then
-      do while (abs(t - self%t) > 0.0_wp)
-        call self%step(t, err)
-        if (allocated(err)) return
-      end do
-      call self%system%present(err)
+      call self%go_to(t, err)
     else
       call self%start_integrator(err)
     end if
@@ -146,7 +159,30 @@ contains
     self%worst_closure = max(self%worst_closure, row(used + 4))
   end subroutine row_at
 
-  !> One accepted step towards t, with a change of coordinates before it where that helps.
+  !> The motion at time t, by steps up to there or beyond.
+  subroutine go_to(self, t, err)
+    class(dynamic_run_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    type(error_type), allocatable, intent(out) :: err
+    logical :: found
+
+    self%steps_onto = .false.
+    do
+      do while ((t - self%t)*sign(1.0_wp, self%end - self%system%mechanism%time%start) > 0.0_wp)
+        call self%step(t, err)
+        if (allocated(err)) return
+      end do
+      if (.not. abs(t - self%t) > 0.0_wp) exit
+      call self%look_between(t, found)
+      if (found) return
+      call self%step_back(t, err)
+      if (allocated(err)) return
+    end do
+    call self%system%move_to(t, self%y, err)
+  end subroutine go_to
+
+  !> One accepted step towards t, with a change of coordinates before it where that helps. It may go beyond, but near
+  !> a singular position of the independent coordinates, where outputs are ends of steps.
   subroutine step(self, t, err)
     class(dynamic_run_type), intent(inout) :: self
     real(wp), intent(in) :: t
@@ -154,14 +190,19 @@ contains
     type(error_type), allocatable :: failure
     logical :: changed
 
-    if (self%system%conditioning() > doubtful) self%look_below = doubtful
-    if (self%system%conditioning() < self%look_below) then
+    if (self%conditioning_here > doubtful) self%look_below = doubtful
+    if (self%conditioning_here < self%look_below) then
       call self%change_coordinates(changed, err)
       if (allocated(err)) return
     end if
-    self%system%refuse_below = merge(refused, 0.0_wp, self%system%conditioning() > doubtful)
-    call self%integrator%step(t, self%t, self%y, failure)
-    if (.not. allocated(failure)) return
+    self%system%refuse_below = merge(refused, 0.0_wp, self%conditioning_here > doubtful)
+    call self%integrator%step(t, self%t, self%y, failure, &
+                              merge(self%end, t, self%conditioning_here > doubtful .and. .not. self%steps_onto))
+    if (.not. allocated(failure)) then
+      self%conditioning_here = self%system%conditioning()
+      call self%between%add(self%system, self%t, self%y)
+      return
+    end if
     ! perhaps the integrator stopped at a singular position of these coordinates only
     if (failure%code == exit_singular .or. failure%code == exit_integrator) then
       call self%change_coordinates(changed, err)
@@ -170,32 +211,147 @@ contains
     call move_alloc(failure, err)
   end subroutine step
 
+  !> The motion at a time within the last step: as the method tells it, or by the ends of the last steps, or with points
+  !> between them, or by steps onto it. `found` is false where none of these leads there.
+  subroutine look_between(self, t, found)
+    class(dynamic_run_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    logical, intent(out) :: found
+    type(error_type), allocatable :: err
+    real(wp) :: y(size(self%y))
+
+    found = .false.
+    if (self%between%crosses()) return
+    call self%integrator%interpolate(t, y, found)
+    if (.not. found) call self%between%find(self%system, t, y, found, err)
+    if (.not. (found .or. self%between%count_inserted() > 0)) then
+      call self%insert(0.5_wp, err)
+      if (.not. allocated(err)) call self%between%find(self%system, t, y, found, err)
+    end if
+    if (.not. (found .or. allocated(err) .or. self%between%count_inserted() > 1)) then
+      call self%insert(0.25_wp, err)
+      if (.not. allocated(err)) call self%insert(0.75_wp, err)
+      if (.not. allocated(err)) call self%between%find(self%system, t, y, found, err)
+    end if
+    if (allocated(err)) return
+    if (found) call self%system%close_near(t, y, found, err)
+    if (found) found = self%between%agrees(self%system)
+    if (found) return
+    call self%step_aside(t, err)
+    if (.not. allocated(err)) call self%system%move_to(t, self%y_aside, err)
+    found = .not. allocated(err)
+  end subroutine look_between
+
+  !> Work out a point that divides the last step.
+  subroutine insert(self, part, err)
+    class(dynamic_run_type), intent(inout) :: self
+    real(wp), intent(in) :: part
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: from, y(size(self%y))
+
+    call self%between%start_of_step(from, y)
+    call self%step_aside(from + part*(self%t - from), err)
+    if (.not. allocated(err)) call self%between%insert(self%t_aside, self%y_aside)
+  end subroutine insert
+
+  !> Steps to a time within the last step, from its start or from where the last such steps ended.
+  subroutine step_aside(self, t, err)
+    class(dynamic_run_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    type(error_type), allocatable, intent(out) :: err
+    type(expectation_type) :: expectation
+    real(wp) :: from, y(size(self%y))
+    logical :: goes_on          !< it stands between the start of the step and t
+
+    expectation = self%system%work%expectation
+    call self%between%start_of_step(from, y)
+    goes_on = self%has_aside .and. (self%t_aside - from)*(t - self%t_aside) >= 0.0_wp
+    if (.not. self%has_aside) call self%create(self%aside, from, y, err)
+    self%has_aside = .true.
+    if (.not. (goes_on .or. allocated(err))) then
+      call self%aside%restart(from, y, err, first_step=t - from)
+      self%t_aside = from
+      self%y_aside = y
+    end if
+    do while (.not. allocated(err) .and. abs(t - self%t_aside) > 0.0_wp)
+      call self%aside%step(t, self%t_aside, self%y_aside, err)
+    end do
+    call self%system%resume(expectation)
+  end subroutine step_aside
+
+  !> Back to the start of the last step, to go onto time t within it.
+  subroutine step_back(self, t, err)
+    class(dynamic_run_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    type(error_type), allocatable, intent(out) :: err
+    type(expectation_type) :: nothing
+
+    self%steps_onto = .true.
+    call self%between%start_of_step(self%t, self%y)
+    call self%system%resume(nothing)
+    call self%system%move_to(self%t, self%y, err)
+    if (.not. allocated(err)) call self%integrator%restart(self%t, self%y, err, first_step=t - self%t)
+    if (allocated(err)) return
+    self%conditioning_here = self%system%conditioning()
+    call self%between%begin()
+    call self%between%add(self%system, self%t, self%y)
+  end subroutine step_back
+
   subroutine start_integrator(self, err)
     class(dynamic_run_type), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: err
-    real(wp), allocatable :: absolute(:)
 
     self%y = self%system%vector()
-    allocate (absolute(size(self%y)), source=self%system%mechanism%solver%absolute_tolerance)
-    associate (solver => self%system%mechanism%solver)
-      call self%integrator%create(self%system, solver%method, solver%relative_tolerance, absolute, self%t, self%y, err)
-      if (.not. allocated(err)) call self%integrator%limit(err, maximum_steps=solver%maximum_steps)
-    end associate
+    self%conditioning_here = self%system%conditioning()
+    call self%between%begin()
+    call self%between%add(self%system, self%t, self%y)
+    call self%create(self%integrator, self%t, self%y, err)
   end subroutine start_integrator
+
+  !> An integrator of the system, from (t, y).
+  subroutine create(self, integrator, t, y, err)
+    class(dynamic_run_type), intent(inout) :: self
+    type(integrator_type), intent(inout) :: integrator
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: absolute(size(y))
+
+    associate (solver => self%system%mechanism%solver)
+      absolute = solver%absolute_tolerance
+      call integrator%create(self%system, solver%method, solver%relative_tolerance, absolute, t, y, err)
+      if (.not. allocated(err)) call integrator%limit(err, maximum_steps=solver%maximum_steps)
+    end associate
+  end subroutine create
 
   !> What all integrators of the run took together.
   function statistics(self) result(all)
     class(dynamic_run_type), intent(inout) :: self
     type(integration_statistics_type) :: all
 
-    all = self%integrator%statistics()
-    all%steps = all%steps + self%before%steps
-    all%rate_evaluations = all%rate_evaluations + self%before%rate_evaluations
-    all%jacobian_evaluations = all%jacobian_evaluations + self%before%jacobian_evaluations
-    all%error_test_failures = all%error_test_failures + self%before%error_test_failures
-    all%convergence_failures = all%convergence_failures + self%before%convergence_failures
-    all%refusals = all%refusals + self%before%refusals
+    all = self%before
+    call add_statistics(self%integrator, .true., all)
+    call add_statistics(self%aside, .false., all)
   end function statistics
+
+  !> Add what an integrator took.
+  subroutine add_statistics(integrator, goes_on, all)
+    type(integrator_type), intent(inout) :: integrator
+    logical, intent(in) :: goes_on        !< its steps are those of the motion
+    type(integration_statistics_type), intent(inout) :: all
+    type(integration_statistics_type) :: own
+
+    own = integrator%statistics()
+    all%rate_evaluations = all%rate_evaluations + own%rate_evaluations
+    all%jacobian_evaluations = all%jacobian_evaluations + own%jacobian_evaluations
+    all%error_test_failures = all%error_test_failures + own%error_test_failures
+    all%convergence_failures = all%convergence_failures + own%convergence_failures
+    all%refusals = all%refusals + own%refusals
+    if (.not. goes_on) return
+    all%steps = all%steps + own%steps
+    all%last_order = own%last_order
+    all%last_step = own%last_step
+  end subroutine add_statistics
 
   !> Keep its counts and give back what it holds.
   subroutine stop_integrator(self)
@@ -203,6 +359,8 @@ contains
 
     self%before = self%statistics()
     call self%integrator%destroy()
+    call self%aside%destroy()
+    self%has_aside = .false.
   end subroutine stop_integrator
 
   !> Go on in better conditioned independent coordinates, if there are any.

@@ -13,6 +13,7 @@ program test_integrator_steps
 
   do i = 1, size(integration_methods)
     call check_stops(test, trim(integration_methods(i)%name))
+    call check_inside_steps(test, trim(integration_methods(i)%name))
     call check_short_rest(test, trim(integration_methods(i)%name))
     call check_turning_back(test, trim(integration_methods(i)%name))
     call check_settling(test, i)
@@ -60,6 +61,47 @@ contains
       call integrator%destroy()
     end do
   end subroutine check_stops
+
+  !> Steps may pass a stop, up to where they are told. What a method tells of the orbit inside a step is as good as the
+  !> ends of the step, but for ten times the error that a step may make, relative and absolute.
+  subroutine check_inside_steps(test, method)
+    type(tester_type), intent(inout) :: test
+    character(len=*), intent(in) :: method
+    type(orbit_type), target :: orbit
+    type(integrator_type) :: integrator
+    type(error_type), allocatable :: err
+    real(wp), parameter :: tolerance = 1.0e-8_wp
+    real(wp) :: y(4), inside(4), t, t_before, error, error_before, worst
+    logical :: found, passed
+    integer :: i
+
+    t = 0.0_wp
+    y = orbit_at(0.5_wp, t)
+    call integrator%create(orbit, method, tolerance, spread(tolerance, 1, 4), t, y, err)
+    call test%no_error(err, 'an integration is created')
+    passed = .false.
+    worst = 0.0_wp
+    error = 0.0_wp
+    do while (t < 6.0_wp .and. .not. allocated(err))
+      t_before = t
+      error_before = error
+      call integrator%step(t + 1.0e-9_wp, t, y, err, farthest=10.0_wp)
+      passed = passed .or. t > t_before + 1.0e-3_wp
+      error = maxval(abs(y - orbit_at(0.5_wp, t)))
+      do i = 1, 4
+        call integrator%interpolate(t - 0.2_wp*i*(t - t_before), inside, found)
+        if (.not. found) exit
+        worst = max(worst, maxval(abs(inside - orbit_at(0.5_wp, t - 0.2_wp*i*(t - t_before)))) - max(error, error_before))
+      end do
+    end do
+    call test%no_error(err, method//' steps beyond a stop')
+    call test%is_true(passed, method//' passes a stop where it may')
+    call test%is_true(found .eqv. (method == 'adams' .or. method == 'bdf'), method//' tells what is inside steps or does not')
+    call test%near(max(worst, 0.0_wp), 0.0_wp, 20.0_wp*tolerance, method//' is as accurate inside steps')
+    call integrator%interpolate(t, inside, found)
+    call test%is_true(found .and. .not. any(abs(inside - y) > 1.0e-15_wp), method//' tells the end of a step')
+    call integrator%destroy()
+  end subroutine check_inside_steps
 
   !> A stop just behind a natural step does not lead to a very short step, from which a method would need
   !> many to recover.
