@@ -3,15 +3,17 @@
 module mech9_block_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_least_squares, only: nearly_dependent
+  use mech9_least_squares, only: least_squares_type, nearly_dependent
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, acceleration_known
+  use mech9_planar_motion, only: planar_motion_type
+  use mech9_planar_closure, only: planar_bias_rates
   use mech9_motion, only: spread_velocities, spread_accelerations
   use mech9_closure, only: closure_rates
   use mech9_solver, only: block_work_type, factorize_block
   use mech9_dynamics_plan, only: dynamics_plan_type
-  use mech9_jacobian, only: find_jacobian, noise_of_rates
-  use mech9_planar_block, only: fill_columns, add_earlier, move_frames
+  use mech9_jacobian, only: jacobian_type, find_jacobian, noise_of_rates
+  use mech9_planar_block, only: planar_block_type, fill_columns, add_earlier, move_frames
   use mech9_lagrange_work, only: lagrange_work_type
   implicit none
   private
@@ -39,11 +41,7 @@ contains
         return
       end if
       if (plan%planar%used) then
-        associate (flat => dynamics%planar_blocks(b), a => work%blocks(b)%equations%a)
-          call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, &
-                            state%planar%pose, state%planar%slide, plan%length, size(a, 1), size(a, 2), a)
-        end associate
-        call work%blocks(b)%equations%factorize()
+        call factorize_in_plane(plan, dynamics%planar_blocks(b), state%planar, work%blocks(b)%equations)
       else
         call factorize_block(plan, block, state, work%blocks(b))
       end if
@@ -51,7 +49,8 @@ contains
       if (conditioning < singular) then
         call raise(err, exit_singular, 'a closed chain is in a singular position for these independent coordinates')
       else if (plan%planar%used .and. conditioning >= nearly_dependent) then
-        call move_in_plane(plan, dynamics, b, state, work)
+        call move_in_plane(plan, dynamics, block, dynamics%planar_blocks(b), state, work%jacobian, work%sides, &
+                           work%blocks(b))
       else
         call expect(state%t, work)
         call move_as_expected(plan, dynamics, b, state, work)
@@ -68,42 +67,61 @@ contains
     work%expects = .true.
   end subroutine expect
 
+  !> The Jacobian of a block in planar arithmetic, factorized.
+  subroutine factorize_in_plane(plan, flat, motion, equations)
+    type(plan_type), intent(in) :: plan
+    type(planar_block_type), intent(in) :: flat
+    type(planar_motion_type), intent(in) :: motion
+    type(least_squares_type), intent(inout) :: equations
+
+    call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, motion%pose, &
+                      motion%slide, plan%length, equations%m, equations%n, equations%a)
+    call equations%factorize()
+  end subroutine factorize_in_plane
+
   !> In planar arithmetic, where nothing is lost in noise: each frame is moved once, then once more with the
   !> accelerations of the dependent coordinates.
-  subroutine move_in_plane(plan, dynamics, b, state, work)
+  subroutine move_in_plane(plan, dynamics, block, flat, state, jacobian, sides, work)
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(in) :: dynamics
-    integer, intent(in) :: b
+    type(block_type), intent(in) :: block
+    type(planar_block_type), intent(in) :: flat
     type(state_type), intent(inout) :: state
-    type(lagrange_work_type), intent(inout) :: work
-    integer :: i, j, k
+    type(jacobian_type), intent(inout) :: jacobian
+    real(wp), intent(inout), contiguous :: sides(:, :)   !< scratch
+    type(block_work_type), intent(inout) :: work
+    real(wp) :: unit
+    integer :: e, i, j, k, m, n_b
 
-    associate (block => plan%blocks(b), flat => dynamics%planar_blocks(b), equations => work%blocks(b)%equations, &
-               right => work%blocks(b)%right, change => work%blocks(b)%change, motion => state%planar)
-      call fill_columns(size(flat%independent), flat%independent, plan%n_coordinates, plan%planar%steps, motion%pose, &
-                        motion%slide, plan%length, size(work%sides, 1), flat%columns, work%sides)
-      call add_earlier(size(flat%earlier), flat%earlier, plan%n_coordinates, motion%pose, size(work%jacobian%b), &
-                       work%jacobian%flat, plan%length, size(work%sides, 1), flat%columns, work%sides)
-      do j = 1, flat%columns
-        k = plan%independent(dynamics%column(dynamics%first(block%first_step) + j - 1))
-        call equations%solve(work%sides(:block%equations, j), change)
-        do i = 1, size(block%unknowns)
-          work%jacobian%b(dynamics%first(block%unknowns(i)) + j - 1) = -change(i)*plan%unit_of(block%coordinates(i)) &
-                                                                       /plan%unit_of(k)
-        end do
-      end do
-      call find_rates(plan, dynamics, block, work%jacobian%b, state%dq)
-      call move_frames(plan%n_coordinates, size(work%jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
-                       dynamics%first, dynamics%parent_entry, dynamics%carries, work%jacobian%b, state%dq, motion%pose, &
-                       motion%slide, work%jacobian%flat, motion%velocity, motion%acceleration)
-      call closure_rates(plan, block, state, acceleration_known, right)
-      call equations%solve(right, change)
+    m = plan%n_coordinates
+    n_b = size(jacobian%b)
+    call fill_columns(size(flat%independent), flat%independent, m, plan%planar%steps, state%planar%pose, &
+                      state%planar%slide, plan%length, size(sides, 1), flat%columns, sides)
+    call add_earlier(size(flat%earlier), flat%earlier, m, state%planar%pose, n_b, jacobian%flat, plan%length, &
+                     size(sides, 1), flat%columns, sides)
+    do i = 1, size(block%unknowns)
+      state%dq(block%coordinates(i)) = 0.0_wp
+    end do
+    do j = 1, flat%columns
+      k = plan%independent(dynamics%column(dynamics%first(block%first_step) + j - 1))
+      unit = plan%unit_of(k)
+      call work%equations%solve(sides(:work%equations%m, j), work%change)
       do i = 1, size(block%unknowns)
-        k = block%coordinates(i)
-        state%ddq(k) = -change(i)*plan%unit_of(k)
+        e = dynamics%first(block%unknowns(i)) + j - 1
+        jacobian%b(e) = -work%change(i)*plan%unit_of(block%coordinates(i))/unit
+        state%dq(block%coordinates(i)) = state%dq(block%coordinates(i)) + jacobian%b(e)*state%dq(k)
       end do
-      call spread_accelerations(plan, block%first_step, block%last_step, state)
-    end associate
+    end do
+    call move_frames(m, n_b, plan%planar%steps, block%first_step, block%last_step, dynamics%first, &
+                     dynamics%parent_entry, dynamics%carries, jacobian%b, state%dq, state%planar%pose, &
+                     state%planar%slide, jacobian%flat, state%planar%velocity, state%planar%acceleration)
+    call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, work%right)
+    call work%equations%solve(work%right, work%change)
+    do i = 1, size(block%unknowns)
+      k = block%coordinates(i)
+      state%ddq(k) = -work%change(i)*plan%unit_of(k)
+    end do
+    call spread_accelerations(plan, block%first_step, block%last_step, state)
   end subroutine move_in_plane
 
   !> In general: from what is expected, which stays where the equations say no more than noise.

@@ -41,6 +41,7 @@ module mech9_dynamics_plan
     integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame
     logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
     logical, allocatable :: load_links(:)              !< (N) links whose motion loads ask for
+    integer, allocatable :: loaded(:)                  !< the same without link 1, which stays where it is
     logical :: open_chains = .false.                   !< no chain is closed: accelerations by articulated bodies
     type(articulated_type) :: articulated              !< of open chains, but for planar arithmetic
   end type dynamics_plan_type
@@ -64,6 +65,7 @@ contains
     do i = 1, size(mechanism%loads)
       call mechanism%loads(i)%load%mark_links(dynamics%load_links)
     end do
+    dynamics%loaded = pack([(i, i=2, plan%n_links)], dynamics%load_links(2:))
     call find_bodies(mechanism, plan, dynamics)
     call find_columns(plan, dynamics)
     if (plan%planar%used) call list_planar_blocks(plan, dynamics)

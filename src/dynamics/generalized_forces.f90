@@ -45,10 +45,10 @@ contains
     type(lagrange_work_type), intent(inout) :: work
     integer :: i, e, p, s
 
-    do i = 2, plan%n_links
-      if (.not. dynamics%load_links(i)) cycle
-      call add_forces_on_link(plan, dynamics, state, i, work)
+    do i = 1, size(dynamics%loaded)
+      call add_forces_on_link(plan, dynamics, state, dynamics%loaded(i), work)
     end do
+    if (.not. work%sum%any_generalized) return
     do i = 1, plan%n_coordinates
       if (.not. abs(work%sum%generalized(i)) > 0.0_wp) cycle
       s = plan%step_of(i)
@@ -103,15 +103,16 @@ contains
     type(dynamics_plan_type), intent(in) :: dynamics
     type(state_type), intent(in) :: state
     type(motion_view_type), intent(inout) :: view
-    integer :: i
+    integer :: i, k
 
     view%t = state%t
-    view%q = state%q
-    view%dq = state%dq
-    ! link 1 stays where it is
-    do i = 2, plan%n_links
-      if (.not. dynamics%load_links(i)) cycle
-      call link_motion(plan, state, i, view%links(i)%r, view%links(i)%p, view%links(i)%omega, view%links(i)%v)
+    do i = 1, plan%n_coordinates
+      view%q(i) = state%q(i)
+      view%dq(i) = state%dq(i)
+    end do
+    do i = 1, size(dynamics%loaded)
+      k = dynamics%loaded(i)
+      call link_motion(plan, state, k, view%links(k)%r, view%links(k)%p, view%links(k)%omega, view%links(k)%v)
     end do
   end subroutine show_state
 end module mech9_generalized_forces

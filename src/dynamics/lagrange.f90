@@ -55,6 +55,10 @@ contains
     call find_equations(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
     n = size(plan%independent)
+    if (n == 1 .and. work%coefficients(1, 1) > 0.0_wp) then
+      work%accelerations(1) = (work%forces(1) - work%velocity_terms(1))/work%coefficients(1, 1)
+      return
+    end if
     work%factors = work%coefficients
     call cholesky_factorize(n, work%factors, failed_at)
     if (failed_at > 0) then
@@ -101,7 +105,7 @@ contains
     type(lagrange_work_type), intent(inout) :: work
     logical, intent(out) :: found
     type(error_type), allocatable, intent(out) :: err
-    integer :: i, f
+    integer :: i, k, f
 
     found = .false.
     state%ddq = 0.0_wp
@@ -109,15 +113,15 @@ contains
     call spread_accelerations(plan, 1, plan%n_coordinates, state)
     call collect_loads(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    do i = 2, plan%n_links
-      if (.not. dynamics%load_links(i)) cycle
-      f = plan%frame_of(i)
+    do i = 1, size(dynamics%loaded)
+      k = dynamics%loaded(i)
+      f = plan%frame_of(k)
       if (plan%planar%used) then
-        work%planar%applied(:, f) = planar_wrench(plan%planar, i, state%planar%pose(:, f), work%sum%force(:, i), &
-                                                  work%sum%torque(:, i))
+        work%planar%applied(:, f) = planar_wrench(plan%planar, k, state%planar%pose(:, f), work%sum%force(:, k), &
+                                                  work%sum%torque(:, k))
       else
-        work%articulated%applied(1:3, f) = torque_on_frame(plan, state, i, work)
-        work%articulated%applied(4:6, f) = work%sum%force(:, i)
+        work%articulated%applied(1:3, f) = torque_on_frame(plan, state, k, work)
+        work%articulated%applied(4:6, f) = work%sum%force(:, k)
       end if
     end do
     if (plan%planar%used) then

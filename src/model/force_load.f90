@@ -41,7 +41,7 @@ contains
       call sum%add_force(state, self%link, self%position, state%turned(self%link, self%force))
       call sum%add_torque(self%link, state%turned(self%link, self%torque))
     else
-      call sum%add_force(state, self%link, self%position, self%force)
+      if (any(abs(self%force) > 0.0_wp)) call sum%add_force(state, self%link, self%position, self%force)
       call sum%add_torque(self%link, self%torque)
     end if
   end subroutine apply

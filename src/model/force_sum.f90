@@ -13,6 +13,7 @@ module mech9_force_sum
     real(wp), allocatable :: force(:, :)       !< (3,N) [N]
     real(wp), allocatable :: torque(:, :)      !< (3,N) [N m]
     real(wp), allocatable :: generalized(:)    !< (M) [N m or N]
+    logical :: any_generalized = .false.       !< since the last `clear`
     logical :: unanswered = .false.            !< no user's procedure is linked
   contains
     procedure :: clear
@@ -35,10 +36,22 @@ contains
   pure subroutine clear(self)
     class(force_sum_type), intent(inout) :: self
 
-    self%force = 0.0_wp
-    self%torque = 0.0_wp
-    self%generalized = 0.0_wp
+    call make_zero(size(self%force), self%force)
+    call make_zero(size(self%torque), self%torque)
+    if (self%any_generalized) call make_zero(size(self%generalized), self%generalized)
+    self%any_generalized = .false.
   end subroutine clear
+
+  ! Of known shape: no strides.
+  pure subroutine make_zero(n, numbers)
+    integer, intent(in) :: n
+    real(wp), intent(out) :: numbers(n)
+    integer :: i
+
+    do i = 1, n
+      numbers(i) = 0.0_wp
+    end do
+  end subroutine make_zero
 
   !> A force at a point of a link.
   pure subroutine add_force(self, state, link, point, force)
@@ -71,5 +84,6 @@ contains
     real(wp), intent(in) :: value         !< [N m, N]
 
     self%generalized(coordinate) = self%generalized(coordinate) + value
+    self%any_generalized = .true.
   end subroutine add_generalized
 end module mech9_force_sum

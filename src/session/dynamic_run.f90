@@ -28,6 +28,8 @@ module mech9_dynamic_run
   !> ... and taken if they are so many times better conditioned; else the next look is at so many
   !> times worse conditioning.
   real(wp), parameter :: worth_it = 4.0_wp
+  !> Above this conditioning a step may go beyond outputs: it will not come to a singular position unseen.
+  real(wp), parameter :: regular = 0.14_wp
   !> A step from a well conditioned state is made again, shorter, where it meets worse than this.
   real(wp), parameter :: refused = 0.03_wp
 
@@ -188,16 +190,21 @@ contains
     real(wp), intent(in) :: t
     type(error_type), allocatable, intent(out) :: err
     type(error_type), allocatable :: failure
-    logical :: changed
+    real(wp) :: farthest
+    logical :: changed, is_regular
 
-    if (self%conditioning_here > doubtful) self%look_below = doubtful
+    is_regular = self%conditioning_here > doubtful
+    if (is_regular) self%look_below = doubtful
     if (self%conditioning_here < self%look_below) then
       call self%change_coordinates(changed, err)
       if (allocated(err)) return
+      is_regular = self%conditioning_here > doubtful
     end if
-    self%system%refuse_below = merge(refused, 0.0_wp, self%conditioning_here > doubtful)
-    call self%integrator%step(t, self%t, self%y, failure, &
-                              merge(self%end, t, self%conditioning_here > doubtful .and. .not. self%steps_onto))
+    self%system%refuse_below = merge(refused, 0.0_wp, is_regular)
+    farthest = t
+    if (self%conditioning_here > regular .and. .not. self%steps_onto .and. (self%end - t)*(t - self%t) > 0.0_wp) &
+      farthest = self%end
+    call self%integrator%step(t, self%t, self%y, failure, farthest)
     if (.not. allocated(failure)) then
       self%conditioning_here = self%system%conditioning()
       call self%between%add(self%system, self%t, self%y)

@@ -80,7 +80,7 @@ def check_n_four_bar(checks, mech9d):
 def check_windows(checks, mech9d, data, n, reference, phi):
     """One number of windows. The energy of N windows is N/2 times that of two, and so is the limit of its error."""
     for tolerance, intervals, limit in (
-            (1e-3, 200, 1e-3),      # coarse: steps from output to output; the published limit of high precision
+            (1e-7, 200, 1e-3),      # the published limit of high precision, with outputs inside steps
             (1e-7, 10, 1e-3),       # steps as long as the tolerance lets them be: some 80, each of whose errors of the rate,
             (1e-10, 10, 1e-6),      # at 7/s, turns into one of the angle that is ten times as large: below 1e4 tolerances
             (1e-12, 200, 1e-8))[:2 if n > 100 else 4]:
@@ -112,7 +112,7 @@ def check_bricard(checks, mech9d):
     data, reference = example('bricard/bricard'), read_csv(os.path.join(REFERENCE, 'a04_bricard.csv'))
     columns = [('P3.x', 'x'), ('P3.y', 'y'), ('P3.z', 'z'), ('P3.vx', 'vx'), ('P3.vy', 'vy'), ('P3.vz', 'vz')]
     early = reference['t'] <= 2.5
-    for tolerance, intervals, limit in ((1e-3, 200, 1e-3), (1e-4, 4, 1e-1), (1e-7, 4, 1e-4), (1e-10, 4, 1e-7),
+    for tolerance, intervals, limit in ((1e-5, 200, 1e-3), (1e-4, 4, 1e-1), (1e-7, 4, 1e-4), (1e-10, 4, 1e-7),
                                         (1e-12, 200, 1e-11)):
         table, report = run_with(mech9d, data, tolerance, f'time.intervals={intervals}')
         why = f'tolerance {tolerance:.0e}, {intervals} intervals'
