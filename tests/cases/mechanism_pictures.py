@@ -10,6 +10,7 @@ import math
 import os
 import re
 import shutil
+import stat
 import subprocess
 import sys
 import tempfile
@@ -262,8 +263,9 @@ def check_page(checks, programs, folder, program, name, points):
 
 
 def check_moving_svg(checks, programs, folder):
-    path = os.path.join(folder, 'film.svg')
-    run(f'{programs}/mech9k', example('slider_crank'), '--no-write', '--quiet', '--animate', path, '--set', 'time.intervals=30')
+    path, table = os.path.join(folder, 'film.svg'), os.path.join(folder, 'moving.dat')
+    run(f'{programs}/mech9k', example('slider_crank'), '--table', table, '--quiet', '--animate', path,
+        '--set', 'time.intervals=30')
     svg = ElementTree.parse(path).getroot()
     moving = list(svg.iter(SVG + 'animate')) + list(svg.iter(SVG + 'animateTransform'))
     checks.true(len(moving) > 5, 'things move in a picture')
@@ -277,6 +279,16 @@ def check_moving_svg(checks, programs, folder):
     for path in svg.iter(SVG + 'path'):
         for one in path.findall(SVG + 'animate'):
             checks.equal(path.get('d'), one.get('values').split(';')[0], 'a form of its own: the first')
+    with open(table, encoding='utf-8') as file:
+        rows = read_table(file.read())
+    for point in 'BM':
+        label, = [group for group in svg.iter(SVG + 'g') if group.findtext(SVG + 'text') == point]
+        values = label.find(SVG + 'animateTransform').get('values').split(';')
+        drawn = np.array([[float(word) for word in value.split()] for value in values])
+        true = np.column_stack([rows[point + '.x'], -rows[point + '.y']])
+        drawn, true = drawn - drawn[0], true - true[0]
+        scale = np.sqrt(np.sum(drawn ** 2) / np.sum(true ** 2))
+        checks.true(np.abs(drawn - scale * true).max() < PX, f'{point} moves as in the table, frame after frame')
 
 
 def check_thinning(checks, programs, folder):
@@ -308,6 +320,23 @@ def gif_frames(data):
     return frames
 
 
+def check_gif_script(checks, words, folder):
+    """What gnuplot is told: the frames of the whole run, one after the other, each with its own picture."""
+    place = os.path.join(folder, 'told')
+    os.mkdir(place)
+    script, fake = os.path.join(place, 'script'), os.path.join(place, 'gnuplot')
+    with open(fake, 'w', encoding='utf-8') as file:
+        file.write(f'#!/bin/sh\n"{shutil.which("cat")}" > "{script}"\n')
+    os.chmod(fake, stat.S_IRWXU)
+    subprocess.run(words, env=dict(os.environ, PATH=place), stderr=subprocess.DEVNULL, timeout=60, check=True)
+    with open(script, encoding='utf-8') as file:
+        frames = file.read().split('unset object; unset label\n')[1:]
+    times = [float(re.search(r"set label 't = (\S+) s'", frame).group(1)) for frame in frames]
+    # a clock of four digits
+    checks.near(times, np.arange(7) / 6, 1e-4, 'its frames follow one another')
+    checks.equal(len({re.sub(r"'t = .*? s'", '', frame) for frame in frames}), 7, 'and no two are alike')
+
+
 def check_gif(checks, programs, folder):
     path = os.path.join(folder, 'film.gif')
     words = [f'{programs}/mech9k', example('fig1'), '--no-write', '--animate', path, '--set', 'time.intervals=20']
@@ -316,6 +345,7 @@ def check_gif(checks, programs, folder):
     checks.equal(done.returncode, 8, 'without gnuplot there is no GIF')
     checks.true('gnuplot' in done.stderr and '.html' in done.stderr, 'which is said, with what to do', done.stderr)
     checks.true(not os.path.exists(path), 'and no file is left')
+    check_gif_script(checks, words, folder)
     done = run(*words)
     if done.returncode == 8 and 'which is not here' in done.stderr:
         print('gnuplot is not installed: GIFs are not tested')

@@ -52,8 +52,9 @@ def curves_of(script, folder):
     checks.true(done.returncode == 0, f'{script}: gnuplot reads the script', done.stderr)
     curves = []
     for part in re.split(r'^# Curve \d.*$', read(os.path.join(folder, 'curves.txt')), flags=re.M)[1:]:
-        rows = [line.split()[:2] for line in part.splitlines() if line.strip() and not line.startswith('#')]
-        curves.append(np.array(rows, float))
+        rows = [line.split() for line in part.splitlines() if line.strip() and not line.startswith('#')]
+        checks.equal({row[2] for row in rows}, {'i'}, f'{script}: all points are inside the axes')
+        curves.append(np.array([row[:2] for row in rows], float))
     return curves
 
 
