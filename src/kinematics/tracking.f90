@@ -186,7 +186,9 @@ contains
       call step_towards(mechanism, plan, tracker%follower_type, t, stuck, refused_by, err)
       if (allocated(err)) exit
       if (stuck) then
-        tracker%ahead = finding_type(lost, refused_by, tracker%departure%t)
+        ! but for a coordinate that was seen to escape
+        if (tracker%ahead%kind /= escape .or. tracker%ahead%block /= refused_by) &
+          tracker%ahead = finding_type(lost, refused_by, tracker%departure%t)
         call refuse(mechanism, plan, tracker, err)
         exit
       end if
@@ -212,8 +214,10 @@ contains
 
     do b = 1, size(plan%blocks)
       if (size(plan%blocks(b)%unknowns) == 0) cycle
-      call find_escape(plan, tracker%follower_type, b, .false., tracker%ahead)
-      if (tracker%ahead%kind == escape) then
+      ahead%kind = nothing_special
+      call find_escape(plan, tracker%follower_type, b, .false., ahead)
+      if (ahead%kind == escape) then
+        tracker%ahead = ahead
         call refuse(mechanism, plan, tracker, err)
         return
       end if
@@ -229,7 +233,8 @@ contains
         if (allocated(err)) return
         if (.not. tracker%passage%exists) tracker%ahead%kind = lost
       end if
-      if (tracker%ahead%kind == lost .or. tracker%ahead%kind == escape) call refuse(mechanism, plan, tracker, err)
+      ! up to a dead point, or to where a coordinate that escapes is far away, it goes on
+      if (tracker%ahead%kind == lost) call refuse(mechanism, plan, tracker, err)
       if (allocated(err)) return
     end do
   end subroutine look_out

@@ -33,10 +33,10 @@ FOUR_BAR = """
 """
 
 
-def four_bar(lengths, drive, end, intervals, branch=1, more=''):
-    """A data file: ground, crank, coupler, rocker; the guesses are a closed position of the branch."""
+def guesses_of(lengths, angle, branch=1):
+    """The dependent coordinates of a four-bar (ground, crank, coupler, rocker) at a crank angle; in degrees, as it."""
     ground, crank, coupler, rocker = lengths
-    angle = math.radians(drive[0])
+    angle = math.radians(angle)
     x, y = ground - crank * math.cos(angle), -crank * math.sin(angle)
     diagonal = math.hypot(x, y)
     along = (coupler ** 2 - rocker ** 2 + diagonal ** 2) / (2 * diagonal)
@@ -44,8 +44,14 @@ def four_bar(lengths, drive, end, intervals, branch=1, more=''):
     px = crank * math.cos(angle) + (along * x - across * y) / diagonal
     py = crank * math.sin(angle) + (along * y + across * x) / diagonal
     link_3, link_4 = math.atan2(py - crank * math.sin(angle), px - crank * math.cos(angle)), math.atan2(py, px - ground)
-    guesses = (link_3 - angle, link_4 - link_3, link_4)
-    initial = '\n'.join(f'&initial coordinate={k}, position={math.degrees(guess)!r} /' for k, guess in zip((2, 3, 4), guesses))
+    return [math.degrees(guess) for guess in (link_3 - angle, link_4 - link_3, link_4)]
+
+
+def four_bar(lengths, drive, end, intervals, branch=1, more=''):
+    """A data file: ground, crank, coupler, rocker; the guesses are a closed position of the branch."""
+    ground, crank, coupler, rocker = lengths
+    initial = '\n'.join(f'&initial coordinate={k}, position={guess!r} /'
+                        for k, guess in zip((2, 3, 4), guesses_of(lengths, drive[0], branch)))
     return FOUR_BAR.format(ground=ground, crank=crank, coupler=coupler, rocker=rocker, initial=initial, independent=1,
                            drive=', '.join(repr(c) for c in drive), end=end, intervals=intervals, more=more)
 
@@ -84,6 +90,43 @@ def dead_point(s):
         s.checks.near(table['t'], expected, 1e-15, 'all results before the dead point are kept, none beyond')
         s.checks.true(all(np.all(np.isfinite(column)) for column in table.values()), 'and all are regular')
         s.checks.true(np.all(table['closure'] < 1e-13), 'and closed')
+
+
+# a block on a line across and in a slot of the crank, which guides it to r = 0.3/sin q1 from its pin
+SLOT = """
+&mechanism links=4, coordinates=4, angle_unit='deg' /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1 /
+&pair coordinate=4, links=1,4, kind='prismatic', point=0,0.3,0, moving_point=0,0,0, axis=1,0,0 /
+&initial coordinate=2, position=0.35 /
+&initial coordinate=3, position=-60 /
+&initial coordinate=4, position=0.17 /
+&drive coordinate=1, kind='polynomial', coefficients=60, 50 /
+&time start=0, end=3, intervals={intervals} /
+"""
+
+
+def escaping(s):
+    """Where slot and line become parallel the block is nowhere: it is followed far out, and then the end is told."""
+    for intervals in (3, 30, 3000):
+        done = s.run(SLOT.format(intervals=intervals), '--table', '-')
+        s.checks.equal(done.returncode, 6, 'a slide without bounds: exit code 6')
+        found = re.search(r'cannot go on beyond t = (\S+) s: closed chain 1 \(coordinates 2, 3, 4\) cannot follow up to '
+                          r'q1 = (\S+), where coordinate [24] grows beyond all bounds', done.stderr)
+        if s.checks.true(found, 'the message names time, chain, driven coordinate and what grows', done.stderr):
+            # seven digits are told
+            s.checks.near([float(found[1]) / 2.4, float(found[2]) / 180.0], 1.0, 1e-6, 'the end is at half a turn')
+        table = read_table(done.stdout)
+        # a hundred sizes of the mechanism out, at 0.35 m each, it is still half a degree from there
+        near = np.array([t for t in np.arange(intervals + 1) * 3.0 / intervals if 60.0 + 50.0 * t < 179.5])
+        if s.checks.true(len(table['t']) >= len(near), 'all results before it are kept', table['t'][-1]):
+            s.checks.near(table['t'][:len(near)], near, 1e-15, 'at their times')
+        # round-off of an angle times r/0.3 < 115
+        s.checks.near(table['q2'] * np.sin(np.radians(table['q1'])) / 0.3, 1.0, 1e-13, 'where slot and line cross')
+    done = s.run(SLOT.format(intervals=30), '--table', '-', '--set', 'time.end=2.3')
+    s.checks.equal(done.returncode, 0, 'a motion that ends before it is whole')
 
 
 def ranges(s):
@@ -145,16 +188,18 @@ def end_of_table(s):
         s.checks.true(False, 'it ends well', done.stderr)
 
 
-def least_singular_values(lengths, table):
-    """Of the loop's matrix at each row: turns about its pins as (rotation, velocity/size of the middle of the ground)."""
+def least_singular_values(lengths, table, first=1, at=0.0, width=None):
+    """Of the loop's matrix at each row: turns about its pins as (rotation, velocity/size of the middle of the frame, which
+    reaches from 0 to `width`). Its coordinates are `first` and the next ones, its crank's pin stands at x = `at`."""
     ground, crank, coupler, _ = lengths
-    size = max(lengths)
+    width = ground if width is None else width
+    size = max(*lengths, width)
     values = []
-    for q1, q2 in np.radians(np.stack([table['q1'], table['q2']], axis=1)):
-        pins = [crank * np.array([math.cos(q1), math.sin(q1)])]
+    for q1, q2 in np.radians(np.stack([table[f'q{first}'], table[f'q{first + 1}']], axis=1)):
+        pins = [np.array([at, 0.0]) + crank * np.array([math.cos(q1), math.sin(q1)])]
         pins.append(pins[0] + coupler * np.array([math.cos(q1 + q2), math.sin(q1 + q2)]))
-        pins.append(np.array([ground, 0.0]))
-        columns = [[1.0, pin[1] / size, -(pin[0] - 0.5 * ground) / size] for pin in pins]
+        pins.append(np.array([at + ground, 0.0]))
+        columns = [[1.0, pin[1] / size, -(pin[0] - 0.5 * width) / size] for pin in pins]
         values.append(np.linalg.svd(np.array(columns).T, compute_uv=False)[-1])
     return np.array(values)
 
@@ -180,8 +225,54 @@ def conditioning(s):
     """The column is the least singular value of the loop's matrix; the report has its least value and when."""
     text = four_bar(CONDITIONED, (0.0, 360.0), 1.0, 90, more='&output conditioning=.true. /')
     compare_conditioning(s, text, 'mech9k')
-    s.checks.true('conditioning' not in s.run(text, '--table', '-', '--set', 'output.conditioning=.false.').stdout,
-                  'no column unless it is asked for')
+    report = os.path.join(s.folder, 'report.json')
+    table = read_table(s.run(text, '--table', '-').stdout)
+    values = least_singular_values(CONDITIONED, table)
+    done = s.run(text, '--table', '-', '--report', report, '--set', 'output.conditioning=.false.')
+    s.checks.true('conditioning' not in done.stdout, 'no column unless it is asked for')
+    with open(report, encoding='utf-8') as file:
+        found = json.load(file)
+    # not every position is looked at then, but those where the pivots of the matrix have fallen by a hundredth
+    row = int(np.argmin(np.abs(table['t'] - found['least_conditioning_time'])))
+    s.checks.near(found['least_conditioning_time'], table['t'][row], 1e-15, 'without the column: a time of an output')
+    s.checks.near(found['least_conditioning'] / values[row], 1.0, 1e-11, 'and the value there')
+    s.checks.near(found['least_conditioning'] / np.min(values), 1.0, 0.05, 'about as small as it becomes')
+
+
+def two_chains(first, second, at):
+    """A data file: two four-bars on one frame, the crank of the second half a turn behind."""
+    lines = ["&mechanism links=7, coordinates=8, angle_unit='deg' /", '&structure cq=1,5 /']
+    for k, x, frame, lengths, angle in ((1, 0.0, (1, 2, 3, 4), first, 0.0), (5, at, (1, 5, 6, 7), second, 180.0)):
+        ground, crank, coupler, rocker = lengths
+        places = (f'{x!r},0,0, moving_point=0,0,0', f'{crank!r},0,0, moving_point=0,0,0',
+                  f'{coupler!r},0,0, moving_point={rocker!r},0,0', f'{x + ground!r},0,0, moving_point=0,0,0')
+        for i, (links, place) in enumerate(zip(((0, 1), (1, 2), (2, 3), (0, 3)), places)):
+            lines.append(f"&pair coordinate={k + i}, links={frame[links[0]]},{frame[links[1]]}, kind='revolute', "
+                         f'axis=0,0,1, point={place} /')
+        lines += [f'&initial coordinate={k + i}, position={guess!r} /'
+                  for i, guess in enumerate(guesses_of(lengths, angle), 1)]
+        lines.append(f"&drive coordinate={k}, kind='polynomial', coefficients={angle!r}, 360.0 /")
+    return '\n'.join(lines + ['&time start=0, end=1, intervals=90 /', '&output conditioning=.true. /']) + '\n'
+
+
+def conditioning_of_chains(s):
+    """Of two chains that are solved one after the other it is that of the worse one, now the first, now the second."""
+    first, second, at = CONDITIONED, (0.4, 0.16, 0.35, 0.3), 0.5
+    report = os.path.join(s.folder, 'report.json')
+    done = s.run(two_chains(first, second, at), '--table', '-', '--report', report)
+    if not s.checks.equal(done.returncode, 0, f'two four-bars run; stderr: {done.stderr}'):
+        return
+    table, width = read_table(done.stdout), at + second[0]
+    values = [least_singular_values(first, table, 1, 0.0, width), least_singular_values(second, table, 5, at, width)]
+    worse = np.argmin(values, axis=0)
+    s.checks.equal(set(worse), {0, 1}, 'each chain is the worse one at times')
+    s.checks.near(table['conditioning'] / np.min(values, axis=0), 1.0, 1e-11, 'the least singular value of both loops')
+    with open(report, encoding='utf-8') as file:
+        found = json.load(file)
+    row = int(np.argmin(np.min(values, axis=0)))
+    s.checks.near(found['least_conditioning_time'], table['t'][row], 1e-15, 'when it is least of all')
+    block = found['blocks'][found['least_conditioning_block'] - 1]
+    s.checks.equal(sorted(block['unknowns']), [[2, 3, 4], [6, 7, 8]][worse[row]], 'and in which chain')
 
 
 def conditioning_of_motion(s):
@@ -194,7 +285,7 @@ def conditioning_of_motion(s):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Cases(os.path.abspath(sys.argv[1]), folder)
-        for case in (dead_point, ranges, passed, end_of_table, conditioning):
+        for case in (dead_point, escaping, ranges, passed, end_of_table, conditioning, conditioning_of_chains):
             case(s)
         s.program = os.path.abspath(sys.argv[2])
         conditioning_of_motion(s)
