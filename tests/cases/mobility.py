@@ -54,6 +54,34 @@ FLAT = """
 {drives}
 """
 
+# Three parallel cranks of one length on a coupler: the third one repeats what the first two say. A dyad drives the
+# coupler, so that all three chains are solved together.
+THREE_CRANKS = """
+&mechanism links=7, coordinates=9 /
+&structure cq=1 /
+&pair coordinate=1, links=1,6, kind='revolute', point=2,0,0, axis=0,0,1 /
+&pair coordinate=2, links=6,5, kind='revolute', point=2.2,0.9,0, axis=0,0,1 /
+&pair coordinate=3, links=5,3, kind='revolute', point=1.6,1.2,0, axis=0,0,1 /
+&pair coordinate=4, links=2,3, kind='revolute', point=0.3,0.5,0, axis=0,0,1 /
+&pair coordinate=5, links=1,2, kind='revolute', point=0,0,0, axis=0,0,1 /
+&pair coordinate=6, links=1,4, kind='revolute', point=1,0,0, axis=0,0,1 /
+&pair coordinate=7, links=4,3, kind='revolute', point=1.3,0.5,0, axis=0,0,1 /
+&pair coordinate=8, links=1,7, kind='revolute', point=0.6,0.4,0, axis=0,0,1 /
+&pair coordinate=9, links=7,3, kind='revolute', point=0.9,0.9,0, axis=0,0,1 /
+&drive coordinate=1, kind='polynomial', coefficients=0 /
+"""
+
+# a slider-crank of any size
+SLIDER_CRANK = """
+&mechanism links=4, coordinates=4 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', point=0,0,0, axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0,{size:.1e},0, axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', point={size:.1e},0,0, axis=0,0,1 /
+&pair coordinate=4, links=1,4, kind='prismatic', point={size:.1e},0,0, axis=1,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0 /
+"""
+
 
 class Cases:
     def __init__(self, mech9k, mech9d, folder):
@@ -104,6 +132,14 @@ def reports(s):
            'on no closed chain: 5', 'instead of 1 could be independent: 2, 3, 4')
     done = s.ends(s.mech9k, DONE, ROD.format(spin=2), '--check')
     s.says(done.stdout, 'mobility by the rank: 2', 'idle: coordinates 2, 3, 4, 5, 6, 7 can move while links 2 and 8 stand still')
+    done = s.ends(s.mech9k, DONE, THREE_CRANKS, '--check')
+    s.says(done.stdout, 'mobility by the count: 0 = 9 coordinates - 9', 'mobility by the rank: 1 = 9 coordinates - rank 8',
+           'block 1: closed chains 1, 2, 3 together, 9 equations, rank 8', 'closed chain 2: 1 of its 3 equations redundant')
+    s.checks.equal(done.stdout.count('redundant'), 1, 'the third crank alone is one too many')
+    # what moves, moves in a mechanism of any size
+    for size in (1e-12, 1.0, 1e12):
+        done = s.ends(s.mech9k, DONE, SLIDER_CRANK.format(size=size), '--check')
+        s.says(done.stdout, 'mobility by the rank: 1', 'instead of 1 could be independent: 2, 3, 4')
 
 
 def wrong_choices(s):
