@@ -1,4 +1,5 @@
-"""The same mechanism in metres, millimetres and kilometres: the same decisions and, scaled, the same numbers.
+"""The same mechanism in metres, millimetres and kilometres, in radians and degrees: the same decisions and, scaled, the
+same numbers.
 
 Data files of tests/reference and of the examples, and members of the families of the stress test, among them some that
 end at dead points, cannot be put together or have wrong inputs.
@@ -6,6 +7,7 @@ end at dead points, cannot be put together or have wrong inputs.
 usage: units.py MECH9K MECH9D
 """
 import json
+import math
 import os
 import re
 import sys
@@ -49,6 +51,32 @@ def scaled(groups, s):
     return slides
 
 
+def in_degrees(groups):
+    """The groups with angles in degrees, by the rules of the data file: forces and stiffnesses stay those per rad."""
+    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'] == ['prismatic']}
+    always = {'drive': ['angular_frequency', 'phase']}
+    of_turns = {'initial': ['position', 'velocity'], 'drive': ['coefficients', 'mean', 'amplitude'], 'coordinate': ['rest']}
+    for group, items in groups:
+        kind = items['kind'][0] if group == 'load' else group
+        names = list(always.get(kind, []))
+        if kind in of_turns and items['coordinate'][0] not in slides:
+            names += of_turns[kind]
+        for name in names:
+            if name in items:
+                items[name] = [math.degrees(float(value)) for value in items[name]]
+        if 'dh' in items:
+            items['dh'] = [math.degrees(float(value)) if i in (1, 3) else value for i, value in enumerate(items['dh'])]
+        if group == 'mechanism':
+            items['angle_unit'] = ['deg']
+    return slides
+
+
+def degrees_in(column, slides):
+    """What a column of an angle is divided by to be in radians; 1 for others."""
+    coordinate = re.fullmatch(r'd{0,2}q(\d+)', column)
+    return math.degrees(1.0) if coordinate and int(coordinate.group(1)) not in slides else 1.0
+
+
 def power_of(column, slides):
     """Of the unit of length in a column."""
     if column in ('E.kinetic', 'E.potential', 'E.total'):
@@ -86,8 +114,8 @@ class Units:
             rows = {name: values[:1] for name, values in rows.items()}
         return done.returncode, done.stderr, rows, kept, plan
 
-    def compare(self, why, plain, other, s, slides):
-        """A run in another unit against the one in metres."""
+    def compare(self, why, plain, other, unit):
+        """A run in other units against the one in m and rad; `unit` says what to divide a column by."""
         code, said, table, report, plan = plain
         self.checks.equal(other[0], code, f'{why}: exit code')
         self.checks.equal(other[4], plan, f'{why}: the plan')
@@ -103,7 +131,7 @@ class Units:
         for column, values in table.items():
             if column == 'closure':
                 continue
-            found = other[2][column] / s ** power_of(column, slides)
+            found = other[2][column] / unit(column)
             if len(found) != len(values):
                 self.checks.true(False, f'{why}: {len(values)} rows', len(found))
                 return
@@ -113,7 +141,7 @@ class Units:
             self.checks.near(found / scale, values / scale, tolerance_of(column) * lost, f'{why}: {column}')
 
     def file(self, program, path, *options):
-        """A data file in three units."""
+        """A data file in three units of length, and in degrees."""
         with open(path, encoding='utf-8') as file:
             text = file.read()
         runs = []
@@ -123,7 +151,14 @@ class Units:
             runs.append(self.look(program, data_file.write(groups), *options))
         self.checks.true(runs[0][2] is not None, f'{path}: it runs', runs[0][1])
         for s, other in zip(UNITS, runs[1:]):
-            self.compare(f'{os.path.basename(path)}, lengths times {s:g}', runs[0], other, s, slides)
+            self.compare(f'{os.path.basename(path)}, lengths times {s:g}', runs[0], other,
+                         lambda column, s=s: s ** power_of(column, slides))
+        groups = data_file.parse(text)
+        if dict(groups)['mechanism'].get('angle_unit') == ['deg']:
+            return
+        slides = in_degrees(groups)
+        self.compare(f'{os.path.basename(path)}, in degrees', runs[0], self.look(program, data_file.write(groups), *options),
+                     lambda column: degrees_in(column, slides))
 
     def families(self, mech9k, members):
         """Members of families, right ones and wrong ones."""
@@ -138,7 +173,8 @@ class Units:
                     plain, *others = (self.look(mech9k, Mechanism(family, loops, member, s, 7, np.zeros(len(links))).text())
                                       for s in (1.0, *UNITS))
                     for s, other in zip(UNITS, others):
-                        self.compare(f'{family} {number}, member {member}, lengths times {s:g}', plain, other, s, slides)
+                        self.compare(f'{family} {number}, member {member}, lengths times {s:g}', plain, other,
+                                     lambda column, s=s: s ** power_of(column, slides))
 
 
 def examples():
