@@ -155,6 +155,10 @@ def test_dynamics(session):
         same(checks, file['E_kinetic'][:] + file['E_potential'][:], file['E_total'][:], 'the energies add up')
         a, dq = file['dynamics/coefficients'][:], file['dq'][0, file['dynamics/p'][:] - 1]
         checks.near(0.5 * dq @ a @ dq, file['E_kinetic'][0], 1e-13, 'the coefficients of motion give the kinetic energy')
+        found, change = file['diagnostics'], file['E_total'][:] - file['E_total'][0]
+        checks.equal(found['energy_at_start'][()], file['E_total'][0], 'the energy at the start')
+        checks.equal(found['largest_energy_change'][()], np.max(np.abs(change)), 'its largest change')
+        checks.true(np.max(np.abs(change)) > np.max(change), 'the damper takes more than is ever gained')
         checks.equal(file['events/time'].shape[0], 0, 'no change of coordinates')
         checks.true(file['diagnostics/steps'][()] > 0 and text(file['diagnostics/method']) != '', 'how it was integrated')
     table, path = session.both(session.mech9d, FOUR_BARS)

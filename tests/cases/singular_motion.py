@@ -170,6 +170,18 @@ def check_pendulum_four_bar(checks, mech9d):
     check_loose(checks, mech9d, data, by_crank)
 
 
+# of the methods that take the same number of evaluations for every step
+STAGES = {'prince-dormand': 13, 'dormand-prince': 7, 'merson': 5}
+
+
+def check_counts(checks, report, stages, why):
+    """Counts go over all changes of coordinates: each trial of a step takes as many evaluations as there are stages, one less
+    where the last one is used again; each beginning takes some more, and so does looking at other coordinates."""
+    tried = report['steps'] + report['error_test_failures'] + report['refusals']
+    checks.true((stages - 1) * report['steps'] <= report['evaluations'] <= (stages + 1) * tried + 20 * (len(report['events']) + 1),
+                f'{why}: evaluations belong to steps', (report['steps'], tried, report['evaluations']))
+
+
 def check_loose(checks, mech9d, data, right):
     """Whatever the method and however coarse the tolerance, the dead point is passed and the motion is right."""
     for method in ('prince-dormand', 'dormand-prince', 'merson', 'adams', 'bdf'):
@@ -179,6 +191,8 @@ def check_loose(checks, mech9d, data, right):
             error = max(np.max(np.abs(table[f'q{k}'] - right[f'q{k}'][::10])) for k in range(1, 5))
             checks.true(error <= 1e4 * tolerance, f'{method}, {tolerance:.0e}: the same motion', error)
             checks.true(len(report['events']) >= 1, f'{method}, {tolerance:.0e}: in other coordinates', report['events'])
+            if method in STAGES:
+                check_counts(checks, report, STAGES[method], f'{method}, {tolerance:.0e}')
             print(f'{method}, {tolerance:.0e}: error {error:.1e}, {report["steps"]} steps')
 
 
