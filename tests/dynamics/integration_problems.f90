@@ -9,7 +9,7 @@ module mech9_integration_problems
   implicit none
   private
   public :: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, swing_type, push_type
-  public :: stiff_type, explosion_type, obstacle_type, rotation_type, integrate
+  public :: stiff_type, explosion_type, obstacle_type, power_type, rotation_type, integrate
 
   !> Kepler's orbit, of semi-major axis and gravitational parameter one: (x, y, x', y').
   type, extends(ode_system_type) :: orbit_type
@@ -57,6 +57,13 @@ module mech9_integration_problems
   contains
     procedure :: rate => obstacle_rate
   end type obstacle_type
+
+  !> y' = t**power.
+  type, extends(ode_system_type) :: power_type
+    integer :: power = 0
+  contains
+    procedure :: rate => power_rate
+  end type power_type
 
   !> A point that turns once per 2 pi: (x, y). Settling puts it back on the unit circle, and counts.
   type, extends(ode_system_type) :: rotation_type
@@ -113,6 +120,15 @@ contains
     ydot(1) = y(2)
     ydot(2) = -sin(y(1))
   end subroutine pendulum_rate
+
+  subroutine power_rate(self, t, y, ydot, err)
+    class(power_type), intent(inout) :: self
+    real(wp), intent(in) :: t, y(:)
+    real(wp), intent(out) :: ydot(:)
+    type(error_type), allocatable, intent(out) :: err
+
+    ydot = t**self%power
+  end subroutine power_rate
 
   !> From rest at an angle to the lowest point: K(sin(angle/2)), by the arithmetic-geometric mean.
   pure real(wp) function pendulum_quarter_period(angle) result(quarter)

@@ -4,7 +4,8 @@ program test_integrator_steps
   use mech9_error, only: error_type
   use mech9_integration_methods, only: integration_methods
   use mech9_integrator, only: integrator_type, integration_statistics_type
-  use mech9_integration_problems, only: orbit_type, orbit_start, orbit_at, rotation_type, stiff_type, integrate
+  use mech9_integration_problems, only: orbit_type, orbit_start, orbit_at, power_type, rotation_type, stiff_type, &
+    integrate
   use mech9_testing, only: tester_type
   use mech9_counted_memory, only: calls
   implicit none
@@ -22,6 +23,9 @@ program test_integrator_steps
     call check_limits(test, trim(integration_methods(i)%name))
     call check_memory(test, trim(integration_methods(i)%name))
   end do
+  call check_first_choice(test, 'dormand-prince', 4)
+  call check_first_choice(test, 'verner', 5)
+  call check_first_choice(test, 'prince-dormand', 7)
   call check_side_by_side(test)
   call test%finish()
 
@@ -331,6 +335,42 @@ contains
     call test%is_true(calls == before, method//' asks for no memory in its steps')
     call integrator%destroy()
   end subroutine check_memory
+
+  !> The error of a step for y' = t**p, p the order of the embedded formula, is the same multiple of h**(p+1) everywhere:
+  !> with the right exponent the error of the first step tells the length of all others, and none is made again. (Of
+  !> the other two the embedded formula of Merson's is of higher order for such equations, and Fehlberg's is exact.)
+  subroutine check_first_choice(test, method, order)
+    type(tester_type), intent(inout) :: test
+    character(len=*), intent(in) :: method
+    integer, intent(in) :: order           !< of the embedded formula
+    type(power_type), target :: system
+    type(integrator_type) :: integrator
+    type(integration_statistics_type) :: statistics
+    type(error_type), allocatable :: err
+    real(wp) :: y(1), t, ends(0:6)
+    integer :: i
+
+    system%power = order
+    t = 0.0_wp
+    y = 0.0_wp
+    ends(0) = t
+    ! relative errors count for nothing beside 1e-6
+    call integrator%create(system, method, 1.0e-14_wp, [1.0e-6_wp], t, y, err)
+    call integrator%limit(err, first_step=0.1_wp)
+    do i = 1, 6
+      call integrator%step(1.0e3_wp, t, y, err)
+      call test%no_error(err, method//' makes a step')
+      ends(i) = t
+    end do
+    statistics = integrator%statistics()
+    call test%is_true(statistics%error_test_failures == 0, method//': no step is made again')
+    call test%is_true(ends(2) - ends(1) > 1.5_wp*(ends(1) - ends(0)), method//': the first step was a short one')
+    ! the error of the first step stands out of round-off by some digits
+    do i = 3, 6
+      call test%near((ends(i) - ends(i - 1))/(ends(2) - ends(1)), 1.0_wp, 1.0e-3_wp, method//': all others are of one length')
+    end do
+    call integrator%destroy()
+  end subroutine check_first_choice
 
   !> Two integrations step by turns and give what each gives alone, to the last bit.
   subroutine check_side_by_side(test)
