@@ -115,6 +115,9 @@ contains
       call tester%near(second%before, 3.0_wp, 1.0e-15_wp, 'from')
       call tester%near(second%after, 3.5_wp, 1.0e-15_wp, 'to')
     end associate
+    call compare_runs(new_run(10, 2.5_wp), new_run(10, 2.0_wp), comparison)
+    call tester%near(comparison%columns(1)%share, 0.5_wp/2.5_wp, 1.0e-15_wp, 'whichever of the two runs has the larger values')
+    call compare_runs(new_run(10, 2.0_wp), new_run(10, 2.5_wp), comparison)
     text = comparison_text(comparison, new_run(10, 2.5_wp))
     call tester%is_true(index(text, '2 columns differ, 1 do not') > 0 .and. index(text, 'q1') < index(text, 'P.x'), &
                         'in words: '//text)
