@@ -16,7 +16,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
-from mech9_cases import REFERENCE, Checks, read_table, run, text_of
+from mech9_cases import REFERENCE, Checks, read_table, run, skip, text_of
 
 FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
 DYNAMIC_FIG1 = os.path.join(REFERENCE, 'dynamics_fig1.nml')
@@ -27,8 +27,7 @@ USAGE, DATA, FILE = 2, 3, 8
 try:
     import h5py
 except ImportError:
-    print('h5py is not installed (Debian: python3-h5py): nothing is tested')
-    sys.exit(0)
+    skip('h5py is not installed (Debian: python3-h5py): nothing is tested')
 
 
 class Session:

@@ -57,6 +57,12 @@ class Checks:
         sys.exit(1 if self.failed or not self.passed else 0)
 
 
+def skip(why):
+    """Leave a script that cannot test anything here, by the exit code that ctest takes for a test not run."""
+    print(why)
+    sys.exit(77)
+
+
 def run(program, *arguments, folder=None, stdin='', timeout=120):
     """Run a program; gives its completed process with text in stdout and stderr."""
     return subprocess.run([os.fspath(program), *map(os.fspath, arguments)], cwd=folder, input=stdin,
