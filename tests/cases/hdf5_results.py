@@ -22,7 +22,7 @@ FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
 DYNAMIC_FIG1 = os.path.join(REFERENCE, 'dynamics_fig1.nml')
 SLIDER = os.path.join(REFERENCE, 'kinematics_slider_crank.nml')
 FIVE_BAR = os.path.join(REFERENCE, 'dynamics_fivebar.nml')
-USAGE, DATA, FILE = 2, 3, 8
+USAGE, DATA, SINGULAR, FILE = 2, 3, 6, 8
 
 try:
     import h5py
@@ -180,6 +180,18 @@ def test_events(session):
         checks.true(np.all(np.diff(file['events/time'][:]) >= 0), 'in their order')
 
 
+def test_dead_point(session):
+    """What was computed up to a dead point, and the exit code."""
+    checks = session.checks
+    data = os.path.join(REFERENCE, 'kinematics_fig1_driven_at_q1.nml')
+    done = run(session.mech9k, data, '--table', 'run.dat', '--hdf5', 'run.h5', '--set', 'time.end=30', '--set',
+               'time.intervals=3000', folder=session.folder)
+    checks.equal(done.returncode, SINGULAR, f'it ends at a dead point; stderr: {done.stderr}')
+    with open(session.path('run.dat'), encoding='utf-8') as text_of_table, h5py.File(session.path('run.h5'), 'r') as file:
+        check_rows(checks, read_table(text_of_table.read()), file, 'up to a dead point')
+        checks.equal(file['diagnostics/exit_code'][()], SINGULAR, 'the exit code')
+
+
 def test_compression(session):
     checks = session.checks
     many = ('--set', 'time.intervals=20000')
@@ -269,6 +281,7 @@ def main():
         test_fig1(session, version)
         test_units(session)
         test_dynamics(session)
+        test_dead_point(session)
         test_compression(session)
         test_readers(session)
         test_failures(session)
