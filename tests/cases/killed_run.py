@@ -58,6 +58,7 @@ def check_file(checks, path, seconds):
                 checks.true(np.all(np.isfinite(file[name][-1000:])), f'{why}: the last rows of {name} are there')
             checks.true(n == 0 or np.all(file['closure'][:] <= 1e-12), f'{why}: every row is of closed chains')
             checks.true(file['provenance/data'].shape == (), f'{why}: provenance')
+            checks.equal(file['diagnostics/exit_code'][()], -1, f'{why}: no exit code')
             return n, file['q'][-1] if n else None
     except OSError as error:
         checks.true(False, f'{why}: the file opens and can be read', error)
