@@ -2,6 +2,7 @@
 
 usage: failing_force.py FAILING_FORCE_D MECH9D      FAILING_FORCE_D: mech9d with user_forces/failing_force.f90
 """
+import json
 import os
 import re
 import sys
@@ -33,8 +34,10 @@ def main():
         for method in ('default', 'prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf'):
             with open(path, 'w', encoding='utf-8') as file:
                 file.write(CASE.format(last=LAST, method='' if method == 'default' else f"method='{method}',"))
-            done = run(failing, path, '--table', 'table.dat', folder=folder)
+            done = run(failing, path, '--table', 'table.dat', '--report', 'report.json', folder=folder)
             checks.equal(done.returncode, 7, f'{method}: exit code 7')
+            report = json.loads(text_of(os.path.join(folder, 'report.json')))
+            checks.equal(report['exit_code'], 7, f'{method}: which the report tells, too')
             checks.true('case.nml:7:' in done.stderr, f'{method}: the message points to the load', done.stderr)
             checks.true('not finite' in done.stderr, f'{method}: the message says what is wrong', done.stderr)
             times = [float(word) for word in re.findall(r't = ([-+.\deE]+)', done.stderr)]

@@ -12,7 +12,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
-from mech9_cases import Checks, read_table, run
+from mech9_cases import Checks, read_table, run, text_of
 
 # What is promised of limits; the program does a thousand times better.
 LIMIT = 1e-9
@@ -77,9 +77,11 @@ def dead_point(s):
     """The run ends with code 6; the message names time, chain, coordinates and limit; the table is kept."""
     lengths = (1.2, 0.7, 0.9, 0.4)
     end = limit(lengths, lengths[2] + lengths[3])
+    report = os.path.join(s.folder, 'report.json')
     for intervals in (3, 50, 4000):
-        done = s.run(four_bar(lengths, (40.0, 100.0), 3.0, intervals), '--table', '-')
+        done = s.run(four_bar(lengths, (40.0, 100.0), 3.0, intervals), '--table', '-', '--report', report)
         s.checks.equal(done.returncode, 6, 'a dead point: exit code 6')
+        s.checks.equal(json.loads(text_of(report))['exit_code'], 6, 'which the report tells, too')
         found = re.search(r'cannot go on beyond t = (\S+) s: closed chain 1 \(coordinates 2, 3, 4\) '
                           r'reaches a dead point at q1 = (\S+) ', done.stderr)
         if s.checks.true(found, 'the message names time, chain, coordinates and driven coordinate', done.stderr):
