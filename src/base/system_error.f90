@@ -3,7 +3,7 @@ module mech9_system_error
   use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_char, c_ptr, c_f_pointer, c_associated
   implicit none
   private
-  public :: error_number, reason, interrupted_call, no_such_file
+  public :: error_number, clear_error_number, reason, interrupted_call, no_such_file
 
   !> The call was interrupted by a signal (EINTR, the same on all Unixes): to be made again.
   integer(c_int), parameter :: interrupted_call = 4
@@ -36,6 +36,14 @@ contains
     call c_f_pointer(c_errno_location(), number)
     error_number = number
   end function error_number
+
+  !> Forget earlier errors, before a call whose failure shows in nothing but the number.
+  subroutine clear_error_number()
+    integer(c_int), pointer :: number
+
+    call c_f_pointer(c_errno_location(), number)
+    number = 0
+  end subroutine clear_error_number
 
   !> The system's words for an error number, padded with blanks.
   function reason(number) result(text)

@@ -159,10 +159,14 @@ contains
     character(len=*), intent(in) :: program_name
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: nearest, hint
+    integer :: i
 
     nearest = nearest_name(name(verify(name//'x', '-'):), option_names(program_name))
     hint = program_name//' --help lists the options'
     if (nearest /= '') hint = 'did you mean --'//nearest//'?'
+    do i = 1, size(options_table)
+      if ('--'//options_table(i)%name == name) hint = 'only '//trim(options_table(i)%programs)//' has it'
+    end do
     call raise(err, exit_usage, "unknown option '"//name//"'; "//hint)
   end subroutine raise_unknown
 
@@ -331,13 +335,16 @@ contains
     character(len=*), intent(in) :: program_name
     type(command_line_type), intent(in) :: options
     type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: missing
     character(len=9), parameter :: elsewhere(6) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'set']
     integer :: i
 
     do i = 1, size(elsewhere)
       if (.not. options%has(trim(elsewhere(i)))) cycle
-      call raise(err, exit_usage, 'no data file is given; --'//trim(elsewhere(i))//' is for one: '//program_name//' FILE --' &
-                 //trim(elsewhere(i)))
+      missing = 'no data file is given'
+      if (options%file /= '' .or. options%has('edit') .or. options%has('resume')) missing = 'this is a conversation'
+      call raise(err, exit_usage, missing//'; --'//trim(elsewhere(i))//' is for a data file alone: '//program_name// &
+                 ' FILE --'//trim(elsewhere(i)))
       return
     end do
     if (count([options%file /= '', options%has('edit'), options%has('resume')]) > 1) &

@@ -18,7 +18,7 @@ module mech9_dynamic_run
   use mech9_between_steps, only: between_steps_type
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_columns, only: kinematic_columns
-  use mech9_recording, only: motion_source_type
+  use mech9_recording, only: motion_source_type, stop_if_interrupted
   implicit none
   private
   public :: dynamic_run_type, event_type, start_dynamic_run, assemble_initial_state
@@ -171,7 +171,8 @@ contains
     self%steps_onto = .false.
     do
       do while ((t - self%t)*sign(1.0_wp, self%end - self%system%mechanism%time%start) > 0.0_wp)
-        call self%step(t, err)
+        call stop_if_interrupted(t, err)
+        if (.not. allocated(err)) call self%step(t, err)
         if (allocated(err)) return
       end do
       if (.not. abs(t - self%t) > 0.0_wp) exit

@@ -68,10 +68,7 @@ contains
     end if
     if (answers_only(options)) then
       call print_check(options, pictures, mechanism, plan, start, diagnostics)
-      return
-    end if
-    if (options%has('range')) then
-      call print_ranges(output_unit, mechanism, plan, start)
+      if (options%has('range')) call print_ranges(output_unit, mechanism, plan, start)
       return
     end if
     call new_kinematic_run(mechanism, plan, start, run)

@@ -14,7 +14,7 @@ module mech9_recording
   use mech9_system, only: interrupted
   implicit none
   private
-  public :: motion_source_type, recording_outcome_type, record
+  public :: motion_source_type, recording_outcome_type, record, stop_if_interrupted
 
   !> Rows that are computed before they are written together, so that both can be timed without a
   !> clock in the inner loop.
@@ -105,10 +105,8 @@ contains
 
     count = 0
     do while (count < size(rows, 2) .and. next <= mechanism%time%intervals)
-      if (interrupted()) then
-        call raise(err, exit_interrupted, 'interrupted before t = '//to_text(mechanism%time%time(next), 10)//' s')
-        return
-      end if
+      call stop_if_interrupted(mechanism%time%time(next), err)
+      if (allocated(err)) return
       call source%row_at(mechanism%time%time(next), rows(:, count + 1), err)
       if (allocated(err)) return
       count = count + 1
@@ -117,6 +115,14 @@ contains
       if (pacer%due()) return
     end do
   end subroutine compute_rows
+
+  !> An error where the user wants the run to end. What takes long to come to an output asks on the way.
+  subroutine stop_if_interrupted(t, err)
+    real(wp), intent(in) :: t            !< the output that comes next [s]
+    type(error_type), allocatable, intent(out) :: err
+
+    if (interrupted()) call raise(err, exit_interrupted, 'interrupted before t = '//to_text(t, 10)//' s')
+  end subroutine stop_if_interrupted
 
   !> Add the time since `clock` to a sum and set the clock.
   subroutine lap(clock, sum)

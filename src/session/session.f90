@@ -7,7 +7,7 @@ module mech9_session
   use mech9_command_line, only: command_line_type
   use mech9_help_text, only: help_text
   use mech9_version, only: version_text
-  use mech9_system, only: catch_interrupts
+  use mech9_system, only: catch_interrupts, catch_size_limit, flush_output
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
@@ -19,7 +19,7 @@ module mech9_session
   use mech9_kept_rows, only: kept_rows_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan_text, only: print_structure
-  use mech9_task, only: task_type
+  use mech9_task, only: task_type, answers_only
   implicit none
   private
   public :: carry_out, run_file, asks_for_text
@@ -32,6 +32,7 @@ contains
     class(task_type), intent(in) :: task
     type(command_line_type), intent(in) :: options
     integer, intent(out) :: code
+    type(error_type), allocatable :: err
 
     code = exit_done
     if (options%has('help')) then
@@ -43,6 +44,10 @@ contains
     else
       call run_file(task, options, options%file, code)
     end if
+    call flush_output(err)
+    if (.not. allocated(err)) return
+    write (error_unit, '(3a)') task%program_name, ': ', err%message
+    if (code == exit_done) code = err%code
   end subroutine carry_out
 
   !> Whether the options ask for a text about the program, whatever else they say.
@@ -80,7 +85,9 @@ contains
     type(string_type), allocatable :: settings(:)
     integer :: i
 
-    call catch_interrupts()
+    ! an answer that takes too long leaves nothing to be kept: Ctrl-C ends it as it ends any program
+    call catch_size_limit()
+    if (.not. answers_only(options)) call catch_interrupts()
     call read_document(path, document, diagnostics)
     call options%arguments('set', settings)
     do i = 1, size(settings)

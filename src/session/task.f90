@@ -60,7 +60,7 @@ contains
     type(command_line_type), intent(in) :: options
 
     answers_only = options%has('check') .or. options%has('plan') .or. options%has('branches') &
-                   .or. options%has('graph')
+                   .or. options%has('graph') .or. options%has('range')
   end function answers_only
 
   !> Answer --check, --plan, --branches and --graph, and --sketch beside them.

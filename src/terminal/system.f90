@@ -1,12 +1,14 @@
 !> What only the system can do: end the program with an exit code, tell a terminal from a file, take
-!> Ctrl-C. Uses ISO C binding only.
+!> Ctrl-C, notice that standard output is lost. Uses error, system_error.
 module mech9_system
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
+  use mech9_error, only: error_type, raise, exit_file
+  use mech9_system_error, only: error_number, clear_error_number, reason
   implicit none
   private
   public :: exit_program, is_terminal, standard_input, standard_output, standard_error
-  public :: catch_interrupts, interrupted, hung_up
+  public :: catch_interrupts, catch_size_limit, interrupted, hung_up, flush_output
 
   !> The three standard files, for `is_terminal`.
   integer, parameter :: standard_input = 0, standard_output = 1, standard_error = 2
@@ -60,6 +62,18 @@ contains
     call c_exit(int(code, c_int))
   end subroutine exit_program
 
+  !> Hand to the system what Fortran has written to standard output. gfortran's runtime library loses the
+  !> failure of that (a full disk); only the system's number of the error tells it. Fails with exit_file.
+  subroutine flush_output(err)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: status
+
+    call clear_error_number()
+    flush (output_unit, iostat=status)
+    if (error_number() /= 0) &
+      call raise(err, exit_file, 'cannot write to standard output: '//reason(error_number()))
+  end subroutine flush_output
+
   !> Whether a standard file is a terminal that a person looks at.
   logical function is_terminal(descriptor)
     integer, intent(in) :: descriptor   !< standard_input, standard_output or standard_error
@@ -69,8 +83,8 @@ contains
 
   !> From now on the first Ctrl-C, request to terminate or closing of the terminal only sets what
   !> `interrupted` tells, so that a loop can end in order; a second one ends the program at once. A reader
-  !> that goes away (`mech9k ... | head`) and a file that may not grow (ulimit -f) become errors of writing
-  !> instead of the death of the program. Called again, it forgets what was caught: a session that outlives an
+  !> that goes away (`mech9k ... | head`) becomes an error of writing instead of the death of the program, as
+  !> in `catch_size_limit`. Called again, it forgets what was caught: a session that outlives an
   !> interrupted run is ready for the next.
   subroutine catch_interrupts()
     type(c_funptr) :: previous
@@ -80,8 +94,15 @@ contains
     call catch(signal_terminate)
     call catch(signal_hang_up)
     previous = c_signal(signal_broken_pipe, action(ignore_action))
-    previous = c_signal(signal_file_size, action(ignore_action))
+    call catch_size_limit()
   end subroutine catch_interrupts
+
+  !> From now on a file that may not grow (ulimit -f) is an error of writing instead of the death of the program.
+  subroutine catch_size_limit()
+    type(c_funptr) :: previous
+
+    previous = c_signal(signal_file_size, action(ignore_action))
+  end subroutine catch_size_limit
 
   !> Catch one signal, unless whoever started the program had it ignored (nohup, a job in the background).
   subroutine catch(number)

@@ -4,6 +4,7 @@ usage: command_line.py MECH9K VERSION
 """
 import json
 import os
+import subprocess
 import sys
 import tempfile
 
@@ -137,6 +138,18 @@ def settings(s):
     s.ends(USAGE, '--set without a value', FIG1, '--set', 'intervals', says='--set')
 
 
+def answers(s):
+    """Answers on standard output, and standard output that is lost."""
+    done = s.ends(DONE, 'two answers', FIG1, '--check', '--range')
+    s.checks.true('mobility' in done.stdout and 'how far' in done.stdout, 'both are given', done.stdout)
+    if not os.path.exists('/dev/full'):
+        return
+    for words in (['--help'], ['--help-data'], *([FIG1, option] for option in ('--check', '--structure', '--plan', '--range'))):
+        with open('/dev/full', 'w', encoding='utf-8') as full:
+            done = subprocess.run([s.program, *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+        s.checks.true(done.returncode == FILE and 'standard output' in done.stderr, f'{words[-1]} on a full disk', done.stderr)
+
+
 def talk(s):
     done = s.ends(DONE, 'a plain run', FIG1)
     s.checks.equal(done.stdout, '', 'the table is in a file: nothing on stdout')
@@ -221,7 +234,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Session(program, folder)
         help_and_version(s, version)
-        for part in (wrong_use, structure, tables, settings, talk, bad_data, cannot_move, degrees):
+        for part in (wrong_use, structure, tables, settings, answers, talk, bad_data, cannot_move, degrees):
             part(s)
         s.checks.finish()
 

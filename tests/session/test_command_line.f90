@@ -21,8 +21,9 @@ contains
   end subroutine run_tests
 
   !> Parse a line whose words are separated by `|`.
-  subroutine parse(line, options, err)
+  subroutine parse(line, options, err, program_name)
     character(len=*), intent(in) :: line
+    character(len=*), intent(in), optional :: program_name   !< mech9k unless given
     type(command_line_type), intent(out) :: options
     type(error_type), allocatable, intent(out) :: err
     type(string_type), allocatable :: words(:)
@@ -35,7 +36,11 @@ contains
       words(i)%text = line(first:next - 1)
       first = next + 1
     end do
-    call parse_command_line(words, 'mech9k', options, err)
+    if (present(program_name)) then
+      call parse_command_line(words, program_name, options, err)
+    else
+      call parse_command_line(words, 'mech9k', options, err)
+    end if
   end subroutine parse
 
   subroutine test_good_lines(tester)
@@ -117,8 +122,10 @@ contains
 
     call refuse(tester, '--edit|a.nml|b.nml', 'more than one data file')
     call refuse(tester, '--edit|a.nml|--resume|b.nml', 'more than one data file')
-    call refuse(tester, '--dialogue|a.nml|--set|time.end=2', 'no data file is given; --set is for one')
+    call refuse(tester, '--dialogue|a.nml|--set|time.end=2', 'this is a conversation; --set is for a data file alone')
+    call refuse(tester, '--edit|a.nml|--check', 'this is a conversation; --check is for a data file alone')
     call refuse(tester, '--check', 'no data file')
+    call refuse(tester, 'a.nml|--range', 'only mech9k has it', 'mech9d')
     call refuse(tester, 'a.nml|b.nml', "two data files are given, 'a.nml' and 'b.nml'")
     call refuse(tester, 'a.nml||', 'the name of the data file is empty')
     call refuse(tester, 'a.nml|--tabel|x', "unknown option '--tabel'; did you mean --table?")
@@ -148,13 +155,14 @@ contains
   end subroutine test_bad_lines
 
   !> The line is an error of usage whose message holds some words.
-  subroutine refuse(tester, line, words)
+  subroutine refuse(tester, line, words, program_name)
     type(tester_type), intent(inout) :: tester
     character(len=*), intent(in) :: line, words
+    character(len=*), intent(in), optional :: program_name
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 
-    call parse(line, options, err)
+    call parse(line, options, err, program_name)
     call tester%has_error(err, exit_usage, line)
     if (allocated(err)) call tester%is_true(index(err%message, words) > 0, line//' said: '//err%message)
   end subroutine refuse
