@@ -1,5 +1,5 @@
 !> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
-!> Uses command_line, system, the input floor, plan_text, task, version.
+!> Uses command_line, system, the input floor, plan_text, task, choice_check, version.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type, exit_done
@@ -20,6 +20,7 @@ module mech9_session
   use mech9_mechanism, only: mechanism_type
   use mech9_plan_text, only: print_structure
   use mech9_task, only: task_type, answers_only
+  use mech9_choice_check, only: judge_choice_of
   implicit none
   private
   public :: carry_out, run_file, asks_for_text
@@ -78,11 +79,12 @@ contains
     integer, intent(out) :: code
     type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
     type(document_type) :: document
-    type(diagnostics_type) :: diagnostics
+    type(diagnostics_type) :: diagnostics, choice
     type(structure_type) :: structure
     type(structural_vectors_type) :: vectors
     type(mechanism_type) :: mechanism
     type(string_type), allocatable :: settings(:)
+    logical :: legible
     integer :: i
 
     ! an answer that takes too long leaves nothing to be kept: Ctrl-C ends it as it ends any program
@@ -97,10 +99,17 @@ contains
       call read_structure_only(document, structure, vectors, diagnostics)
       if (.not. diagnostics%failed()) call print_structure(output_unit, vectors)
     else
+      legible = .not. diagnostics%failed()
       call read_mechanism(document, task%needs_drives, mechanism, diagnostics)
-      if (.not. diagnostics%failed()) call task%work(options, mechanism, diagnostics, kept)
+      if (.not. diagnostics%failed()) then
+        call task%work(options, mechanism, diagnostics, kept)
+      else if (legible .and. task%needs_drives) then
+        call judge_choice_of(document, diagnostics, choice)
+      end if
     end if
+    call choice%report(error_unit)
     call diagnostics%report(error_unit)
     code = diagnostics%code()
+    if (choice%failed()) code = choice%code()
   end subroutine run_file
 end module mech9_session

@@ -186,7 +186,9 @@ def bad_data(s):
     one = s.write('one.nml', five.replace('cq = 1, 5', 'cq = 1').replace(', velocity=-0.5', '') +
                   "&drive coordinate=1, kind='polynomial', coefficients=2.1 /\n")
     s.ends(STRUCTURE, 'one independent coordinate where two are free', one, '--check', says=['one.nml', 'cq'])
-    s.ends(DATA, 'an independent coordinate without drive', FIG1, '--set', 'structure.cq=5, 1', '--check', says='drive')
+    s.ends(DATA, 'an independent coordinate without drive', FIG1, '--set', 'structure.cq=1', '--check', says='no drive')
+    s.ends(STRUCTURE, 'one without drive that is one too many', FIG1, '--set', 'structure.cq=5, 1', '--check',
+           says=['the mobility is 1', 'no drive'])
 
 
 def cannot_move(s):

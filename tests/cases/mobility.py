@@ -12,7 +12,7 @@ import numpy as np
 
 from mech9_cases import REFERENCE, Checks, run
 
-DONE, USAGE, STRUCTURE, ASSEMBLY = 0, 2, 4, 5
+DONE, USAGE, DATA, STRUCTURE, ASSEMBLY = 0, 2, 3, 4, 5
 
 # a crank-rocker in degrees, driven at its crank; the other coordinates are guessed
 FOUR_BAR = """
@@ -157,6 +157,14 @@ def wrong_choices(s):
     done = s.ends(s.mech9k, STRUCTURE, ROD.format(spin=8), '--check')
     s.says(done.stderr, 'the mobility is 2', 'take 1 of the coordinates 1, 8 off',
            '1 more of the coordinates 2, 3, 4, 5, 6, 7 must be independent')
+    # where the choice is wrong it is told besides the drives that it leaves out, and before them
+    done = s.ends(s.mech9k, STRUCTURE, four_bar('1, 2', drives=still.format(1)), '--check')
+    s.says(done.stderr, 'the mobility is 1', 'take 1 of the coordinates 1, 2 off', 'coordinate 2 has no drive')
+    s.checks.true(done.stderr.index('mobility') < done.stderr.index('no drive'), 'the choice before the drives', done.stderr)
+    # a right choice without its drive is a matter of the data alone
+    done = s.ends(s.mech9k, DATA, four_bar('2', drives=still.format(1)), '--check')
+    s.says(done.stderr, 'coordinate 2 has no drive')
+    s.checks.true('mobility' not in done.stderr, 'nothing to say against the choice', done.stderr)
     # the structure alone is told whatever the choice
     done = s.ends(s.mech9k, DONE, flat(1, 4), '--structure')
     s.says(done.stdout, 'nrg = 1')

@@ -1,0 +1,57 @@
+!> The choice of the independent coordinates judged apart from their drives: where it is wrong, it explains why
+!> drives are missing. Uses error, document, diagnostics, reader, mechanism, state, plan, planning.
+module mech9_choice_check
+  use mech9_error, only: error_type, exit_structure
+  use mech9_document, only: document_type, group_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_reader, only: read_mechanism
+  use mech9_mechanism, only: mechanism_type
+  use mech9_state, only: state_type
+  use mech9_plan, only: plan_type
+  use mech9_planning, only: make_plan
+  implicit none
+  private
+  public :: judge_choice_of
+
+contains
+
+  !> Whether a mechanism of a file without errors of writing, whose data are sound but for its drives, has the wrong independent coordinates.
+  subroutine judge_choice_of(document, sources_of, wrong)
+    type(document_type), intent(in) :: document
+    type(diagnostics_type), intent(in) :: sources_of   !< the texts that the document points into
+    type(diagnostics_type), intent(out) :: wrong       !< without an error where nothing can be said against it
+    type(diagnostics_type) :: of_data
+    type(document_type) :: bare
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(error_type), allocatable :: err
+
+    wrong%sources = sources_of%sources
+    of_data%sources = sources_of%sources
+    call leave_drives_out(document, bare)
+    call read_mechanism(bare, .false., mechanism, of_data)
+    if (of_data%failed()) return
+    call make_plan(mechanism, mechanism%initial_position, plan, start, err)
+    if (.not. allocated(err)) return
+    if (err%code == exit_structure) call wrong%add_error(err)
+  end subroutine judge_choice_of
+
+  !> A document without its drives. By hand: an array constructor of groups would leak (gfortran 12).
+  pure subroutine leave_drives_out(document, bare)
+    type(document_type), intent(in) :: document
+    type(document_type), intent(out) :: bare
+    type(group_type), allocatable :: groups(:)
+    integer :: i, n
+
+    bare = document
+    allocate (groups(count([(document%groups(i)%name /= 'drive', i=1, size(document%groups))])))
+    n = 0
+    do i = 1, size(document%groups)
+      if (document%groups(i)%name == 'drive') cycle
+      n = n + 1
+      groups(n) = document%groups(i)
+    end do
+    call move_alloc(groups, bare%groups)
+  end subroutine leave_drives_out
+end module mech9_choice_check
