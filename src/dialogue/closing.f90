@@ -107,7 +107,7 @@ contains
       if (.not. saved) return
     else
       call conversation%keep()
-      if (conversation%draft_path /= '') &
+      if (conversation%draft_path /= '' .and. .not. conversation%cannot_keep) &
         call conversation%say('What was typed is kept in '//conversation%draft_path//'.')
     end if
     conversation%state = finished

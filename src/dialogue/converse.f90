@@ -112,8 +112,12 @@ contains
     if (conversation%state /= left) code = exit_interrupted
     if (conversation%draft_path /= '') then
       call conversation%keep()
-      call conversation%say('What was typed is kept in '//conversation%draft_path//'; '//conversation%program_name// &
-                            ' --resume '//conversation%draft_path//' goes on.')
+      if (conversation%cannot_keep) then
+        call conversation%say('What was typed could not be kept.')
+      else
+        call conversation%say('What was typed is kept in '//conversation%draft_path//'; '//conversation%program_name// &
+                              ' --resume '//conversation%draft_path//' goes on.')
+      end if
     else if (code == exit_interrupted) then
       if (is_terminal(standard_input)) return
       write (error_unit, '(a)') conversation%program_name//': no data file is given and nothing was answered; '// &

@@ -246,6 +246,11 @@ def refusals(talks):
         talks.checks.true(done.returncode == DATA and 'too many to speak of' in done.stderr, 'too large a file', done)
         done = piped(talks.mech9k, '--resume', 'bad.nml/x', folder=folder, answers='')
         talks.checks.equal(done.returncode, FILE, 'no such file to resume')
+        # a draft that leads to nowhere: nothing is kept, and nobody is told that it is
+        os.symlink(os.path.join('nowhere', 'x'), os.path.join(folder, 'lost.draft.nml'))
+        done = piped(talks.mech9k, folder=folder, answers='lost\n3\n')
+        talks.checks.true('cannot be kept' in done.stderr and 'could not be kept' in done.stderr and '--resume' not in done.stderr,
+                          'a draft that cannot be written', done)
 
 
 def main():
