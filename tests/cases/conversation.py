@@ -205,7 +205,8 @@ def edited_files(talks):
         steps = [('Enter if all is right', 'time end'), ('end (s) [10.0]', '2'), ('all is right', 'add load'),
                  ('load 1, kind', 'coordinate'), ('coordinate: ', '1'), ('force', ''), ('stiffness', ''), ('rest', ''),
                  ('damping', '0.5'), ('all is right', 'add body'), ('body 2, link', '1'), ('mass', '3'), ('centre', ''),
-                 ('inertia', ''), ('all is right', 'remove body 2'), ('Removed', 'remove point 1'), ('Removed', '?'),
+                 ('inertia', ''), ('all is right', 'remove body 2'), ('Removed', 'remove point 1'),
+                 ('Removed', 'remove time start'), ('Removed', '?'),
                  ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
                  ('no answer that can be changed', 'add nothing'), ('What can be added: body, load, point', ''),
                  ('[both]', 'save'), ('data file [p.nml]', '/'),
@@ -215,7 +216,7 @@ def edited_files(talks):
         for part in ('end=2', "&load kind='coordinate', coordinate=1, damping=0.5 /", 'planar pendulum of the IFToMM',
                      '! At q1 = 0 the bar points along -x'):
             talks.checks.true(part in text, f'changes: {part} is in the file', text)
-        for part in ('&point', 'mass=3'):
+        for part in ('&point', 'mass=3', 'start='):
             talks.checks.true(part not in text, f'changes: {part} is not in the file', text)
         # without an answer nothing is written, and an existing file is overwritten only on request
         talks.pipe(talks.mech9d, [('all is right', 'quit')], 'quit', arguments=('--edit', 'p.nml'), folder=folder)

@@ -11,7 +11,7 @@ program test_drafts
   use mech9_draft_text, only: draft_text_type, write_draft, locate
   use mech9_draft_source, only: draft_from_document
   use mech9_draft_check, only: fault_type, read_draft, faults_of
-  use mech9_draft_file, only: stem_of_title, stem_of_path, path_without_draft
+  use mech9_draft_file, only: stem_of_title, stem_of_path, path_without_draft, free_draft_path, delete_file, file_exists
   use mech9_answer, only: read_answer
   use mech9_testing, only: tester_type
   implicit none
@@ -142,11 +142,18 @@ contains
 
   subroutine names_of_files(tester)
     type(tester_type), intent(inout) :: tester
+    integer :: unit
 
     call tester%is_true(stem_of_title("'Fig. 1: two closed chains'") == 'fig_1', 'a title up to its colon')
     call tester%is_true(stem_of_title("''") == 'mechanism' .and. stem_of_title("'../..'") == 'mechanism', 'no title')
     call tester%is_true(stem_of_title("'/etc/passwd'") == 'etc_passwd', 'no path comes from a title')
     call tester%is_true(stem_of_path('a/b.nml') == 'a/b' .and. stem_of_path('b.draft.nml') == 'b', 'paths without ending')
     call tester%is_true(path_without_draft('b.draft.nml') == 'b.nml' .and. path_without_draft('b.dat') == 'b.dat', 'of a draft')
+    open (newunit=unit, file='kept.draft.nml', status='replace')
+    close (unit)
+    call tester%is_true(free_draft_path('kept') == 'kept_2.draft.nml', 'what was typed before is not written over')
+    call delete_file('kept.draft.nml')
+    call tester%is_true(.not. file_exists('kept.draft.nml'), 'a file is gone')
+    call tester%is_true(free_draft_path('kept') == 'kept.draft.nml', 'where there is none the plain name is free')
   end subroutine names_of_files
 end program test_drafts
