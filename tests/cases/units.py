@@ -25,6 +25,17 @@ from loops import Loops
 UNITS = (1e3, 1e-3)     # numbers of lengths in millimetres, in kilometres, against those in metres
 LIMIT = 1e-9            # of a dead point, as promised
 
+# a pendulum with a spring at its pin, of which no other data file has one
+SPRING_AT_PIN = """
+&mechanism links=2, coordinates=1 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.4, velocity=0.3 /
+&body link=2, mass=2.0, centre=0.5,0,0, inertia=0.1,0.1,0.1,0,0,0 /
+&load kind='coordinate', coordinate=1, stiffness=3.0, rest=0.7, damping=0.2 /
+&output table='' /
+"""
+
 
 def scaled(groups, s):
     """The groups with lengths that are s times as large: kg and s stay, so that forces are s times as large and moments s^2."""
@@ -201,6 +212,10 @@ def main():
                 units.file(mech9k, path)
             else:
                 units.file(mech9d, path, '--set', 'time.intervals=1', '--set', 'time.end=1e-6')
+        spring = os.path.join(folder, 'spring.nml')
+        with open(spring, 'w', encoding='utf-8') as file:
+            file.write(SPRING_AT_PIN)
+        units.file(mech9d, spring, '--set', 'time.intervals=1', '--set', 'time.end=1e-6')
         units.families(mech9k, 1)
         units.checks.finish()
 
