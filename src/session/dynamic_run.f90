@@ -16,6 +16,7 @@ module mech9_dynamic_run
   use mech9_expectation, only: expectation_type
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_between_steps, only: between_steps_type
+  use mech9_side_steps, only: side_steps_type, begin_integration
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_columns, only: kinematic_columns
   use mech9_recording, only: motion_source_type, stop_if_interrupted
@@ -48,10 +49,7 @@ module mech9_dynamic_run
     real(wp) :: t = 0.0_wp                        !< of the end of the last step [s]
     real(wp) :: end = 0.0_wp                      !< steps may go to there at most [s]
     type(between_steps_type) :: between           !< outputs inside a step
-    type(integrator_type) :: aside                !< goes onto outputs that are not certain otherwise
-    real(wp), allocatable :: y_aside(:)
-    real(wp) :: t_aside = 0.0_wp                  !< where it stands [s]
-    logical :: has_aside = .false.
+    type(side_steps_type) :: aside                !< go onto outputs that are not certain otherwise
     logical :: steps_onto = .false.               !< no step may go beyond the next output
     real(wp) :: conditioning_here = 0.0_wp        !< at the end of the last step
     real(wp) :: look_below = doubtful             !< conditioning at which other coordinates are looked for
@@ -69,10 +67,8 @@ module mech9_dynamic_run
     procedure, private :: step
     procedure, private :: look_between
     procedure, private :: insert
-    procedure, private :: step_aside
     procedure, private :: step_back
     procedure, private :: start_integrator
-    procedure, private :: create
     procedure, private :: stop_integrator
     procedure, private :: change_coordinates
   end type dynamic_run_type
@@ -226,7 +222,7 @@ contains
     real(wp), intent(in) :: t
     logical, intent(out) :: found
     type(error_type), allocatable :: err
-    real(wp) :: y(size(self%y))
+    real(wp) :: from, y(size(self%y))
 
     found = .false.
     if (self%between%crosses()) return
@@ -245,8 +241,9 @@ contains
     if (found) call self%system%close_near(t, y, found, err)
     if (found) found = self%between%agrees(self%system)
     if (found) return
-    call self%step_aside(t, err)
-    if (.not. allocated(err)) call self%system%move_to(t, self%y_aside, err)
+    call self%between%start_of_step(from, y)
+    call self%aside%reach(self%system, from, y, t, err)
+    if (.not. allocated(err)) call self%system%move_to(t, self%aside%y, err)
     found = .not. allocated(err)
   end subroutine look_between
 
@@ -258,34 +255,9 @@ contains
     real(wp) :: from, y(size(self%y))
 
     call self%between%start_of_step(from, y)
-    call self%step_aside(from + part*(self%t - from), err)
-    if (.not. allocated(err)) call self%between%insert(self%t_aside, self%y_aside)
+    call self%aside%reach(self%system, from, y, from + part*(self%t - from), err)
+    if (.not. allocated(err)) call self%between%insert(self%aside%t, self%aside%y)
   end subroutine insert
-
-  !> Steps to a time within the last step, from its start or from where the last such steps ended.
-  subroutine step_aside(self, t, err)
-    class(dynamic_run_type), intent(inout) :: self
-    real(wp), intent(in) :: t
-    type(error_type), allocatable, intent(out) :: err
-    type(expectation_type) :: expectation
-    real(wp) :: from, y(size(self%y))
-    logical :: goes_on          !< it stands between the start of the step and t
-
-    expectation = self%system%work%expectation
-    call self%between%start_of_step(from, y)
-    goes_on = self%has_aside .and. (self%t_aside - from)*(t - self%t_aside) >= 0.0_wp
-    if (.not. self%has_aside) call self%create(self%aside, from, y, err)
-    self%has_aside = .true.
-    if (.not. (goes_on .or. allocated(err))) then
-      call self%aside%restart(from, y, err, first_step=t - from)
-      self%t_aside = from
-      self%y_aside = y
-    end if
-    do while (.not. allocated(err) .and. abs(t - self%t_aside) > 0.0_wp)
-      call self%aside%step(t, self%t_aside, self%y_aside, err)
-    end do
-    call self%system%resume(expectation)
-  end subroutine step_aside
 
   !> Back to the start of the last step, to go onto time t within it.
   subroutine step_back(self, t, err)
@@ -313,24 +285,8 @@ contains
     self%conditioning_here = self%system%conditioning()
     call self%between%begin()
     call self%between%add(self%system, self%t, self%y)
-    call self%create(self%integrator, self%t, self%y, err)
+    call begin_integration(self%integrator, self%system, self%t, self%y, err)
   end subroutine start_integrator
-
-  !> An integrator of the system, from (t, y).
-  subroutine create(self, integrator, t, y, err)
-    class(dynamic_run_type), intent(inout) :: self
-    type(integrator_type), intent(inout) :: integrator
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
-    real(wp) :: absolute(size(y))
-
-    associate (solver => self%system%mechanism%solver)
-      absolute = solver%absolute_tolerance
-      call integrator%create(self%system, solver%method, solver%relative_tolerance, absolute, t, y, err)
-      if (.not. allocated(err)) call integrator%limit(err, maximum_steps=solver%maximum_steps)
-    end associate
-  end subroutine create
 
   !> What all integrators of the run took together.
   function statistics(self) result(all)
@@ -338,18 +294,16 @@ contains
     type(integration_statistics_type) :: all
 
     all = self%before
-    call add_statistics(self%integrator, .true., all)
-    call add_statistics(self%aside, .false., all)
+    call add_statistics(self%integrator%statistics(), .true., all)
+    call add_statistics(self%aside%statistics(), .false., all)
   end function statistics
 
   !> Add what an integrator took.
-  subroutine add_statistics(integrator, goes_on, all)
-    type(integrator_type), intent(inout) :: integrator
+  pure subroutine add_statistics(own, goes_on, all)
+    type(integration_statistics_type), intent(in) :: own
     logical, intent(in) :: goes_on        !< its steps are those of the motion
     type(integration_statistics_type), intent(inout) :: all
-    type(integration_statistics_type) :: own
 
-    own = integrator%statistics()
     all%rate_evaluations = all%rate_evaluations + own%rate_evaluations
     all%jacobian_evaluations = all%jacobian_evaluations + own%jacobian_evaluations
     all%error_test_failures = all%error_test_failures + own%error_test_failures
@@ -367,8 +321,7 @@ contains
 
     self%before = self%statistics()
     call self%integrator%destroy()
-    call self%aside%destroy()
-    self%has_aside = .false.
+    call self%aside%close()
   end subroutine stop_integrator
 
   !> Go on in better conditioned independent coordinates, if there are any.
