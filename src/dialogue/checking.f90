@@ -1,5 +1,5 @@
 !> The checks between the questions: of the structure as soon as it is complete, of the geometry by putting the
-!> mechanism together. Uses error, the model, the kinematics, task, plan_text, draft_check, conversation, correcting.
+!> mechanism together. Uses error, the model, the kinematics, task, structure_text, draft_check, conversation, correcting.
 module mech9_checking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, exit_structure
@@ -11,7 +11,7 @@ module mech9_checking
   use mech9_state, only: state_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_task, only: task_type
-  use mech9_plan_text, only: print_mobility_report
+  use mech9_structure_text, only: print_mobility_report
   use mech9_draft_text, only: draft_text_type
   use mech9_draft_check, only: fault_type, read_draft, faults_of
   use mech9_questions, only: check_structure, question_type

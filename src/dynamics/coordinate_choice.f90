@@ -10,6 +10,7 @@ module mech9_coordinate_choice
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_closure, only: closure_column
+  use mech9_needs, only: needs_type
   use mech9_planning, only: make_plan
   implicit none
   private
@@ -18,14 +19,15 @@ module mech9_coordinate_choice
 contains
 
   !> The independent coordinates that leave the best conditioned dependent ones at a closed position, by
-  !> QR with column pivoting of the closures' Jacobian over all coordinates.
+  !> QR with column pivoting of the closures' Jacobian over all coordinates. Chains that are left out stay dependent.
   subroutine best_independent(plan, state, independent)
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state       !< frames in place
     logical, intent(out) :: independent(:)      !< (M)
     real(wp), allocatable :: a(:, :), tau(:), work(:)
     integer, allocatable :: pivot(:)
-    integer :: m, n, row, c, dependent, info
+    logical :: followed(plan%n_coordinates)
+    integer :: m, n, row, b, c, dependent, info
 
     n = plan%n_coordinates
     m = sum(plan%closures%rank)
@@ -33,13 +35,18 @@ contains
     allocate (tau(min(m, n)), work(2*n + (n + 1)*32), source=0.0_wp)
     allocate (pivot(n), source=0)
     row = 0
-    do c = 1, size(plan%closures)
-      call add_closure(plan, state, c, row, a)
-      row = row + plan%closures(c)%rank
+    followed = .false.
+    followed(plan%independent) = .true.
+    do b = 1, size(plan%blocks)
+      followed(plan%blocks(b)%coordinates) = .true.
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        call add_closure(plan, state, c, row, a)
+        row = row + plan%closures(c)%rank
+      end do
     end do
     if (m > 0) call dgeqp3(m, n, a, m, pivot, tau, work, size(work), info)
-    dependent = n - size(plan%independent)
-    independent = .true.
+    dependent = count(followed) - size(plan%independent)
+    independent = followed
     independent(pivot(:dependent)) = .false.
   end subroutine best_independent
 
@@ -71,10 +78,11 @@ contains
 
   !> The same mechanism and state in other independent coordinates. Fails with exit_singular where the
   !> state cannot be carried over.
-  subroutine with_independent(mechanism, state, independent, new_mechanism, new_plan, new_state, err)
+  subroutine with_independent(mechanism, state, independent, needs, new_mechanism, new_plan, new_state, err)
     type(mechanism_type), intent(in) :: mechanism
     type(state_type), intent(in) :: state             !< closed, with rates of all coordinates
     logical, intent(in) :: independent(:)             !< (M)
+    type(needs_type), intent(in) :: needs             !< what does not serve them is left out
     type(mechanism_type), intent(out) :: new_mechanism
     type(plan_type), intent(out) :: new_plan
     type(state_type), intent(out) :: new_state
@@ -84,7 +92,7 @@ contains
     new_mechanism = mechanism
     new_mechanism%structure%independent = independent
     call transform(new_mechanism%structure, new_mechanism%vectors)
-    call make_plan(new_mechanism, state%q, new_plan, new_state, err)
+    call make_plan(new_mechanism, state%q, new_plan, new_state, err, needs=needs)
     if (allocated(err)) then
       err%code = exit_singular
       return

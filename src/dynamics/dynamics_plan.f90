@@ -121,12 +121,16 @@ contains
   subroutine find_columns(plan, dynamics)
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type), intent(inout) :: dynamics
-    integer :: b, s, m
+    integer :: b, s, m, last
 
     m = plan%n_coordinates
+    last = 0
     allocate (dynamics%first(0:m + 1), source=1)
     allocate (dynamics%column(m), dynamics%parent_entry(m), dynamics%target_entry(m), source=0)
     do b = 1, size(plan%blocks)
+      ! frames of blocks that were left out have no columns
+      dynamics%first(last + 1:plan%blocks(b)%first_step) = dynamics%first(last + 1)
+      last = plan%blocks(b)%last_step
       if (size(plan%blocks(b)%unknowns) > 0) then
         call add_closed_block(plan, plan%blocks(b), dynamics)
       else
@@ -136,6 +140,7 @@ contains
         end do
       end if
     end do
+    dynamics%first(last + 1:) = dynamics%first(last + 1)
     call resize(dynamics%first(m + 1) - 1, dynamics)
   end subroutine find_columns
 

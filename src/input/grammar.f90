@@ -214,6 +214,13 @@ module mech9_grammar
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &
                   '.true.', seldom=.true.), &
+    item_row_type('output', 'coordinates', 'integer', 1, unlimited, '', optional, '(all)', '>=1', '', '', &
+                  'coordinates that are recorded; chains that nothing recorded depends on are not solved', '5, 7', &
+                  seldom=.true.), &
+    item_row_type('output', 'derivatives', 'integer', 1, 1, '', optional, '2', '>=0', '', '', &
+                  'what is recorded: 0 positions, 1 velocities too, 2 accelerations too', '0', seldom=.true.), &
+    item_row_type('output', 'energies', 'logical', 1, 1, '', optional, '.true.', '', '', '', &
+                  'mech9d records kinetic and potential energy and their sum', '.false.', seldom=.true.), &
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]
 

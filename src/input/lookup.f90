@@ -11,7 +11,7 @@ module mech9_lookup
   use mech9_document, only: document_type, group_type
   implicit none
   private
-  public :: groups_named, has_group, has_unsound, has_name, find_item, span_of
+  public :: groups_named, group_or_empty, has_group, has_unsound, has_name, find_item, span_of
   public :: get_integer, get_integers, get_real, get_reals, get_logical, get_text
 
 contains
@@ -33,6 +33,22 @@ contains
       if (pass == 1) allocate (numbers(n))
     end do
   end function groups_named
+
+  !> The first sound group of a name, or one that leaves everything to the defaults.
+  pure function group_or_empty(document, name) result(group)
+    type(document_type), intent(in) :: document
+    character(len=*), intent(in) :: name
+    type(group_type) :: group
+    integer, allocatable :: numbers(:)
+
+    numbers = groups_named(document, name)
+    if (size(numbers) > 0) then
+      group = document%groups(numbers(1))
+    else
+      group%name = name
+      allocate (group%items(0))
+    end if
+  end function group_or_empty
 
   !> Whether the file has a group of this name, sound or not.
   pure logical function has_group(document, name)

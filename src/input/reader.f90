@@ -8,14 +8,14 @@ module mech9_reader
   use mech9_mechanism, only: mechanism_type
   use mech9_document, only: document_type, group_type
   use mech9_checker, only: check_document
-  use mech9_lookup, only: groups_named, has_group, has_name, get_integer, get_logical, get_real, get_reals, get_text, &
-                         span_of
+  use mech9_lookup, only: groups_named, group_or_empty, has_group, has_name, get_integer, get_real, get_reals, get_text, span_of
   use mech9_structure_reader, only: read_structure
   use mech9_pair_reader, only: read_pairs
   use mech9_drive_reader, only: read_drives
   use mech9_motion_reader, only: initial_type, read_initial, read_points
   use mech9_body_reader, only: read_bodies, read_gravity
   use mech9_load_reader, only: read_loads
+  use mech9_output_reader, only: read_output
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -86,6 +86,7 @@ contains
       call read_bodies(document, n_links, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
       call read_loads(document, n_links, m%pairs, m%angle_unit, m%parameters, m%loads, diagnostics)
+      call read_output(document, n_coordinates, m%output, diagnostics)
       call check_pairs_given(document, m, diagnostics)
     end associate
   end subroutine read_parts
@@ -103,7 +104,7 @@ contains
                          '(--structure shows the structure alone)')
   end subroutine check_pairs_given
 
-  !> What does not refer to the structure: title, units, time, how to compute, what to write.
+  !> What does not refer to the structure: title, units, time, how to compute.
   pure subroutine read_settings(document, mechanism, diagnostics)
     type(document_type), intent(in) :: document
     type(mechanism_type), intent(inout) :: mechanism
@@ -115,17 +116,6 @@ contains
     if (get_text(group, 'angle_unit') == 'deg') mechanism%angle_unit = radians_per_degree
     group = group_or_empty(document, 'user')
     mechanism%parameters = get_reals(group, 'parameters')
-    group = group_or_empty(document, 'output')
-    mechanism%output%table = get_text(group, 'table')
-    mechanism%output%hdf5 = get_text(group, 'hdf5')
-    mechanism%output%sketch = get_text(group, 'sketch')
-    mechanism%output%animation = get_text(group, 'animation')
-    mechanism%output%view = get_text(group, 'view')
-    mechanism%output%poses = get_logical(group, 'poses')
-    mechanism%output%compression = get_integer(group, 'compression')
-    if (mechanism%output%compression > 9) &
-      call diagnostics%add(span_of(group, 'compression', 1), 'compression goes from 0 (none) to 9 (the smallest file)')
-    mechanism%output%conditioning = get_logical(group, 'conditioning')
     group = group_or_empty(document, 'solver')
     mechanism%solver%method = get_text(group, 'method')
     mechanism%solver%relative_tolerance = get_real(group, 'relative_tolerance')
@@ -133,22 +123,6 @@ contains
     mechanism%solver%maximum_steps = get_integer(group, 'maximum_steps')
     call read_time(group_or_empty(document, 'time'), mechanism%time, diagnostics)
   end subroutine read_settings
-
-  !> The sound group of a name, or one that leaves everything to the defaults.
-  pure function group_or_empty(document, name) result(group)
-    type(document_type), intent(in) :: document
-    character(len=*), intent(in) :: name
-    type(group_type) :: group
-    integer, allocatable :: numbers(:)
-
-    numbers = groups_named(document, name)
-    if (size(numbers) > 0) then
-      group = document%groups(numbers(1))
-    else
-      group%name = name
-      allocate (group%items(0))
-    end if
-  end function group_or_empty
 
   pure subroutine read_time(group, time, diagnostics)
     type(group_type), intent(in) :: group

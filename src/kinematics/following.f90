@@ -1,5 +1,5 @@
 !> Following a driven motion through regular positions, step by step, on one branch. Uses kinds, error,
-!> mechanism, plan, state, solver, watch.
+!> mechanism, plan, state, solver, past_rates, watch.
 !>
 !> Each block is predicted by the polynomial through the last two positions with their rates and
 !> accelerations, corrected by Newton's method, and judged. A step is accepted if the block's Jacobian
@@ -11,13 +11,14 @@ module mech9_following
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, nothing_known, acceleration_known
+  use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
     solve_rates, solve_accelerations
+  use mech9_past_rates, only: past_rates_type, new_past_rates, forget_rates, take_rates
   use mech9_watch, only: watch_type, new_watch, watch_step, keep, nearness, is_near
   implicit none
   private
-  public :: follower_type, departure_type, new_follower, settle, step_towards, set_inputs, go_back
+  public :: follower_type, departure_type, new_follower, settle, step_towards, set_inputs, go_back, add_accelerations
 
   !> A driven coordinate moves no farther in a step than this [rad, lengths of the mechanism], ...
   real(wp), parameter :: longest_drive = 0.25_wp
@@ -61,6 +62,8 @@ module mech9_following
     type(watch_type), allocatable :: watches(:)
     integer, allocatable :: drives(:)             !< those that move closed chains
     integer :: last_block = huge(1)               !< the blocks after this one are left as they are
+    logical :: with_accelerations = .true.        !< at every position, not only near singular ones
+    type(past_rates_type) :: past                 !< without accelerations predictions are made from it
     real(wp) :: reach = huge(1.0_wp)              !< a step that will probably be accepted [s]
     real(wp) :: goal = 0.0_wp                     !< time towards which it went last [s]
     integer :: creeping = 0                       !< steps towards it that went nearly nowhere
@@ -97,6 +100,7 @@ contains
     follower%state = assembled
     m = plan%n_coordinates
     allocate (follower%departure%q(m), follower%departure%dq(m), follower%departure%ddq(m), source=0.0_wp)
+    follower%past = new_past_rates(m)
     allocate (follower%departure%higher(m, 3), source=0.0_wp)
     allocate (follower%work(size(plan%blocks)), follower%watches(size(plan%blocks)))
     do b = 1, size(plan%blocks)
@@ -113,15 +117,17 @@ contains
     type(plan_type), intent(in) :: plan
     integer, allocatable :: drives(:)
     logical :: marked(0:plan%n_coordinates), drives_chain(size(mechanism%drives))
-    integer :: c, i, s
+    integer :: b, c, i, s
 
     marked = .false.
-    do c = 1, size(plan%closures)
-      do i = 1, 2
-        s = merge(plan%closures(c)%closing, plan%closures(c)%target, i == 1)
-        do while (s > 0)
-          marked(plan%steps(s)%coordinate) = .true.
-          s = plan%steps(s)%parent
+    do b = 1, size(plan%blocks)
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        do i = 1, 2
+          s = merge(plan%closures(c)%closing, plan%closures(c)%target, i == 1)
+          do while (s > 0)
+            marked(plan%steps(s)%coordinate) = .true.
+            s = plan%steps(s)%parent
+          end do
         end do
       end do
     end do
@@ -146,6 +152,7 @@ contains
       last%higher = 0.0_wp
     end associate
     call keep(follower%watches)
+    call forget_rates(follower%past)
   end subroutine settle
 
   !> One accepted step towards time t, as far as it can be trusted. `stuck` tells that even the shortest one
@@ -160,7 +167,7 @@ contains
     integer, intent(out) :: refused_by
     type(error_type), allocatable, intent(out) :: err
     real(wp) :: remaining, h, worst
-    logical :: no_drive, driven
+    logical :: no_drive, driven, complete
 
     stuck = .false.
     if (abs(t - follower%goal) > 0.0_wp) follower%creeping = 0
@@ -175,13 +182,14 @@ contains
         follower%state%t = follower%departure%t + 0.5_wp*remaining
       if (h >= abs(remaining)) follower%state%t = t
       h = abs(follower%state%t - follower%departure%t)
-      call try_step(mechanism, plan, follower, worst, refused_by, no_drive, err)
+      complete = follower%with_accelerations .or. any(is_near(follower%watches))
+      call try_step(mechanism, plan, follower, complete, worst, refused_by, no_drive, err)
       if (no_drive) return
       if (worst <= 1.0_wp) then
         follower%reach = min(2.0_wp*min(max(follower%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
         if (h < creeping_step*abs(remaining) .and. .not. driven) &
           call count_creeping(plan, follower, stuck, refused_by)
-        call accept(plan, follower)
+        call accept(plan, follower, complete)
         return
       end if
       follower%halvings = follower%halvings + 1
@@ -239,10 +247,11 @@ contains
   end subroutine limit_by_drives
 
   !> Predict, correct and judge one step of all blocks, from the departure to the time in the state.
-  subroutine try_step(mechanism, plan, follower, worst, refused_by, no_drive, err)
+  subroutine try_step(mechanism, plan, follower, complete, worst, refused_by, no_drive, err)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(follower_type), intent(inout) :: follower
+    logical, intent(in) :: complete             !< with accelerations
     real(wp), intent(out) :: worst              !< at most 1: accepted; else about how much too long it was
     integer, intent(out) :: refused_by          !< number of the block
     logical, intent(out) :: no_drive            !< failed because a drive has no value
@@ -271,7 +280,7 @@ contains
         call solve_rates(plan, block, follower%state, work)
         call judge(plan, block, follower%departure, follower%state, newton, follower%watches(b)%trial_pivot, worst)
         if (worst > 1.0_wp) return
-        call solve_accelerations(plan, block, follower%state, work)
+        if (complete) call solve_accelerations(plan, block, follower%state, work)
       end associate
     end do
   end subroutine try_step
@@ -323,16 +332,24 @@ contains
   end subroutine judge
 
   !> The trial becomes the place of departure.
-  pure subroutine accept(plan, follower)
+  pure subroutine accept(plan, follower, complete)
     type(plan_type), intent(in) :: plan
     type(follower_type), intent(inout) :: follower
+    logical, intent(in) :: complete             !< its accelerations are known
     real(wp) :: h
 
     follower%steps = follower%steps + 1
-    follower%state%known = acceleration_known
+    follower%state%known = merge(acceleration_known, velocity_known, complete)
     associate (here => follower%state, last => follower%departure)
       h = here%t - last%t
-      call extrapolate(size(here%q), h, plan%unit_of, here%q, here%dq, here%ddq, last%q, last%dq, last%ddq, last%higher)
+      if (complete) then
+        call forget_rates(follower%past)
+        call extrapolate(size(here%q), h, plan%unit_of, here%q, here%dq, here%ddq, last%q, last%dq, last%ddq, last%higher)
+      else
+        call take_rates(follower%past, here%t, here%dq, last%ddq, last%higher)
+        last%q = here%q
+        last%dq = here%dq
+      end if
       last%t = here%t
       last%before = abs(h)
     end associate
@@ -374,6 +391,20 @@ contains
       last_ddq(k) = ddq(k)
     end do
   end subroutine extrapolate
+
+  !> The accelerations at the place of departure, where the follower is, if it goes without them.
+  subroutine add_accelerations(plan, follower)
+    type(plan_type), intent(in) :: plan
+    type(follower_type), intent(inout) :: follower
+    integer :: b
+
+    if (follower%state%known == acceleration_known) return
+    do b = 1, min(size(plan%blocks), follower%last_block)
+      call solve_accelerations(plan, plan%blocks(b), follower%state, follower%work(b))
+    end do
+    follower%state%known = acceleration_known
+    follower%departure%ddq = follower%state%ddq
+  end subroutine add_accelerations
 
   !> After a step that was given up: the coordinates of the last position again.
   pure subroutine go_back(follower)

@@ -103,7 +103,8 @@ contains
     loop%closures(1)%target = place_of(closure%target, closure%path%steps)
     loop%closures(1)%path%steps = [(i, i=1, n)]
     allocate (loop%blocks(1))
-    loop%blocks(1) = block_type(1, n, 1, 1, [1], closure%rank, [(i, i=1, n)], [(i, i=1, n)])
+    loop%blocks(1) = block_type(first_step=1, last_step=n, first_closure=1, last_closure=1, chains=[1], &
+                                equations=closure%rank, unknowns=[(i, i=1, n)], coordinates=[(i, i=1, n)])
   end function loop_alone
 
   !> Place of a frame in a list of frames; 0 where it is not there.

@@ -64,12 +64,14 @@ contains
     end do
   end subroutine spread_accelerations
 
-  !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1.
+  !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1; those that are
+  !> asked for must be known of the state.
   pure subroutine point_motion(plan, state, point, position, velocity, acceleration)
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
     type(point_type), intent(in) :: point
-    real(wp), intent(out) :: position(3), velocity(3), acceleration(3)   !< [m], [m/s], [m/s^2]
+    real(wp), intent(out) :: position(3)                                  !< [m]
+    real(wp), intent(out), optional :: velocity(3), acceleration(3)       !< [m/s], [m/s^2]
     real(wp) :: arm(3), in_frame(3)
     integer :: f
 
@@ -81,9 +83,9 @@ contains
     in_frame = transformed(plan%link_in_frame(point%link), point%position)
     arm = turn(state%r(:, :, f), in_frame)
     position = state%p(:, f) + arm + plan%origin
-    velocity = state%v(:, f) + cross(state%omega(:, f), arm)
-    acceleration = state%a(:, f) + cross(state%alpha(:, f), arm) &
-                   + cross(state%omega(:, f), cross(state%omega(:, f), arm))
+    if (present(velocity)) velocity = state%v(:, f) + cross(state%omega(:, f), arm)
+    if (present(acceleration)) acceleration = state%a(:, f) + cross(state%alpha(:, f), arm) &
+                                              + cross(state%omega(:, f), cross(state%omega(:, f), arm))
   end subroutine point_motion
 
   !> The same in planar arithmetic.
@@ -91,7 +93,8 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
     type(point_type), intent(in) :: point
-    real(wp), intent(out) :: position(3), velocity(3), acceleration(3)
+    real(wp), intent(out) :: position(3)
+    real(wp), intent(out), optional :: velocity(3), acceleration(3)
     real(wp) :: in_frame(3), x, y
     integer :: i
 
@@ -101,8 +104,9 @@ contains
       x = f(1)*in_frame(1) - f(2)*in_frame(2)
       y = f(2)*in_frame(1) + f(1)*in_frame(2)
       position = to_space(plan%planar, f(3) + x, f(4) + y, in_frame(3)) + plan%origin
-      velocity = to_space(plan%planar, v(2) - v(1)*y, v(3) + v(1)*x, 0.0_wp)
-      acceleration = to_space(plan%planar, a(2) - a(1)*y - v(1)**2*x, a(3) + a(1)*x - v(1)**2*y, 0.0_wp)
+      if (present(velocity)) velocity = to_space(plan%planar, v(2) - v(1)*y, v(3) + v(1)*x, 0.0_wp)
+      if (present(acceleration)) &
+        acceleration = to_space(plan%planar, a(2) - a(1)*y - v(1)**2*x, a(3) + a(1)*x - v(1)**2*y, 0.0_wp)
     end associate
   end subroutine planar_point_motion
 

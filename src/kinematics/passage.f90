@@ -62,6 +62,7 @@ contains
     passage%exists = .false.
     do trial = 1, most_trials
       scout = follower
+      scout%with_accelerations = .true.
       if (trial > 1) call walk(mechanism, plan, scout, t - half, passage%exists, err)
       if (allocated(err)) return
       if (trial == 1 .or. passage%exists) call try_passage(mechanism, plan, scout, t, half, passage, err)

@@ -57,9 +57,11 @@ module mech9_plan
   !> block that determines its coordinate, an independent one to the first block that needs it.
   type :: block_type
     integer :: first_step = 0, last_step = 0
+    integer :: last_moved = huge(1)            !< accelerations of later frames serve only the block itself
     integer :: first_closure = 1, last_closure = 0
     integer, allocatable :: chains(:)          !< numbers of its closed chains, as in nrw
     integer :: equations = 0                   !< rows: sum of the closures' ranks
+    logical :: is_constant = .false.           !< its Jacobian: nothing turns in its loops
     integer, allocatable :: unknowns(:)        !< steps of its dependent coordinates
     integer, allocatable :: coordinates(:)     !< these themselves
   end type block_type

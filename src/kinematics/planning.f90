@@ -11,6 +11,7 @@ module mech9_planning
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, new_state
+  use mech9_needs, only: needs_type, leave_out
   use mech9_frames, only: lay_out_frames
   use mech9_planar_layout, only: lay_out_in_plane
   use mech9_loop_space, only: find_loop_spaces
@@ -39,13 +40,14 @@ contains
   !> The plan of a mechanism and its assembled start: positions of all coordinates for the given
   !> independent ones. Fails with exit_structure where the dependent coordinates are not determined
   !> by the independent ones, with exit_assembly where the chains do not close.
-  subroutine make_plan(mechanism, start, plan, state, err, in_space)
+  subroutine make_plan(mechanism, start, plan, state, err, in_space, needs)
     type(mechanism_type), intent(in) :: mechanism
     real(wp), intent(in) :: start(:)        !< (M): independent coordinates as given, guesses of the others
     type(plan_type), intent(out) :: plan
     type(state_type), intent(out) :: state  !< assembled
     type(error_type), allocatable, intent(out) :: err
     logical, intent(in), optional :: in_space   !< no planar arithmetic, even where it could be used
+    type(needs_type), intent(in), optional :: needs   !< what does not serve them is left out and not assembled
     type(elsewhere_type) :: elsewhere
     logical :: spatial
 
@@ -57,6 +59,7 @@ contains
     call find_offers(plan, start)
     call propose_blocks(plan, state, err)
     if (allocated(err)) return
+    if (present(needs)) call leave_out(plan, needs)
     spatial = .false.
     if (present(in_space)) spatial = in_space
     if (.not. spatial) call lay_out_in_plane(plan)
@@ -68,6 +71,8 @@ contains
     if (allocated(err)) return
     call check_inputs(plan, state, elsewhere, err)
     if (allocated(err)) return
+    if (present(needs)) call leave_out(plan, needs)
+    call find_constants(plan)
     call trim_paths(plan)
   end subroutine make_plan
 
@@ -262,6 +267,23 @@ contains
       names = 'closed chains '//to_text(block%chains)//' together'
     end if
   end function chain_names
+
+  !> Blocks whose Jacobian never changes, since all steps of their loops slide.
+  pure subroutine find_constants(plan)
+    type(plan_type), intent(inout) :: plan
+    integer :: b, c
+
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b))
+        block%is_constant = size(block%unknowns) > 0
+        do c = block%first_closure, block%last_closure
+          associate (loop => plan%steps(plan%closures(c)%path%steps))
+            block%is_constant = block%is_constant .and. all(loop%is_screw) .and. .not. any(abs(loop%turn) > 0.0_wp)
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine find_constants
 
   !> In time only a block's own steps move against its closures.
   subroutine trim_paths(plan)

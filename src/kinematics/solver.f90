@@ -1,7 +1,7 @@
 !> One block at one time: Newton's method for its positions, then its exact rates and accelerations.
 !> Uses kinds, error, least_squares, plan, state, composition, closure, motion.
 module mech9_solver
-  use mech9_kinds, only: wp
+  use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
@@ -12,7 +12,7 @@ module mech9_solver
   implicit none
   private
   public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, apply_change
-  public :: closed_enough, newton_outcome_type, least_pivot
+  public :: closed_enough, newton_outcome_type, least_pivot, work_count_type, work_of
 
   !> A chain counts as closed when its independent equations hold to this many times round-off,
   !> rotations in rad, translations in lengths of the mechanism: a sum over the steps of a loop
@@ -22,12 +22,23 @@ module mech9_solver
   real(wp), parameter :: last_correction = 1.0e-9_wp
   integer, parameter :: most_iterations = 12
 
+  !> How much was done.
+  type :: work_count_type
+    integer(long) :: frames_placed = 0       !< poses of frames
+    integer(long) :: frames_moved = 0        !< their velocities, and their accelerations
+    integer(long) :: factorizations = 0      !< Jacobians of blocks
+    integer(long) :: rates = 0               !< blocks solved for their rates
+    integer(long) :: accelerations = 0       !< blocks solved for their accelerations
+  end type work_count_type
+
   !> Scratch of one block, sized once.
   type :: block_work_type
     type(least_squares_type) :: equations      !< Jacobian and its factors
     integer, allocatable :: column_of(:)       !< unknown of each of the block's steps, 0 for none
     real(wp), allocatable :: right(:)          !< (equations)
     real(wp), allocatable :: change(:)         !< (unknowns)
+    logical :: factors_stay = .false.          !< the Jacobian never changes, and was factorized
+    type(work_count_type) :: count             !< of what was done for the block
   end type block_work_type
 
   !> How Newton's method went.
@@ -73,6 +84,7 @@ contains
     do
       call place_frames(plan, block%first_step, block%last_step, state, err)
       if (allocated(err)) return
+      work%count%frames_placed = work%count%frames_placed + steps_of(block)
       if (size(block%unknowns) == 0) then
         outcome%converged = .true.
         return
@@ -103,9 +115,31 @@ contains
     type(state_type), intent(in) :: state
     type(block_work_type), intent(inout) :: work
 
+    if (work%factors_stay) return
     call closure_jacobian(plan, block, state, work%column_of, work%equations%a)
     call work%equations%factorize()
+    work%count%factorizations = work%count%factorizations + 1
+    work%factors_stay = block%is_constant
   end subroutine factorize_block
+
+  !> What was done for all blocks together.
+  pure function work_of(blocks) result(all)
+    type(block_work_type), intent(in) :: blocks(:)
+    type(work_count_type) :: all
+
+    all%frames_placed = sum(blocks%count%frames_placed)
+    all%frames_moved = sum(blocks%count%frames_moved)
+    all%factorizations = sum(blocks%count%factorizations)
+    all%rates = sum(blocks%count%rates)
+    all%accelerations = sum(blocks%count%accelerations)
+  end function work_of
+
+  !> Frames that a block makes.
+  pure integer function steps_of(block)
+    type(block_type), intent(in) :: block
+
+    steps_of = block%last_step - block%first_step + 1
+  end function steps_of
 
   !> Least pivot of a block's factorized Jacobian: about its least singular value, somewhat above it
   !> (rotations in rad, lengths in the mechanism's); 0 where rows are missing.
@@ -147,6 +181,8 @@ contains
       state%dq(block%coordinates(i)) = 0.0_wp
     end do
     call spread_velocities(plan, block%first_step, block%last_step, state)
+    work%count%rates = work%count%rates + 1
+    work%count%frames_moved = work%count%frames_moved + steps_of(block)
     if (block%equations == 0) return
     call closure_rates(plan, block, state, velocity_known, work%right)
     work%right = -work%right
@@ -160,6 +196,7 @@ contains
       state%dq(k) = work%change(i)*plan%unit_of(k)
     end do
     call spread_velocities(plan, block%first_step, block%last_step, state)
+    work%count%frames_moved = work%count%frames_moved + steps_of(block)
   end subroutine solve_rates
 
   !> Accelerations of the block's dependent coordinates, J_d ddq_d = -J_i ddq_i - dJ/dt dq, and of its frames.
@@ -169,13 +206,19 @@ contains
     type(block_type), intent(in) :: block
     type(state_type), intent(inout) :: state
     type(block_work_type), intent(inout) :: work
-    integer :: i, k
+    integer :: i, k, last
 
+    work%count%accelerations = work%count%accelerations + 1
+    last = min(block%last_step, block%last_moved)
+    if (size(block%unknowns) == 0) then
+      call spread_accelerations(plan, block%first_step, last, state)
+      work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
+      return
+    end if
     do i = 1, size(block%unknowns)
       state%ddq(block%coordinates(i)) = 0.0_wp
     end do
     call spread_accelerations(plan, block%first_step, block%last_step, state)
-    if (size(block%unknowns) == 0) return
     call closure_rates(plan, block, state, acceleration_known, work%right)
     work%right = -work%right
     call work%equations%solve(work%right, work%change)
@@ -183,6 +226,7 @@ contains
       k = block%coordinates(i)
       state%ddq(k) = work%change(i)*plan%unit_of(k)
     end do
-    call spread_accelerations(plan, block%first_step, block%last_step, state)
+    call spread_accelerations(plan, block%first_step, last, state)
+    work%count%frames_moved = work%count%frames_moved + steps_of(block) + (last - block%first_step + 1)
   end subroutine solve_accelerations
 end module mech9_solver

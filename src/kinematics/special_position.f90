@@ -81,6 +81,7 @@ contains
     usual = max(usual, speed)
     if (.not. speed > 0.0_wp) return            ! at rest: no telling where it goes
     scout = follower
+    scout%with_accelerations = .true.
     scout%last_block = b
     do i = 1, most_steps
       if (.not. speed > 0.0_wp) return

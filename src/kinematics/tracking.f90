@@ -13,7 +13,7 @@ module mech9_tracking
   use mech9_closure, only: closing_error
   use mech9_planning, only: chain_names
   use mech9_watch, only: factorize_trial, is_near
-  use mech9_following, only: follower_type, new_follower, settle, step_towards, set_inputs, go_back
+  use mech9_following, only: follower_type, new_follower, settle, step_towards, set_inputs, go_back, add_accelerations
   use mech9_special_position, only: finding_type, look_ahead, find_escape, nothing_special, dead_point, crossing, &
     lost, escape
   use mech9_motion, only: spread_velocities
@@ -43,19 +43,21 @@ module mech9_tracking
 
 contains
 
-  !> Begin at an assembled position: velocities and accelerations there.
-  subroutine start_tracking(mechanism, plan, assembled, t, tracker, err)
+  !> Begin at an assembled position: velocities and accelerations there. Later positions may do without accelerations.
+  subroutine start_tracking(mechanism, plan, assembled, t, tracker, err, with_accelerations)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: assembled
     real(wp), intent(in) :: t
     type(tracker_type), intent(out) :: tracker
     type(error_type), allocatable, intent(out) :: err
+    logical, intent(in), optional :: with_accelerations
     integer :: b
     logical :: special
 
     special = .false.
     tracker%follower_type = new_follower(mechanism, plan, assembled)
+    if (present(with_accelerations)) tracker%with_accelerations = with_accelerations
     tracker%state%t = t
     call set_inputs(mechanism, t, tracker%state%q, tracker%state%dq, tracker%state%ddq, err)
     if (allocated(err)) return
@@ -225,6 +227,7 @@ contains
       ! already seen, or seen to be nothing
       if (tracker%ahead%kind /= nothing_special) exit
       if ((tracker%clear_until(b) - tracker%departure%t)*direction > 0.0_wp) cycle
+      call add_accelerations(plan, tracker%follower_type)
       call look_ahead(mechanism, plan, tracker%follower_type, b, direction, ahead)
       tracker%clear_until(b) = ahead%t
       tracker%ahead = ahead
@@ -244,12 +247,15 @@ contains
     type(tracker_type), intent(inout) :: tracker
     real(wp) :: largest
     integer :: b
+    logical :: with_accelerations
 
     do b = 1, size(tracker%watches)
       largest = tracker%watches(b)%largest_pivot
       tracker%passage%beyond%watches(b)%largest_pivot = max(largest, tracker%passage%beyond%watches(b)%largest_pivot)
     end do
+    with_accelerations = tracker%with_accelerations
     tracker%follower_type = tracker%passage%beyond
+    tracker%with_accelerations = with_accelerations
     tracker%passage%exists = .false.
     tracker%passages = tracker%passages + 1
     ! still near: but that is behind
@@ -289,11 +295,13 @@ contains
   pure real(wp) function largest_closure(plan, state) result(largest)
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
-    integer :: c
+    integer :: b, c
 
     largest = 0.0_wp
-    do c = 1, size(plan%closures)
-      largest = max(largest, closing_error(plan, c, state))
+    do b = 1, size(plan%blocks)
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        largest = max(largest, closing_error(plan, c, state))
+      end do
     end do
   end function largest_closure
 

@@ -26,6 +26,7 @@ module mech9_watch
   type :: watch_type
     real(wp), allocatable :: jacobian(:, :), trial_jacobian(:, :)
     real(wp), allocatable :: change(:, :)                      !< scratch
+    logical :: taken = .false.                                 !< it was on trial
     integer :: sign = 1, trial_sign = 1                        !< of the determinant of a square one
     real(wp) :: pivot = 1.0_wp, trial_pivot = 1.0_wp           !< the least
     real(wp) :: largest_pivot = 0.0_wp                         !< largest least pivot of any position so far
@@ -51,12 +52,15 @@ contains
     type(block_work_type), intent(inout) :: work
     type(watch_type), intent(inout) :: watch
 
-    if (size(block%unknowns) == 0) return
+    if (size(block%unknowns) == 0 .or. (work%factors_stay .and. watch%taken)) return
     call closure_jacobian(plan, block, state, work%column_of, watch%trial_jacobian)
     call copy(size(watch%trial_jacobian), watch%trial_jacobian, work%equations%a)
     call work%equations%factorize()
+    work%count%factorizations = work%count%factorizations + 1
     watch%trial_pivot = least_pivot(work)
     watch%trial_sign = work%equations%determinant_sign()
+    work%factors_stay = block%is_constant
+    watch%taken = .true.
   end subroutine factorize_trial
 
   !> Factorize the block's Jacobian at the end of a step and judge whether a singular one lies between.
@@ -138,7 +142,7 @@ contains
   end subroutine keep
 
   !> Whether a block is near a singular position.
-  pure logical function is_near(watch)
+  pure elemental logical function is_near(watch)
     type(watch_type), intent(in) :: watch
 
     is_near = watch%pivot < near*watch%largest_pivot

@@ -19,6 +19,7 @@ module mech9_coordinate_load
     real(wp) :: force = 0.0_wp       !< [N m, N]
   contains
     procedure :: mark_links
+    procedure :: mark_coordinates
     procedure :: apply
     procedure :: potential
   end type coordinate_load_type
@@ -30,6 +31,13 @@ contains
     class(coordinate_load_type), intent(in) :: self
     logical, intent(inout) :: needed(:)
   end subroutine mark_links
+
+  pure subroutine mark_coordinates(self, needed)
+    class(coordinate_load_type), intent(in) :: self
+    logical, intent(inout) :: needed(:)
+
+    needed(self%coordinate) = .true.
+  end subroutine mark_coordinates
 
   subroutine apply(self, state, sum, err)
     class(coordinate_load_type), intent(in) :: self

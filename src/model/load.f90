@@ -13,6 +13,7 @@ module mech9_load
     type(place_type) :: place       !< of its group in the data file
   contains
     procedure(mark_interface), deferred :: mark_links
+    procedure :: mark_coordinates
     procedure(apply_interface), deferred :: apply
     procedure(potential_interface), deferred :: potential
   end type load_type
@@ -46,4 +47,12 @@ module mech9_load
       type(motion_view_type), intent(in) :: state
     end function potential_interface
   end interface
+
+contains
+
+  !> Mark the coordinates that the load asks for beside the motion of links: none, unless a kind says otherwise.
+  pure subroutine mark_coordinates(self, needed)
+    class(load_type), intent(in) :: self
+    logical, intent(inout) :: needed(:)      !< (M)
+  end subroutine mark_coordinates
 end module mech9_load

@@ -32,9 +32,27 @@ module mech9_settings
     logical :: poses = .false.                !< the HDF5 file holds the poses of links
     integer :: compression = 0                !< of the HDF5 file: 0 none to 9 most
     logical :: conditioning = .false.         !< a column of the least singular value
+    integer, allocatable :: coordinates(:)    !< that have columns; none listed: all
+    integer :: derivatives = 2                !< the highest in time that is recorded
+    logical :: energies = .true.              !< columns of the energies
+  contains
+    procedure :: recorded
   end type output_settings_type
 
 contains
+
+  !> Whether each of so many coordinates is recorded: all are, unless some are named.
+  pure function recorded(self, n_coordinates)
+    class(output_settings_type), intent(in) :: self
+    integer, intent(in) :: n_coordinates
+    logical :: recorded(n_coordinates)
+
+    recorded = .true.
+    if (.not. allocated(self%coordinates)) return
+    if (size(self%coordinates) == 0) return
+    recorded = .false.
+    recorded(self%coordinates) = .true.
+  end function recorded
 
   !> Time of output i; the last one is exactly the end.
   pure real(wp) function time(self, i)

@@ -1,9 +1,10 @@
 !> The columns of kinematic results: names, units, and a row of numbers from a state of motion.
-!> Uses kinds, text, mechanism, plan, state, motion, poses.
+!> Uses kinds, text, mechanism, result_units, plan, state, motion, poses.
 module mech9_columns
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_motion, only: point_motion
@@ -12,13 +13,17 @@ module mech9_columns
   private
   public :: columns_type, kinematic_columns
 
-  !> Time, all coordinates, all rates, all accelerations, and nine columns for each point.
+  !> Time, the recorded coordinates, their rates, their accelerations, and columns for each point: as many
+  !> derivatives as are recorded.
   type :: columns_type
     type(string_type), allocatable :: names(:)
     type(string_type), allocatable :: units(:)
     type(string_type), allocatable :: long_names(:)   !< a few words; the name where none were given
     integer :: count = 0
-    real(wp), allocatable :: factors(:)     !< (M) from the program's units to those of the results
+    integer, allocatable :: coordinates(:)  !< that are recorded, ascending
+    real(wp), allocatable :: factors(:)     !< (coordinates) from the program's units to those of the results
+    integer :: derivatives = 2              !< that are recorded
+    integer :: motion = 0                   !< columns of the time, the coordinates and the points: the first ones
     type(poses_type) :: poses               !< columns behind the others, where they are asked for
   contains
     procedure :: append
@@ -38,29 +43,26 @@ contains
     character(len=4), parameter :: orders(3) = ['q   ', 'dq  ', 'ddq ']
     character(len=5), parameter :: per_time(3) = ['     ', '/s   ', '/s^2 ']
     character(len=2), parameter :: point_orders(3) = ['  ', 'v ', 'a ']
-    character(len=:), allocatable :: angle, unit
-    integer :: i, k, order
+    integer :: i, k, n, order
 
-    angle = merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
-    allocate (columns%names(1 + 3*size(mechanism%pairs) + 9*size(mechanism%points)))
-    allocate (columns%units(size(columns%names)), columns%long_names(size(columns%names)))
-    allocate (columns%factors(size(mechanism%pairs)), source=1.0_wp)
+    n = size(mechanism%pairs)
+    allocate (columns%coordinates, source=pack([(k, k=1, n)], mechanism%output%recorded(n)))
+    columns%derivatives = mechanism%output%derivatives
+    n = size(columns%coordinates)
+    columns%motion = 1 + (columns%derivatives + 1)*(n + 3*size(mechanism%points))
+    allocate (columns%names(columns%motion), columns%units(columns%motion), columns%long_names(columns%motion))
+    allocate (columns%factors(n), source=1.0_wp)
     if (mechanism%output%poses) columns%poses = poses_of(mechanism)
     call columns%append('t', 's')
-    do order = 1, 3
-      do k = 1, size(mechanism%pairs)
-        unit = 'm'
-        if (mechanism%pairs(k)%pair%kind_name() == 'user') then
-          unit = '1'
-        else if (mechanism%pairs(k)%pair%angular) then
-          unit = angle
-          columns%factors(k) = 1.0_wp/mechanism%angle_unit
-        end if
-        call columns%append(trim(orders(order))//to_text(k), unit//trim(per_time(order)))
+    do order = 1, columns%derivatives + 1
+      do i = 1, n
+        k = columns%coordinates(i)
+        columns%factors(i) = 1.0_wp/unit_of(mechanism, k)
+        call columns%append(trim(orders(order))//to_text(k), trim(unit_name(mechanism, k))//trim(per_time(order)))
       end do
     end do
     do i = 1, size(mechanism%points)
-      do order = 1, 3
+      do order = 1, columns%derivatives + 1
         do k = 1, 3
           call columns%append(mechanism%points(i)%name//'.'//trim(point_orders(order))//directions(k), &
                               'm'//trim(per_time(order)))
@@ -114,26 +116,47 @@ contains
     if (self%poses%n_links > 0) call self%poses%fill(plan, state, row(self%count + 1:))
   end subroutine fill_poses
 
-  !> The row of a state; `used` numbers are set.
-  pure subroutine fill(self, mechanism, plan, state, row, used)
+  !> The columns of the motion in the row of a state.
+  pure subroutine fill(self, mechanism, plan, state, row)
     class(columns_type), intent(in) :: self
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
     real(wp), intent(inout) :: row(:)
-    integer, intent(out) :: used
-    integer :: m, i
+    integer :: i, n, used
 
-    m = plan%n_coordinates
+    n = size(self%coordinates)
     row(1) = state%t
-    row(2:m + 1) = state%q*self%factors
-    row(m + 2:2*m + 1) = state%dq*self%factors
-    row(2*m + 2:3*m + 1) = state%ddq*self%factors
-    used = 3*m + 1
+    call take(n, self%coordinates, self%factors, state%q, row(2:n + 1))
+    if (self%derivatives > 0) call take(n, self%coordinates, self%factors, state%dq, row(n + 2:2*n + 1))
+    if (self%derivatives > 1) call take(n, self%coordinates, self%factors, state%ddq, row(2*n + 2:3*n + 1))
+    used = 1 + (self%derivatives + 1)*n
     do i = 1, size(mechanism%points)
-      call point_motion(plan, state, mechanism%points(i), row(used + 1:used + 3), row(used + 4:used + 6), &
-                        row(used + 7:used + 9))
-      used = used + 9
+      associate (point => mechanism%points(i))
+        select case (self%derivatives)
+        case (0)
+          call point_motion(plan, state, point, row(used + 1:used + 3))
+        case (1)
+          call point_motion(plan, state, point, row(used + 1:used + 3), row(used + 4:used + 6))
+        case default
+          call point_motion(plan, state, point, row(used + 1:used + 3), row(used + 4:used + 6), row(used + 7:used + 9))
+        end select
+      end associate
+      used = used + 3*(self%derivatives + 1)
     end do
   end subroutine fill
+
+  !> The recorded coordinates out of all, in the units of the results.
+  pure subroutine take(n, coordinates, factors, values, columns)
+    integer, intent(in) :: n
+    integer, intent(in) :: coordinates(n)
+    real(wp), intent(in) :: factors(n)
+    real(wp), intent(in) :: values(*)        !< of all coordinates
+    real(wp), intent(inout) :: columns(n)
+    integer :: i
+
+    do i = 1, n
+      columns(i) = values(coordinates(i))*factors(i)
+    end do
+  end subroutine take
 end module mech9_columns

@@ -54,7 +54,7 @@ contains
 
     call self%file%create(path, err)
     if (allocated(err)) return
-    scalars = columns%count - 1 - 3*size(mechanism%pairs) - 9*size(mechanism%points)
+    scalars = columns%count - columns%motion
     self%takes_poses = .true.
     call self%series%start(quantities_of_motion + scalars, columns%width(), mechanism%time%intervals + 1, &
                            mechanism%output%compression)
@@ -75,18 +75,21 @@ contains
     type(mechanism_type), intent(in) :: mechanism
     type(columns_type), intent(in) :: columns
     integer, intent(in) :: scalars           !< columns that belong neither to a coordinate nor to a point
-    integer :: m, i, at
+    character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
+    character(len=13), parameter :: words(0:2) = ['coordinates  ', 'rates        ', 'accelerations']
+    character(len=12), parameter :: of_points(0:2) = ['position    ', 'velocity    ', 'acceleration']
+    character(len=5), parameter :: point_units(0:2) = ['m    ', 'm/s  ', 'm/s^2']
+    integer :: order, i, at
 
-    m = size(mechanism%pairs)
     call self%series%add('time', [1], [integer ::], 'time', columns%units(1)%text, [character(len=5) ::])
-    call add_of_coordinates(self, columns, m, 'q', 'coordinates of the pairs', 0)
-    call add_of_coordinates(self, columns, m, 'dq', 'rates of the coordinates', 1)
-    call add_of_coordinates(self, columns, m, 'ddq', 'accelerations of the coordinates', 2)
-    if (size(mechanism%points) > 0) then
-      call add_of_points(self, mechanism, 'position', 'positions of the points in the fixed frame', 'm', 0)
-      call add_of_points(self, mechanism, 'velocity', 'velocities of the points in the fixed frame', 'm/s', 1)
-      call add_of_points(self, mechanism, 'acceleration', 'accelerations of the points in the fixed frame', 'm/s^2', 2)
-    end if
+    do order = 0, columns%derivatives
+      call add_of_coordinates(self, columns, trim(names(order)), trim(words(order))// &
+                              merge(' of the pairs      ', ' of the coordinates', order == 0), order)
+    end do
+    do order = 0, columns%derivatives
+      if (size(mechanism%points) > 0) &
+        call add_of_points(self, mechanism, columns, trim(of_points(order)), trim(point_units(order)), order)
+    end do
     do i = 1, scalars
       at = columns%count - scalars + i
       call self%series%add(identifier(columns%names(at)%text), [at], [integer ::], &
@@ -95,30 +98,36 @@ contains
   end subroutine add_quantities
 
   !> A quantity that each coordinate has.
-  subroutine add_of_coordinates(self, columns, m, name, long_name, order)
+  subroutine add_of_coordinates(self, columns, name, long_name, order)
     class(hdf5_sink_type), intent(inout) :: self
     type(columns_type), intent(in) :: columns
-    integer, intent(in) :: m                 !< coordinates
     character(len=*), intent(in) :: name, long_name
     integer, intent(in) :: order             !< 0, 1 or 2 derivatives
-    integer :: before, i
+    integer :: before, n, i
 
-    before = 1 + order*m
-    call self%series%add(name, [(before + i, i=1, m)], [m], long_name, &
-                         common_unit(columns%units(before + 1:before + m)), ['/time      ', '/coordinate'])
+    n = size(columns%coordinates)
+    before = 1 + order*n
+    call self%series%add(name, [(before + i, i=1, n)], [n], trim(long_name), &
+                         common_unit(columns%units(before + 1:before + n)), ['/time      ', '/coordinate'])
   end subroutine add_of_coordinates
 
   !> A quantity that each point has, with three components.
-  subroutine add_of_points(self, mechanism, name, long_name, unit, order)
+  subroutine add_of_points(self, mechanism, columns, name, unit, order)
     class(hdf5_sink_type), intent(inout) :: self
     type(mechanism_type), intent(in) :: mechanism
-    character(len=*), intent(in) :: name, long_name, unit
+    type(columns_type), intent(in) :: columns
+    character(len=*), intent(in) :: name, unit
     integer, intent(in) :: order             !< 0, 1 or 2 derivatives
-    integer :: before, i, k
+    character(len=:), allocatable :: plural
+    integer :: before, each, i, k
 
-    before = 1 + 3*size(mechanism%pairs) + 3*order
-    call self%series%add(name, [((before + 9*(i - 1) + k, k=1, 3), i=1, size(mechanism%points))], &
-                         [3, size(mechanism%points)], long_name, unit, ['/time ', '/point', '/axis '])
+    plural = name//'s'
+    if (name == 'velocity') plural = 'velocities'
+    each = 3*(columns%derivatives + 1)
+    before = 1 + (columns%derivatives + 1)*size(columns%coordinates) + 3*order
+    call self%series%add(name, [((before + each*(i - 1) + k, k=1, 3), i=1, size(mechanism%points))], &
+                         [3, size(mechanism%points)], plural//' of the points in the fixed frame', unit, &
+                         ['/time ', '/point', '/axis '])
   end subroutine add_of_points
 
   !> Poses of links, and the vertices of their drawing.
@@ -174,13 +183,13 @@ contains
     type(hdf5_file_type), intent(inout) :: file
     type(mechanism_type), intent(in) :: mechanism
     type(columns_type), intent(in) :: columns
-    type(string_type) :: kinds(size(mechanism%pairs))
-    integer :: k
+    type(string_type) :: kinds(size(columns%coordinates))
+    integer :: i
 
-    do k = 1, size(kinds)
-      kinds(k)%text = trim(mechanism%pairs(k)%pair%kind_name())
+    do i = 1, size(kinds)
+      kinds(i)%text = trim(mechanism%pairs(columns%coordinates(i))%pair%kind_name())
     end do
-    call file%put('coordinate', [(k, k=1, size(kinds))], 'number of the coordinate and of its pair')
+    call file%put('coordinate', columns%coordinates, 'number of the coordinate and of its pair')
     call file%make_scale('coordinate')
     call file%put('coordinate_unit', columns%units(2:1 + size(kinds)), 'unit of each coordinate')
     call file%attach_scales('coordinate_unit', ['/coordinate'])

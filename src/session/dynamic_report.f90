@@ -1,5 +1,5 @@
 !> What mech9d says at the end of a run: a few lines for a person, JSON and data sets for programs.
-!> Uses text, json, facts, hdf5_sink, mechanism, dynamic_run, recording, run_words.
+!> Uses text, json, facts, hdf5_sink, mechanism, solver, dynamic_run, recording, run_words.
 module mech9_dynamic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -11,6 +11,7 @@ module mech9_dynamic_report
   use mech9_plan, only: plan_type
   use mech9_recording, only: recording_outcome_type
   use mech9_integration_methods, only: integration_methods
+  use mech9_solver, only: work_count_type, work_of
   use mech9_integrator, only: integration_statistics_type
   use mech9_dynamic_run, only: dynamic_run_type
   use mech9_run_words, only: duration, each, begin_report, add_structure
@@ -36,8 +37,10 @@ contains
     write (unit, '(a)') method_of(run)//': '//to_text(counts%steps)//' steps, '// &
       to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
       to_text(counts%rate_evaluations)//' evaluations'//each(outcome%seconds_solving, int(counts%rate_evaluations))
-    write (unit, '(a)') 'largest closure '//to_text(run%worst_closure, 3)//' m; largest change of energy '// &
-      to_text(run%largest_energy_change, 3)//' J'
+    write (unit, '(a)', advance='no') 'largest closure '//to_text(run%worst_closure, 3)//' m'
+    if (run%system%mechanism%output%energies) &
+      write (unit, '(a)', advance='no') '; largest change of energy '//to_text(run%largest_energy_change, 3)//' J'
+    write (unit, '(a)') ''
     if (run%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(run%conditioning%least, 3)//' at t = '//to_text(run%conditioning%t, 6)//' s'
     do i = 1, size(run%events)
@@ -80,6 +83,7 @@ contains
     type(dynamic_run_type), intent(inout) :: run
     type(facts_type), intent(out) :: facts
     type(integration_statistics_type) :: counts
+    type(work_count_type) :: work
 
     counts = run%statistics()
     call facts%add('outputs', outcome%rows, 'outputs computed')
@@ -95,10 +99,19 @@ contains
     call facts%add('newton_iterations', run%system%iterations, 'Newton iterations')
     call facts%add('largest_closure', run%worst_closure, 'largest error of a closed chain', 'm')
     call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
-    call facts%add('energy_at_start', run%energy_at_start, 'kinetic and potential energy at the start', 'J')
-    call facts%add('largest_energy_change', run%largest_energy_change, 'largest change of that energy', 'J')
+    if (mechanism%output%energies) then
+      call facts%add('energy_at_start', run%energy_at_start, 'kinetic and potential energy at the start', 'J')
+      call facts%add('largest_energy_change', run%largest_energy_change, 'largest change of that energy', 'J')
+    end if
     call facts%add('least_conditioning', run%conditioning%least, 'least singular value of any block: 0 is singular', '1')
     call facts%add('least_conditioning_time', run%conditioning%t, 'when it was that', 's')
+    if (associated(run%system)) then
+      work = work_of(run%system%work%blocks)
+      call facts%add('frames_placed', work%frames_placed, 'poses of frames that were found in closing chains')
+      call facts%add('factorizations', work%factorizations, 'Jacobians of blocks that were factorized')
+      call facts%add('links_with_inertia', size(run%system%dynamics%bodies), 'links that the coefficients of motion have terms of')
+      call facts%add('frames_carried', count(run%system%dynamics%carries(1:)), 'frames whose motion a mass or a load depends on')
+    end if
     call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
   end subroutine dynamic_facts

@@ -9,6 +9,7 @@ module mech9_dynamic_run
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
+  use mech9_needs, only: needs_of_results, add_forces, leave_out
   use mech9_conditioning, only: conditioning_type
   use mech9_tracking, only: largest_closure
   use mech9_energy, only: kinetic_energy, potential_energy
@@ -71,6 +72,7 @@ module mech9_dynamic_run
     procedure, private :: start_integrator
     procedure, private :: stop_integrator
     procedure, private :: change_coordinates
+    procedure, private :: fill_energies
   end type dynamic_run_type
 
 contains
@@ -98,26 +100,34 @@ contains
   end subroutine assemble_initial_state
 
   !> A run from an assembled initial state; its motion at the start is worked out. To be closed at the end.
-  subroutine start_dynamic_run(mechanism, plan, start, run, err)
+  subroutine start_dynamic_run(mechanism, plan, start, run, err, pictures)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start
     type(dynamic_run_type), intent(out) :: run
     type(error_type), allocatable, intent(out) :: err
+    logical, intent(in), optional :: pictures      !< of the mechanism are wanted; not unless given
+    type(plan_type) :: used
 
     run%program_name = 'mech9d'
     run%columns = kinematic_columns(mechanism)
-    call run%columns%append('E.kinetic', 'J', 'kinetic energy')
-    call run%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
-    call run%columns%append('E.total', 'J', 'kinetic and potential energy')
+    if (mechanism%output%energies) then
+      call run%columns%append('E.kinetic', 'J', 'kinetic energy')
+      call run%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
+      call run%columns%append('E.total', 'J', 'kinetic and potential energy')
+    end if
     call run%columns%append('closure', 'm', 'largest error of a closed chain')
     if (mechanism%output%conditioning) &
       call run%columns%append('conditioning', '1', 'least singular value of the worst chains')
     run%t = mechanism%time%start
     run%end = mechanism%time%end
     allocate (run%events(0))
+    run%needs = needs_of_results(mechanism, pictures)
+    call add_forces(mechanism, run%needs)
+    used = plan
+    call leave_out(used, run%needs)
     allocate (run%system)
-    call set_motion_system(mechanism, plan, start, run%system, err)
+    call set_motion_system(mechanism, used, start, run%system, err)
     if (allocated(err)) return
     run%coefficients = run%system%work%coefficients
   end subroutine start_dynamic_run
@@ -128,8 +138,7 @@ contains
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: row(:)
     type(error_type), allocatable, intent(out) :: err
-    real(wp) :: kinetic, potential
-    integer :: used
+    integer :: next
 
     if (self%started) then
       call self%go_to(t, err)
@@ -138,24 +147,38 @@ contains
     end if
     if (allocated(err)) return
     associate (system => self%system)
-      call self%columns%fill(system%mechanism, system%plan, system%state, row, used)
-      kinetic = kinetic_energy(system%dynamics, system%state)
-      potential = potential_energy(system%mechanism, system%plan, system%state, system%work%view)
-      row(used + 1:used + 3) = [kinetic, potential, kinetic + potential]
+      call self%columns%fill(system%mechanism, system%plan, system%state, row)
+      next = self%columns%motion + 1
+      if (system%mechanism%output%energies) then
+        call self%fill_energies(row(next:next + 2))
+        next = next + 3
+      end if
       call self%columns%fill_poses(system%plan, system%state, row)
-      row(used + 4) = largest_closure(system%plan, system%state)
+      row(next) = largest_closure(system%plan, system%state)
       if (system%mechanism%output%conditioning) then
-        call self%conditioning%look(t, system%work%blocks, row(used + 5))
+        call self%conditioning%look(t, system%work%blocks, row(next + 1))
       else
         call self%conditioning%glance(t, system%work%blocks)
       end if
       if (allocated(self%film)) call self%film%take(system%mechanism, system%plan, system%state)
     end associate
-    if (.not. self%started) self%energy_at_start = kinetic + potential
     self%started = .true.
-    self%largest_energy_change = max(self%largest_energy_change, abs(kinetic + potential - self%energy_at_start))
-    self%worst_closure = max(self%worst_closure, row(used + 4))
+    self%worst_closure = max(self%worst_closure, row(next))
   end subroutine row_at
+
+  !> Kinetic and potential energy and their sum [J], and how far that goes from the start.
+  subroutine fill_energies(self, energies)
+    class(dynamic_run_type), intent(inout) :: self
+    real(wp), intent(out) :: energies(3)
+
+    associate (system => self%system)
+      energies(1) = kinetic_energy(system%dynamics, system%state)
+      energies(2) = potential_energy(system%mechanism, system%plan, system%state, system%work%view)
+    end associate
+    energies(3) = energies(1) + energies(2)
+    if (.not. self%started) self%energy_at_start = energies(3)
+    self%largest_energy_change = max(self%largest_energy_change, abs(energies(3) - self%energy_at_start))
+  end subroutine fill_energies
 
   !> The motion at time t, by steps up to there or beyond.
   subroutine go_to(self, t, err)
@@ -347,7 +370,8 @@ contains
       self%look_below = self%system%conditioning()/worth_it
       return
     end if
-    call with_independent(self%system%mechanism, self%system%state, independent, mechanism, plan, state, failure)
+    call with_independent(self%system%mechanism, self%system%state, independent, self%needs, mechanism, plan, state, &
+                          failure)
     if (allocated(failure)) return
     allocate (other)
     call set_motion_system(mechanism, plan, state, other, failure)

@@ -63,11 +63,11 @@ contains
 
     call read_picture_requests(options, mechanism, self%program_name, pictures, err)
     if (.not. allocated(err)) call assemble_initial_state(mechanism, plan, start, err)
-    if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err)
+    if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err, pictures%any_wanted())
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      call print_check(options, pictures, mechanism, plan, start, diagnostics)
+      call print_check(options, pictures, mechanism, plan, run%needs, start, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
     else
       call carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)

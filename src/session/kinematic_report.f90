@@ -1,5 +1,5 @@
 !> What mech9k says at the end of a run: a few lines for a person, JSON for a program.
-!> Uses text, json, facts, plan, tracking, recording, run_words.
+!> Uses text, json, facts, plan, solver, tracking, recording, run_words.
 module mech9_kinematic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -8,6 +8,7 @@ module mech9_kinematic_report
   use mech9_facts, only: facts_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
+  use mech9_solver, only: work_count_type, work_of
   use mech9_tracking, only: tracker_type, words_of_block
   use mech9_recording, only: recording_outcome_type
   use mech9_run_words, only: duration, each, begin_report, add_structure
@@ -60,6 +61,7 @@ contains
     type(recording_outcome_type), intent(in) :: outcome
     type(tracker_type), intent(in) :: tracker
     type(facts_type), intent(out) :: facts
+    type(work_count_type) :: work
 
     call facts%add('positions', outcome%rows, 'positions computed')
     call facts%add('steps', tracker%steps, 'steps of following the drives')
@@ -72,6 +74,12 @@ contains
     call facts%add('least_conditioning_time', tracker%conditioning%t, 'when it was that', 's')
     call facts%add('least_conditioning_block', tracker%conditioning%block, 'block that it was in')
     call facts%add('special_positions_passed', tracker%passages, 'special positions passed')
+    if (allocated(tracker%work)) work = work_of(tracker%work)
+    call facts%add('frames_placed', work%frames_placed, 'poses of frames that were found')
+    call facts%add('frames_moved', work%frames_moved, 'velocities and accelerations of frames that were found')
+    call facts%add('factorizations', work%factorizations, 'Jacobians of blocks that were factorized')
+    call facts%add('rate_solutions', work%rates, 'blocks solved for their rates')
+    call facts%add('acceleration_solutions', work%accelerations, 'blocks solved for their accelerations')
     call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
   end subroutine kinematic_facts

@@ -7,6 +7,7 @@ module mech9_kinematic_run
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
+  use mech9_needs, only: needs_of_results, leave_out
   use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs, largest_closure
   use mech9_columns, only: kinematic_columns
   use mech9_recording, only: motion_source_type
@@ -16,7 +17,7 @@ module mech9_kinematic_run
 
   type, extends(motion_source_type) :: kinematic_run_type
     type(mechanism_type) :: mechanism
-    type(plan_type) :: plan
+    type(plan_type) :: plan              !< of what serves them
     type(state_type) :: start            !< assembled
     type(tracker_type) :: tracker
     logical :: started = .false.
@@ -42,15 +43,18 @@ contains
   end subroutine assemble_start
 
   !> A run from an assembled start.
-  subroutine new_kinematic_run(mechanism, plan, start, run)
+  subroutine new_kinematic_run(mechanism, plan, start, run, pictures)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start
     type(kinematic_run_type), intent(out) :: run
+    logical, intent(in), optional :: pictures      !< of the mechanism are wanted; not unless given
 
     run%program_name = 'mech9k'
     run%mechanism = mechanism
     run%plan = plan
+    run%needs = needs_of_results(mechanism, pictures)
+    call leave_out(run%plan, run%needs)
     run%start = start
     run%columns = kinematic_columns(mechanism)
     call run%columns%append('closure', 'm', 'largest error of a closed chain')
@@ -64,20 +68,21 @@ contains
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: row(:)
     type(error_type), allocatable, intent(out) :: err
-    integer :: used
+    integer :: next
 
     if (self%started) then
       call advance(self%mechanism, self%plan, self%tracker, t, err)
     else
-      call start_tracking(self%mechanism, self%plan, self%start, t, self%tracker, err)
+      call start_tracking(self%mechanism, self%plan, self%start, t, self%tracker, err, self%needs%derivatives > 1)
       self%started = .true.
     end if
     if (allocated(err)) return
-    call self%columns%fill(self%mechanism, self%plan, self%tracker%state, row, used)
+    call self%columns%fill(self%mechanism, self%plan, self%tracker%state, row)
+    next = self%columns%motion + 1
     call self%columns%fill_poses(self%plan, self%tracker%state, row)
-    row(used + 1) = largest_closure(self%plan, self%tracker%state)
+    row(next) = largest_closure(self%plan, self%tracker%state)
     if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%tracker%state)
     if (self%mechanism%output%conditioning) &
-      call self%tracker%conditioning%look(t, self%tracker%work, row(used + 2))
+      call self%tracker%conditioning%look(t, self%tracker%work, row(next + 1))
   end subroutine row_at
 end module mech9_kinematic_run

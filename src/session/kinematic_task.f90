@@ -1,4 +1,5 @@
-!> What mech9k does with a mechanism. Uses task, range_text, facts, results, recording, kinematic_run, kinematic_report.
+!> What mech9k does with a mechanism. Uses needs, task, range_text, facts, results, recording, kinematic_run,
+!> kinematic_report.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -8,6 +9,7 @@ module mech9_kinematic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_needs, only: needs_of_results
   use mech9_task, only: task_type, answers_only, print_check, begin_run, end_run
   use mech9_range_text, only: print_ranges
   use mech9_facts, only: facts_type
@@ -67,11 +69,12 @@ contains
       return
     end if
     if (answers_only(options)) then
-      call print_check(options, pictures, mechanism, plan, start, diagnostics)
+      call print_check(options, pictures, mechanism, plan, needs_of_results(mechanism, pictures%any_wanted()), start, &
+                       diagnostics)
       if (options%has('range')) call print_ranges(output_unit, mechanism, plan, start)
       return
     end if
-    call new_kinematic_run(mechanism, plan, start, run)
+    call new_kinematic_run(mechanism, plan, start, run, pictures%any_wanted())
     call carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
   end subroutine work
 
@@ -92,17 +95,17 @@ contains
 
     call begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
     if (.not. ready) return
-    call kinematic_facts(plan, outcome, run%tracker, facts)
+    call kinematic_facts(run%plan, outcome, run%tracker, facts)
     call results%write_facts(facts)
     call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) &
-      call print_kinematic_report(error_unit, mechanism, plan, results%table_path, outcome, run%tracker)
+      call print_kinematic_report(error_unit, mechanism, run%plan, results%table_path, outcome, run%tracker)
     if (allocated(err)) call diagnostics%add_error(err)
-    call kinematic_facts(plan, outcome, run%tracker, facts)
+    call kinematic_facts(run%plan, outcome, run%tracker, facts)
     call results%write_facts(facts, diagnostics%code())
     call end_run(options, pictures, mechanism, run, results, diagnostics)
     if (.not. options%has('report')) return
-    call save_kinematic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
+    call save_kinematic_report(options%argument('report'), mechanism, run%plan, results%table_path, diagnostics%code(), &
                                outcome, run%tracker, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

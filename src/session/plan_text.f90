@@ -1,175 +1,40 @@
-!> Structure and plan in words, for --structure, --check and --plan. Uses text, structural_vectors, mechanism,
-!> plan, mobility_report, planning, dynamics_plan.
+!> The plan in words, for --plan and --verbose: what is computed, and what is left out and why. Uses text,
+!> screw, mechanism, plan, needs, dynamics_plan, structure_text.
 module mech9_plan_text
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text, some_of
-  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_text, only: to_text
+  use mech9_screw, only: split_space
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type
-  use mech9_mobility_report, only: mobility_report_type
-  use mech9_planning, only: chain_names
+  use mech9_plan, only: plan_type, block_type, closure_type
+  use mech9_needs, only: needs_type, needed_blocks
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_structure_text, only: print_marked
   implicit none
   private
-  public :: print_structure, print_mobility, print_mobility_report, print_plan
+  public :: print_plan
 
-  !> Lines of one sort that are printed at most.
-  integer, parameter :: most_lines = 40
-  !> Numbers that a list shows at most.
-  integer, parameter :: longest_list = 24
-  !> Rates below this, against a rate of one, are none.
-  real(wp), parameter :: least_share = 1.0e-9_wp
+  !> Digits of directions.
+  integer, parameter :: digits_shown = 6
 
 contains
 
-  !> The structural vectors, a line each: "nrg = 1 2 3 ...".
-  subroutine print_structure(unit, vectors)
-    integer, intent(in) :: unit
-    type(structural_vectors_type), intent(in) :: vectors
-
-    write (unit, '(2a)') 'nrg = ', to_text(vectors%nrg, ' ')
-    write (unit, '(2a)') 'nws = ', to_text(vectors%nws, ' ')
-    write (unit, '(2a)') 'rdw = ', to_text(vectors%rdw, ' ')
-    write (unit, '(2a)') 'nrw = ', to_text(vectors%nrw, ' ')
-  end subroutine print_structure
-
-  !> Counts, mobility and redundancy.
-  subroutine print_mobility(unit, plan)
-    integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
-    integer :: b, unknowns, equations
-
-    unknowns = 0
-    equations = 0
-    do b = 1, size(plan%blocks)
-      unknowns = unknowns + size(plan%blocks(b)%unknowns)
-      equations = equations + plan%blocks(b)%equations
-    end do
-    call print_counts(unit, plan)
-    write (unit, '(a)') 'mobility '//to_text(plan%n_coordinates - unknowns)//' = '// &
-      to_text(plan%n_coordinates)//' coordinates - rank '//to_text(unknowns)
-    if (equations > unknowns) write (unit, '(a)') 'redundant equations: '//to_text(equations - unknowns)
-  end subroutine print_mobility
-
-  subroutine print_counts(unit, plan)
-    integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
-
-    write (unit, '(a)') to_text(plan%n_links)//' links, '//to_text(plan%n_coordinates)//' coordinates, '// &
-      trim(to_text(size(plan%closures))//' closed chain'//merge(' ', 's', size(plan%closures) == 1))
-    write (unit, '(a)') 'independent: '//to_text(plan%independent)
-  end subroutine print_counts
-
-  !> Counts, ranks, redundant equations, and what each coordinate can be.
-  subroutine print_mobility_report(unit, plan, report)
-    integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
-    type(mobility_report_type), intent(in) :: report
-    integer :: i, c
-
-    call print_counts(unit, plan)
-    write (unit, '(a)') 'mobility by the count: '//to_text(report%by_count)//' = '//to_text(plan%n_coordinates)// &
-      ' coordinates - '//to_text(plan%n_coordinates - report%by_count)//' dimensions of the chains'' motions'
-    write (unit, '(a)') 'mobility by the rank: '//to_text(report%by_rank)//' = '//to_text(plan%n_coordinates)// &
-      ' coordinates - rank '//to_text(plan%n_coordinates - report%by_rank)
-    if (.not. report%general) write (unit, '(a)') 'ranks are those of the start: no other position was found near it'
-    call print_ranks(unit, plan, report)
-    do c = 1, size(plan%closures)
-      if (report%redundant(c) > 0) write (unit, '(a)') 'closed chain '//to_text(plan%closures(c)%chain)//': '// &
-        to_text(report%redundant(c))//' of its '//to_text(plan%closures(c)%rank)//' equations redundant'
-    end do
-    do i = 1, size(plan%independent)
-      if (i <= most_lines) call print_alternatives(unit, plan, report, i)
-    end do
-    call print_kind(unit, .not. report%moves, 'cannot move, hence not be independent: ')
-    call print_kind(unit, report%dimensions == 0, 'on no closed chain: ')
-    do i = 1, size(report%idle)
-      write (unit, '(a)') 'idle: coordinates '//some_of(report%idle(i)%coordinates, longest_list)//' can move while links '// &
-        to_text(report%idle(i)%ends(1))//' and '//to_text(report%idle(i)%ends(2))//' stand still'
-    end do
-  end subroutine print_mobility_report
-
-  !> Equations and rank of each block; of many blocks only those that are singular at the start.
-  subroutine print_ranks(unit, plan, report)
-    integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
-    type(mobility_report_type), intent(in) :: report
-    integer :: b, left_out
-
-    left_out = 0
-    do b = 1, size(plan%blocks)
-      if (plan%blocks(b)%equations == 0) cycle
-      if (b > most_lines .and. report%at_start(b) == report%ranks(b)) then
-        left_out = left_out + 1
-        cycle
-      end if
-      write (unit, '(a)', advance='no') 'block '//to_text(b)//': '//chain_names(plan%blocks(b))//', '// &
-        to_text(plan%blocks(b)%equations)//' equations, rank '//to_text(report%ranks(b))
-      if (report%at_start(b) < report%ranks(b)) write (unit, '(a)', advance='no') &
-        '; at the start only '//to_text(report%at_start(b))//': a singular position'
-      write (unit, '(a)') ''
-    end do
-    if (left_out > 0) write (unit, '(a)') 'and '//to_text(left_out)//' blocks more'
-  end subroutine print_ranks
-
-  !> Coordinates that could be independent instead of one that is.
-  subroutine print_alternatives(unit, plan, report, i)
-    integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
-    type(mobility_report_type), intent(in) :: report
-    integer, intent(in) :: i                  !< its place among the independent ones
-    integer :: k
-    integer, allocatable :: others(:)
-
-    others = pack([(k, k=1, plan%n_coordinates)], abs(report%shares(:, i)) > least_share)
-    others = pack(others, others /= plan%independent(i))
-    if (size(others) > 0) then
-      write (unit, '(a)') 'instead of '//to_text(plan%independent(i))//' could be independent: '//some_of(others, longest_list)
-    else
-      write (unit, '(a)') 'independent in any case: '//to_text(plan%independent(i))
-    end if
-  end subroutine print_alternatives
-
-  subroutine print_kind(unit, mask, words)
-    integer, intent(in) :: unit
-    logical, intent(in) :: mask(:)
-    character(len=*), intent(in) :: words
-    integer :: k
-
-    if (any(mask)) write (unit, '(2a)') words, some_of(pack([(k, k=1, size(mask))], mask), longest_list)
-  end subroutine print_kind
-
-  !> The blocks in order, each with its chains, unknowns, equations and rank.
-  subroutine print_plan(unit, mechanism, plan)
+  !> The blocks in order, each with its chains, unknowns, equations and rank, and what is left out.
+  subroutine print_plan(unit, mechanism, plan, needs)
     integer, intent(in) :: unit
     type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    integer :: b, c, i
+    type(plan_type), intent(in) :: plan          !< of the whole mechanism
+    type(needs_type), intent(in) :: needs        !< what the run asks for
+    logical :: needed(size(plan%blocks))
+    integer :: b, i
 
     call print_arithmetic(unit, plan)
+    needed = needed_blocks(plan, needs)
     do b = 1, size(plan%blocks)
-      associate (block => plan%blocks(b))
-        write (unit, '(a)') 'block '//to_text(b)//': links '// &
-          to_text(pack(plan%steps(block%first_step:block%last_step)%link, &
-                       [(.not. any(plan%closures(block%first_closure:block%last_closure)%closing == i), &
-                         i=block%first_step, block%last_step)]))
-        if (size(block%unknowns) > 0) then
-          write (unit, '(a)') '  solved for: '// &
-            to_text([(block%coordinates(i), i=1, size(block%unknowns))])//' from '// &
-            to_text(block%equations)//' equations'
-        else
-          write (unit, '(a)') '  nothing to solve: an open chain'
-        end if
-        do c = block%first_closure, block%last_closure
-          associate (closure => plan%closures(c))
-            write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes on link '// &
-              to_text(plan%steps(closure%closing)%link)//' through coordinate '// &
-              to_text(plan%steps(closure%closing)%coordinate)//'; its motions span '//to_text(closure%rank)// &
-              ' dimensions'
-          end associate
-        end do
-      end associate
+      call print_block(unit, plan, plan%blocks(b), b, needed(b))
     end do
+    if (needs%derivatives == 1) write (unit, '(a)') 'accelerations left out: none are recorded'
+    if (needs%derivatives == 0) write (unit, '(a)') &
+      'accelerations left out: none are recorded, and rates only serve to keep to the branch'
     do i = 1, plan%n_coordinates
       if (mechanism%pairs(i)%pair%user_calls() > 1) write (unit, '(a)') 'pair '//to_text(i)// &
         ': the user procedure in plain values is called '//to_text(mechanism%pairs(i)%pair%user_calls())// &
@@ -178,16 +43,95 @@ contains
     if (size(mechanism%bodies) > 0) call print_dynamics_plan(unit, mechanism, plan)
   end subroutine print_plan
 
+  !> One block: its links, equations and chains.
+  subroutine print_block(unit, plan, block, number, is_needed)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    integer, intent(in) :: number
+    logical, intent(in) :: is_needed
+    integer :: c, i
+
+    write (unit, '(a)') 'block '//to_text(number)//': links '// &
+      to_text(pack(plan%steps(block%first_step:block%last_step)%link, &
+                   [(.not. any(plan%closures(block%first_closure:block%last_closure)%closing == i), &
+                     i=block%first_step, block%last_step)]))
+    if (.not. is_needed) write (unit, '(a)') '  left out: no result or load depends on it'
+    if (size(block%unknowns) > 0) then
+      write (unit, '(a)') '  solved for: '//to_text([(block%coordinates(i), i=1, size(block%unknowns))])//' from '// &
+        to_text(block%equations)//' equations of rank '//to_text(size(block%unknowns))
+      if (block%is_constant) write (unit, '(a)') '  its Jacobian is constant, since nothing turns: factorized once'
+    else
+      write (unit, '(a)') '  nothing to solve: an open chain'
+    end if
+    do c = block%first_closure, block%last_closure
+      associate (closure => plan%closures(c))
+        write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes on link '//to_text(plan%steps(closure%closing)%link)// &
+          ' through coordinate '//to_text(plan%steps(closure%closing)%coordinate)//'; its motions span '// &
+          to_text(closure%rank)//' dimensions'
+        call print_basis(unit, plan, closure)
+      end associate
+    end do
+  end subroutine print_block
+
+  !> "turning about (0, 0, 1), sliding along (1, 0, 0), (0, 1, 0) of link 1"; nothing where there are all six.
+  subroutine print_basis(unit, plan, closure)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    character(len=:), allocatable :: turning, sliding
+    real(wp) :: turns(3, 3), slides(3, 3), to_link(3, 3)
+    integer :: n_turns, n_slides, link
+    logical :: screws
+
+    link = 1
+    if (closure%base > 0) link = plan%steps(closure%base)%link
+    ! only the first frame of a link keeps its place in the link
+    if (closure%rank == 6 .or. plan%frame_of(link) /= closure%base) return
+    to_link = transpose(plan%link_in_frame(link)%r)
+    call split_space(closure%rows(:, :closure%rank), turns, n_turns, slides, n_slides, screws)
+    turning = ''
+    if (n_turns > 0) turning = trim(merge('screwing', 'turning ', screws))//' about '// &
+                               directions_in_words(matmul(to_link, turns(:, :n_turns)))
+    sliding = ''
+    if (n_slides > 0) sliding = 'sliding along '//directions_in_words(matmul(to_link, slides(:, :n_slides)))
+    if (n_turns > 0 .and. n_slides > 0) turning = turning//', '
+    write (unit, '(4x,a)') turning//sliding//' of link '//to_text(link)
+  end subroutine print_basis
+
+  !> "(1, 0, 0), (0, 1, 0)", or "all directions".
+  pure function directions_in_words(directions) result(words)
+    real(wp), intent(in) :: directions(:, :)    !< (3,n)
+    character(len=:), allocatable :: words
+    integer :: i
+
+    words = ''
+    do i = 1, size(directions, 2)
+      if (i > 1) words = words//', '
+      words = words//direction_in_words(directions(:, i))
+    end do
+    if (size(directions, 2) == 3) words = 'all directions'
+  end function directions_in_words
+
+  !> "(0, 0, 1)"; round-off is shown as zero.
+  pure function direction_in_words(direction) result(words)
+    real(wp), intent(in) :: direction(3)
+    character(len=:), allocatable :: words
+    real(wp) :: clean(3)
+
+    clean = merge(0.0_wp, direction, abs(direction) < 10.0_wp**(-digits_shown))
+    words = '('//to_text(clean(1), digits_shown)//', '//to_text(clean(2), digits_shown)//', '// &
+            to_text(clean(3), digits_shown)//')'
+  end function direction_in_words
+
   !> Planar or spatial, and why.
   subroutine print_arithmetic(unit, plan)
     integer, intent(in) :: unit
     type(plan_type), intent(in) :: plan
-    real(wp) :: normal(3)
 
     if (plan%planar%used) then
-      normal = plan%planar%axes(:, 3)
-      write (unit, '(a)') 'planar arithmetic: all pairs turn about or slide across the direction ('// &
-        to_text(normal(1), 6)//', '//to_text(normal(2), 6)//', '//to_text(normal(3), 6)//')'
+      write (unit, '(a)') 'planar arithmetic: all pairs turn about or slide across the direction '// &
+        direction_in_words(plan%planar%axes(:, 3))
     else if (allocated(plan%planar%why_not)) then
       write (unit, '(a)') 'spatial arithmetic: '//plan%planar%why_not
     end if
@@ -213,7 +157,7 @@ contains
     has_mass(1) = .true.
     idle = .not. dynamics%carries(plan%frame_of)
     idle(1) = .false.
-    call print_kind(unit, .not. has_mass, 'without mass, no terms of inertia: links ')
-    call print_kind(unit, idle, 'no mass, load or later chain depends on their motion, left out: links ')
+    call print_marked(unit, .not. has_mass, 'without mass, no terms of inertia: links ')
+    call print_marked(unit, idle, 'no mass, load or later chain depends on their motion, left out: links ')
   end subroutine print_dynamics_plan
 end module mech9_plan_text

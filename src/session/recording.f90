@@ -1,11 +1,12 @@
 !> Recording a motion: rows are computed and written by turns, whatever computes them.
-!> Uses error, clock, mechanism, columns, film, results, progress, system.
+!> Uses error, clock, mechanism, needs, columns, film, results, progress, system.
 module mech9_recording
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_interrupted
   use mech9_text, only: to_text
   use mech9_clock, only: seconds, pacer_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_needs, only: needs_type
   use mech9_columns, only: columns_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_film, only: film_type
@@ -26,6 +27,7 @@ module mech9_recording
   type, abstract :: motion_source_type
     character(len=6) :: program_name = ''
     type(columns_type) :: columns
+    type(needs_type) :: needs              !< what it works out
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
   contains
     procedure(row_interface), deferred :: row_at

@@ -1,5 +1,5 @@
 !> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
-!> Uses command_line, system, the input floor, plan_text, task, choice_check, version.
+!> Uses command_line, system, the input floor, structure_text, task, choice_check, version.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type, exit_done
@@ -18,7 +18,7 @@ module mech9_session
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan_text, only: print_structure
+  use mech9_structure_text, only: print_structure
   use mech9_task, only: task_type, answers_only
   use mech9_choice_check, only: judge_choice_of
   implicit none

@@ -1,6 +1,6 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
-!> Uses command_line, mechanism, result_units, plan, state, mobility_report, assemblies_text, plan_text,
-!> structure_graph, diagnostics, kept_rows, film, picture_requests, results, recording.
+!> Uses command_line, mechanism, result_units, plan, needs, state, mobility_report, assemblies_text, structure_text,
+!> plan_text, structure_graph, diagnostics, kept_rows, film, picture_requests, results, recording.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -12,13 +12,15 @@ module mech9_task
   use mech9_film, only: film_type, new_film
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_needs, only: needs_type
   use mech9_picture_requests, only: picture_requests_type
   use mech9_results, only: results_type
   use mech9_recording, only: motion_source_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
-  use mech9_plan_text, only: print_structure, print_mobility, print_mobility_report, print_plan
+  use mech9_structure_text, only: print_structure, print_mobility, print_mobility_report
+  use mech9_plan_text, only: print_plan
   implicit none
   private
   public :: task_type, answers_only, print_check, begin_run, end_run
@@ -64,11 +66,12 @@ contains
   end function answers_only
 
   !> Answer --check, --plan, --branches and --graph, and --sketch beside them.
-  subroutine print_check(options, pictures, mechanism, plan, start, diagnostics)
+  subroutine print_check(options, pictures, mechanism, plan, needs, start, diagnostics)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
+    type(needs_type), intent(in) :: needs      !< what the run asks for
     type(state_type), intent(in) :: start      !< assembled
     type(diagnostics_type), intent(inout) :: diagnostics
     type(mobility_report_type) :: report
@@ -80,7 +83,7 @@ contains
     else if (options%has('plan')) then
       call print_mobility(output_unit, plan)
     end if
-    if (options%has('plan')) call print_plan(output_unit, mechanism, plan)
+    if (options%has('plan')) call print_plan(output_unit, mechanism, plan, needs)
     if (options%has('branches')) call print_assemblies(output_unit, mechanism, plan, start, options%number('starts', 100))
     if (options%has('graph')) call draw_graph(options, mechanism, plan, diagnostics)
     if (options%has('check')) call print_start(mechanism, start)
@@ -132,7 +135,7 @@ contains
     logical, intent(out) :: ready
     type(error_type), allocatable :: err
 
-    call announce(options, mechanism, plan)
+    call announce(options, mechanism, plan, run%needs)
     if (pictures%any_wanted()) run%film = new_film(mechanism, mechanism%time%intervals + 1)
     call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
     ready = .not. allocated(err)
@@ -156,16 +159,17 @@ contains
   end subroutine end_run
 
   !> The title, and with --verbose the structure and the plan.
-  subroutine announce(options, mechanism, plan)
+  subroutine announce(options, mechanism, plan, needs)
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
+    type(needs_type), intent(in) :: needs      !< what the run asks for
 
     if (.not. options%has('quiet') .and. mechanism%title /= '') write (error_unit, '(a)') mechanism%title
     if (.not. options%has('verbose')) return
     call print_structure(error_unit, mechanism%vectors)
     call print_mobility(error_unit, plan)
-    call print_plan(error_unit, mechanism, plan)
+    call print_plan(error_unit, mechanism, plan, needs)
   end subroutine announce
 
   !> The pictures of the mechanism that are asked for, and a word on each.

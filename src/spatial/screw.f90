@@ -7,7 +7,7 @@ module mech9_screw
   use mech9_lapack, only: dgesvd
   implicit none
   private
-  public :: bracket, moved_screw, generated_algebra, orthonormal_basis
+  public :: bracket, moved_screw, generated_algebra, orthonormal_basis, split_space
 
 contains
 
@@ -77,4 +77,44 @@ contains
       if (rank == before) return
     end do
   end subroutine generated_algebra
+
+  !> Directions that a space of screws turns about, and those that it slides along without turning, each as simple as
+  !> can be: by elimination the first has no part along the leading axis of the second, and so on.
+  pure subroutine split_space(basis, turns, n_turns, slides, n_slides, screws)
+    real(wp), intent(in) :: basis(:, :)        !< (6, rank), orthonormal
+    real(wp), intent(out) :: turns(3, 3), slides(3, 3)   !< unit vectors; the first n_turns and n_slides count
+    integer, intent(out) :: n_turns, n_slides
+    logical, intent(out) :: screws             !< its only turning goes with sliding along the same direction
+    real(wp), parameter :: tolerance = 1.0e-9_wp
+    real(wp) :: a(6, size(basis, 2)), pivot(6)
+    integer :: i, j, row, best
+
+    a = basis
+    row = 0
+    n_turns = 0
+    turns = 0.0_wp
+    slides = 0.0_wp
+    do i = 1, 6
+      if (row == size(a, 2)) exit
+      best = row + maxloc(abs(a(i, row + 1:)), dim=1)
+      if (abs(a(i, best)) <= tolerance) cycle
+      row = row + 1
+      pivot = a(:, best)/a(i, best)
+      a(:, best) = a(:, row)
+      a(:, row) = pivot
+      do j = 1, size(a, 2)
+        if (j /= row) a(:, j) = a(:, j) - a(i, j)*pivot
+      end do
+      if (i <= 3) n_turns = row
+    end do
+    n_slides = row - n_turns
+    do j = 1, n_turns
+      turns(:, j) = a(1:3, j)/norm2(a(1:3, j))
+    end do
+    do j = 1, n_slides
+      slides(:, j) = a(4:6, n_turns + j)/norm2(a(4:6, n_turns + j))
+    end do
+    screws = .false.
+    if (n_turns == 1) screws = abs(dot_product(a(1:3, 1), a(4:6, 1))) > tolerance
+  end subroutine split_space
 end module mech9_screw

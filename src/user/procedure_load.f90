@@ -16,6 +16,7 @@ module mech9_procedure_load
     real(wp), allocatable :: parameters(:)   !< handed to the user's procedure
   contains
     procedure :: mark_links
+    procedure :: mark_coordinates
     procedure :: apply
     procedure :: potential
   end type procedure_load_type
@@ -29,6 +30,14 @@ contains
 
     needed = .true.
   end subroutine mark_links
+
+  !> Or for any coordinate.
+  pure subroutine mark_coordinates(self, needed)
+    class(procedure_load_type), intent(in) :: self
+    logical, intent(inout) :: needed(:)
+
+    needed = .true.
+  end subroutine mark_coordinates
 
   subroutine apply(self, state, sum, err)
     class(procedure_load_type), intent(in) :: self

@@ -37,7 +37,7 @@ contains
     type(columns_type) :: columns
     type(error_type), allocatable :: err
     real(wp) :: row(100)
-    integer :: i, before, used
+    integer :: i, before
 
     deallocate (mechanism%points)
     allocate (mechanism%points(1))
@@ -52,7 +52,7 @@ contains
     do i = 1, 100
       call advance(mechanism, plan, tracker, 0.002_wp*i, err)
       if (allocated(err)) exit
-      call columns%fill(mechanism, plan, tracker%state, row, used)
+      call columns%fill(mechanism, plan, tracker%state, row)
     end do
     call test%is_true(calls == before, name//': a hundred positions allocate nothing')
     call test%no_error(err, name//': goes on')

@@ -1,0 +1,58 @@
+!> What a run writes: &output, with everything checked. Uses text, settings, document, lookup, diagnostics.
+module mech9_output_reader
+  use mech9_text, only: to_text
+  use mech9_settings, only: output_settings_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: group_or_empty, get_integer, get_integers, get_logical, get_text, span_of
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_output
+
+contains
+
+  !> What is to be recorded and where; defaults where it is not said.
+  pure subroutine read_output(document, n_coordinates, output, diagnostics)
+    type(document_type), intent(in) :: document
+    integer, intent(in) :: n_coordinates           !< 0 where the structure is not known
+    type(output_settings_type), intent(out) :: output
+    type(diagnostics_type), intent(inout) :: diagnostics
+    type(group_type) :: group
+
+    group = group_or_empty(document, 'output')
+    output%table = get_text(group, 'table')
+    output%hdf5 = get_text(group, 'hdf5')
+    output%sketch = get_text(group, 'sketch')
+    output%animation = get_text(group, 'animation')
+    output%view = get_text(group, 'view')
+    output%poses = get_logical(group, 'poses')
+    output%compression = get_integer(group, 'compression')
+    output%conditioning = get_logical(group, 'conditioning')
+    output%coordinates = get_integers(group, 'coordinates')
+    output%derivatives = get_integer(group, 'derivatives')
+    output%energies = get_logical(group, 'energies')
+    if (output%compression > 9) &
+      call diagnostics%add(span_of(group, 'compression', 1), 'compression goes from 0 (none) to 9 (the smallest file)')
+    if (output%derivatives > 2) call diagnostics%add(span_of(group, 'derivatives', 1), 'derivatives is 0 (positions), '// &
+                                                     '1 (velocities too) or 2 (accelerations too)')
+    if (n_coordinates > 0) call check_coordinates(group, n_coordinates, output%coordinates, diagnostics)
+  end subroutine read_output
+
+  !> Each coordinate that is recorded exists, and is named once.
+  pure subroutine check_coordinates(group, n_coordinates, coordinates, diagnostics)
+    type(group_type), intent(in) :: group
+    integer, intent(in) :: n_coordinates
+    integer, intent(in) :: coordinates(:)
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer :: i
+
+    do i = 1, size(coordinates)
+      if (coordinates(i) > n_coordinates) then
+        call diagnostics%add(span_of(group, 'coordinates', i), 'there is no coordinate '//to_text(coordinates(i))// &
+                             '; they are 1 to '//to_text(n_coordinates))
+      else if (any(coordinates(:i - 1) == coordinates(i))) then
+        call diagnostics%add(span_of(group, 'coordinates', i), 'coordinate '//to_text(coordinates(i))//' is there already')
+      end if
+    end do
+  end subroutine check_coordinates
+end module mech9_output_reader

@@ -1,0 +1,122 @@
+!> What of a motion is asked for, and what need not be worked out for it. Uses mechanism, plan.
+module mech9_needs
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  implicit none
+  private
+  public :: needs_type, needs_of_results, add_forces, needed_blocks, leave_out
+
+  !> What is asked for.
+  type :: needs_type
+    logical, allocatable :: coordinates(:)   !< (M)
+    logical, allocatable :: links(:)         !< (N) those whose motion is asked for
+    integer :: derivatives = 2               !< in time, at most
+  end type needs_type
+
+contains
+
+  !> What the results of a run show: all, unless the data file asks for less.
+  pure function needs_of_results(mechanism, pictures) result(needs)
+    type(mechanism_type), intent(in) :: mechanism
+    logical, intent(in), optional :: pictures   !< of the mechanism are wanted: they show all links; not unless given
+    type(needs_type) :: needs
+    logical :: whole
+
+    needs%coordinates = mechanism%output%recorded(size(mechanism%pairs))
+    whole = .false.
+    if (present(pictures)) whole = pictures
+    allocate (needs%links(mechanism%structure%n_links), source=whole .or. mechanism%output%poses)
+    needs%links(mechanism%points%link) = .true.
+    needs%derivatives = merge(2, mechanism%output%derivatives, whole)
+  end function needs_of_results
+
+  !> What else the equations of motion ask for: links with mass, and whatever loads depend on.
+  pure subroutine add_forces(mechanism, needs)
+    type(mechanism_type), intent(in) :: mechanism
+    type(needs_type), intent(inout) :: needs
+    integer :: i
+
+    needs%links(mechanism%bodies%link) = .true.
+    do i = 1, size(mechanism%loads)
+      call mechanism%loads(i)%load%mark_links(needs%links)
+      call mechanism%loads(i)%load%mark_coordinates(needs%coordinates)
+    end do
+  end subroutine add_forces
+
+  !> The blocks on which something that is asked for depends.
+  pure function needed_blocks(plan, needs) result(needed)
+    type(plan_type), intent(in) :: plan
+    type(needs_type), intent(in) :: needs
+    logical :: needed(size(plan%blocks))
+    logical :: frames(0:plan%n_coordinates)
+    integer :: b
+
+    call mark_links(plan, needs%links, frames)
+    do b = size(plan%blocks), 1, -1
+      associate (block => plan%blocks(b))
+        needed(b) = any(frames(block%first_step:block%last_step)) .or. any(needs%coordinates(block%coordinates))
+        if (needed(b)) call mark_departures(plan, block, frames)
+      end associate
+    end do
+  end function needed_blocks
+
+  !> Leave out the blocks on which nothing depends that is asked for, and accelerations of frames that only serve their
+  !> own block. The chains of such blocks are not followed: whether they could go on is not noticed.
+  pure subroutine leave_out(plan, needs)
+    type(plan_type), intent(inout) :: plan
+    type(needs_type), intent(in) :: needs
+    type(block_type), allocatable :: blocks(:)
+    logical :: needed(size(plan%blocks)), frames(0:plan%n_coordinates)
+    integer :: b, n
+
+    needed = needed_blocks(plan, needs)
+    allocate (blocks(count(needed)))
+    n = 0
+    do b = 1, size(needed)
+      if (.not. needed(b)) cycle
+      n = n + 1
+      blocks(n) = plan%blocks(b)
+    end do
+    call move_alloc(blocks, plan%blocks)
+    call mark_links(plan, needs%links, frames)
+    do b = size(plan%blocks), 1, -1
+      associate (block => plan%blocks(b))
+        block%last_moved = block%last_step
+        do while (block%last_moved >= block%first_step)
+          if (frames(block%last_moved)) exit
+          block%last_moved = block%last_moved - 1
+        end do
+        call mark_departures(plan, block, frames)
+      end associate
+    end do
+  end subroutine leave_out
+
+  !> The frames of some links.
+  pure subroutine mark_links(plan, links, frames)
+    type(plan_type), intent(in) :: plan
+    logical, intent(in) :: links(:)
+    logical, intent(out) :: frames(0:)
+    integer :: i
+
+    frames = .false.
+    do i = 1, size(links)
+      if (links(i)) frames(plan%frame_of(i)) = .true.
+    end do
+  end subroutine mark_links
+
+  !> The frames of earlier blocks on which a block stands.
+  pure subroutine mark_departures(plan, block, frames)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    logical, intent(inout) :: frames(0:)
+    integer :: s, c
+
+    do s = block%first_step, block%last_step
+      if (plan%steps(s)%parent < block%first_step) frames(plan%steps(s)%parent) = .true.
+    end do
+    do c = block%first_closure, block%last_closure
+      if (plan%closures(c)%target < block%first_step) frames(plan%closures(c)%target) = .true.
+      if (plan%closures(c)%base < block%first_step) frames(plan%closures(c)%base) = .true.
+    end do
+  end subroutine mark_departures
+end module mech9_needs

@@ -1,0 +1,236 @@
+"""What is left out, by counts of the work done; and that leaving it out changes no result.
+
+usage: work_counts.py MECH9K MECH9D
+"""
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, run, table_and_report, table_of
+
+# a crank-rocker; link 5 joins its coupler to the rocker 6, and link 8 the rocker 6 to the rocker 7: three chains,
+# each its own block
+SIX_AND_TWO = """
+&mechanism links=8, coordinates=10 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.15,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=1,4, kind='revolute', axis=0,0,1, point=0.40,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=4,3, kind='revolute', axis=0,0,1, point=0.30,0,0, moving_point=0.35,0,0 /
+&pair coordinate=5, links=3,5, kind='revolute', axis=0,0,1, point=0.20,0.10,0, moving_point=0,0,0 /
+&pair coordinate=6, links=1,6, kind='revolute', axis=0,0,1, point=0.62,0.10,0, moving_point=0,0,0 /
+&pair coordinate=7, links=6,5, kind='revolute', axis=0,0,1, point=0.30,0,0, moving_point=0.40,0,0 /
+&pair coordinate=8, links=6,8, kind='revolute', axis=0,0,1, point=0.15,0,0, moving_point=0,0,0 /
+&pair coordinate=9, links=1,7, kind='revolute', axis=0,0,1, point=1.2,0.10,0, moving_point=0,0,0 /
+&pair coordinate=10, links=7,8, kind='revolute', axis=0,0,1, point=0.5,0,0, moving_point=0.6,0,0 /
+&initial coordinate=2, position=1.0 /
+&initial coordinate=3, position=1.8 /
+&initial coordinate=4, position=-0.8 /
+&initial coordinate=5, position=-0.57 /
+&initial coordinate=6, position=1.85 /
+&initial coordinate=7, position=-1.42 /
+&initial coordinate=8, position=-1.5 /
+&initial coordinate=9, position=1.8 /
+&initial coordinate=10, position=-1.4 /
+&drive coordinate=1, kind='polynomial', coefficients=0,10,1 /
+&body link=2, mass=1, centre=0.05,0,0, inertia=0.01,0.01,0.01,0,0,0 /
+&body link=4, mass=1, centre=0.15,0,0, inertia=0.01,0.01,0.01,0,0,0 /
+&initial coordinate=1, position=0, velocity=10 /
+&time start=0, end=0.4, intervals=400 /
+{more}
+"""
+POINT = "&point name='P', link=4, position=0.1,0.2,0 /\n"
+
+# a wedge that lifts a follower: nothing turns. Link 2 slides along x, link 3 along y, and between them the flank at 30 degrees
+WEDGE = """
+&mechanism links=3, coordinates=3 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0.8660254037844386,0.5,0 /
+&pair coordinate=3, links=1,3, kind='prismatic', axis=0,1,0 /
+&drive coordinate=1, kind='harmonic', amplitude=0.3, angular_frequency=2 /
+&time start=0, end=3, intervals=300 /
+"""
+
+# two arms on one another
+ARMS = """
+&mechanism links=3, coordinates=2 /
+&structure cq=1, 2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,1,0, point=1,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0,1 /
+&drive coordinate=2, kind='polynomial', coefficients=0,2 /
+&time start=0, end=1, intervals=50 /
+"""
+
+# positions are closed to some 1e-15 of the lengths; the chains' conditioning is about 0.1, each derivative brings it and
+# a driving rate of ten once more
+POSITION, VELOCITY, ACCELERATION = 1e-13, 1e-11, 1e-9
+
+
+class Case:
+    def __init__(self, checks, folder, kinematics, dynamics):
+        self.checks = checks
+        self.folder = folder
+        self.kinematics = kinematics
+        self.dynamics = dynamics
+
+    def file(self, text, **parts):
+        path = os.path.join(self.folder, 'case.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text.format(**parts) if parts else text)
+        return path
+
+    def same(self, less, more, tolerances, why):
+        """All that one table has, the other has too."""
+        for name, values in less.items():
+            if name in ('t', 'closure'):
+                continue
+            tolerance = tolerances[2 if name.startswith('dd') or '.a' in name else
+                                   1 if name.startswith('d') or '.v' in name else 0]
+            self.checks.near(values, more[name], tolerance, f'{why}: {name}')
+
+
+def test_blocks(case):
+    """Blocks on which nothing that is recorded depends are not solved."""
+    checks = case.checks
+    path = case.file(SIX_AND_TWO, more='')
+    table, whole = table_and_report(case.kinematics, path)
+    checks.equal(len(whole['blocks']), 3, 'three blocks')
+    for wanted, blocks in ('4', 1), ('7,2', 2), ('9', 3):
+        less, report = table_and_report(case.kinematics, path, '--set', f'output.coordinates={wanted}')
+        checks.equal(len(report['blocks']), blocks, f'blocks for coordinates {wanted}')
+        for count in 'rate_solutions', 'acceleration_solutions':
+            checks.equal(report[count]*3, whole[count]*blocks, f'{count} for coordinates {wanted}')
+        checks.true(report['frames_placed'] < whole['frames_placed'] or blocks == 3, f'frames for coordinates {wanted}')
+        checks.true(report['factorizations'] < whole['factorizations'] or blocks == 3, f'factors for coordinates {wanted}')
+        names = ['t'] + [order + 'q' + k for order in ('', 'd', 'dd') for k in sorted(wanted.split(','))] + ['closure']
+        checks.equal(list(less), names, f'columns for coordinates {wanted}')
+        case.same(less, table, (POSITION, VELOCITY, ACCELERATION), f'coordinates {wanted}')
+    # a point of the last chain is a reason to solve it
+    path = case.file(SIX_AND_TWO, more="&point name='P', link=8, position=0,0,0 /")
+    report = table_and_report(case.kinematics, path, '--set', 'output.coordinates=4')[1]
+    checks.equal(len(report['blocks']), 3, 'blocks for a point of link 8')
+    plan = run(case.kinematics, case.file(SIX_AND_TWO, more='&output coordinates=4 /'), '--plan').stdout
+    checks.equal(plan.count('left out: no result or load depends on it'), 2, 'the plan says so')
+
+
+def test_derivatives(case):
+    """Accelerations that are not recorded are not found, and rates of points neither."""
+    checks = case.checks
+    path = case.file(SIX_AND_TWO, more=POINT)
+    table, whole = table_and_report(case.kinematics, path)
+    checks.equal(whole['acceleration_solutions'], 3*whole['positions'], 'accelerations of all blocks at all positions')
+    for derivatives, orders in (0, ['']), (1, ['', 'd']):
+        less, report = table_and_report(case.kinematics, path, '--set', f'output.derivatives={derivatives}')
+        checks.equal(report['acceleration_solutions'], 3, 'accelerations of all blocks at the start')
+        checks.true(report['frames_moved'] < 0.7*whole['frames_moved'], 'frames are moved less', report['frames_moved'])
+        names = ['t'] + [f'{order}q{k}' for order in orders for k in range(1, 11)]
+        names += ['P.' + order + axis for order in ('', 'v')[:derivatives + 1] for axis in 'xyz'] + ['closure']
+        checks.equal(list(less), names, f'columns with {derivatives} derivatives')
+        case.same(less, table, (POSITION, VELOCITY, ACCELERATION), f'{derivatives} derivatives')
+
+
+def test_frames(case):
+    """Accelerations of frames that only their own chain needs are not spread a second time."""
+    checks = case.checks
+    with_point = table_and_report(case.kinematics, case.file(SIX_AND_TWO, more="&point name='P', link=8, position=0,0,0 /"))
+    without = table_and_report(case.kinematics, case.file(SIX_AND_TWO, more=''))
+    checks.true(without[1]['frames_moved'] < with_point[1]['frames_moved'], 'frames of the last chain')
+    checks.equal(without[1]['acceleration_solutions'], with_point[1]['acceleration_solutions'], 'the same equations')
+    case.same(without[0], with_point[0], (POSITION, VELOCITY, ACCELERATION), 'with and without a point')
+
+
+def test_constants(case):
+    """A Jacobian that never changes is factorized once; constant poses are part of one step for each pair."""
+    checks = case.checks
+    table, report = table_and_report(case.kinematics, case.file(WEDGE))
+    checks.true(report['factorizations'] <= 2, 'factorized at the start only', report['factorizations'])
+    checks.equal(report['positions'], 301, 'positions')
+    x = 0.3*np.sin(2*table['t'])
+    # q1 + q2 cos 30 = 0, q2 sin 30 = q3
+    checks.near(table['q2'], -x/np.cos(np.pi/6), POSITION, 'the slide on the flank')
+    checks.near(table['q3'], -x*np.tan(np.pi/6), POSITION, 'the follower')
+    checks.near(table['ddq3'], 4*x*np.tan(np.pi/6), ACCELERATION, 'its acceleration')
+    checks.true('its Jacobian is constant' in run(case.kinematics, case.file(WEDGE), '--plan').stdout, 'the plan says so')
+    turning = table_and_report(case.kinematics, case.file(SIX_AND_TWO, more=''))[1]
+    checks.true(turning['factorizations'] > turning['positions'], 'one that changes is factorized at each position')
+
+    # every pair of the first chain placed by four constant vectors of its own choosing: as many frames as before
+    shifted = SIX_AND_TWO.replace("links=1,2, kind='revolute', axis=0,0,1 /", "links=1,2, kind='revolute', axis=0,0,1, "
+                                  "point=0,0,0.3, moving_point=0,0,0.3, zero=0,1,0, moving_zero=0,1,0 /")
+    moved, count = table_and_report(case.kinematics, case.file(shifted, more=''))
+    checks.true(shifted != SIX_AND_TWO, 'other constants')
+    # a few of some thousand iterations depend on round-off
+    checks.near(count['frames_placed']/turning['frames_placed'], 1, 0.01, 'constant poses take no frames')
+    case.same(moved, table_of(case.kinematics, case.file(SIX_AND_TWO, more='')), (POSITION, VELOCITY, ACCELERATION),
+              'constant poses')
+
+
+def test_open_chains(case):
+    """An open chain needs no equations, and no frames where none of its points is recorded."""
+    report = table_and_report(case.kinematics, case.file(ARMS + "&point name='P', link=3, position=1,0,0 /"))[1]
+    for count in 'newton_iterations', 'factorizations':
+        case.checks.equal(report[count], 0, f'{count} of an open chain')
+    # two frames at each position, placed once; those of the start are there already
+    case.checks.equal(report['frames_placed'], 2*(report['positions'] - 1), 'its frames')
+    report = table_and_report(case.kinematics, case.file(ARMS))[1]
+    case.checks.equal(report['frames_placed'], 0, 'no frames for coordinates that the drives give')
+
+
+def test_dynamics(case):
+    """Links without mass have no terms; chains that nothing depends on, and energies, are left out."""
+    checks = case.checks
+    exact = '&solver relative_tolerance=1e-12, absolute_tolerance=1e-12 /\n'
+    path = case.file(SIX_AND_TWO, more=exact)
+    table, whole = table_and_report(case.dynamics, path)
+    checks.equal(whole['links_with_inertia'], 2, 'two bodies')
+    # link 1 does not move; links 3, 5 to 8 carry nothing, but 3 and 6 the chains behind them
+    checks.equal(whole['frames_carried'], 4, 'frames of links 2, 3, 4 and 6')
+    less, report = table_and_report(case.dynamics, path, '--set', 'output.coordinates=3', '--set', 'output.derivatives=1')
+    checks.equal(report['links_with_inertia'], 2, 'the same bodies')
+    checks.true(report['frames_carried'] < whole['frames_carried'], 'no frame carries a chain')
+    checks.true(report['frames_placed'] < 0.5*whole['frames_placed'], 'frames of one chain of three')
+    checks.true(report['factorizations'] < 0.5*whole['factorizations'], 'Jacobians of one chain of three')
+    checks.equal(list(less), ['t', 'q3', 'dq3', 'E.kinetic', 'E.potential', 'E.total', 'closure'], 'columns')
+    # tolerances of 1e-12 a step, some hundred steps
+    case.same(less, table, (1e-9, 1e-9, 1e-9), 'one chain of three')
+    quiet = table_of(case.dynamics, path, '--set', 'output.energies=.false.')
+    checks.equal([name for name in quiet if name.startswith('E')], [], 'no energies')
+    case.same(quiet, table, (0, 0, 0), 'without energies')
+    heavy = table_and_report(case.dynamics, case.file(SIX_AND_TWO, more=exact + '&body link=3, mass=0 /\n'))
+    checks.equal(heavy[1]['links_with_inertia'], 2, 'a body without mass is none')
+    case.same(heavy[0], table, (0, 0, 0), 'a body without mass')
+    loaded = case.file(SIX_AND_TWO, more="&output coordinates=3 /\n&load kind='coordinate', coordinate=10, damping=0.1 /\n")
+    checks.true('left out: no result' not in run(case.dynamics, loaded, '--plan').stdout, 'a load is a reason to solve')
+
+
+def test_refused(case):
+    """What cannot be recorded."""
+    path = case.file(SIX_AND_TWO, more='')
+    for setting, words in (('coordinates=11', 'there is no coordinate 11; they are 1 to 10'),
+                           ('coordinates=3,3', 'coordinate 3 is there already'),
+                           ('derivatives=3', '0 (positions), 1'), ('derivatives=-1', 'derivatives')):
+        done = run(case.kinematics, path, '--set', f'output.{setting}')
+        case.checks.true(done.returncode in (2, 3) and words in done.stderr, f'output.{setting} is refused', done.stderr)
+
+
+def main():
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as folder:
+        case = Case(checks, folder, os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
+        test_blocks(case)
+        test_derivatives(case)
+        test_frames(case)
+        test_constants(case)
+        test_open_chains(case)
+        test_dynamics(case)
+        test_refused(case)
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
