@@ -84,6 +84,10 @@ contains
     at = start
     equals = start + index(text(start:), '=') - 1
     call scan_word(text, at)
+    if (text(equals + 1:) == '') then
+      call diagnostics%add(span_type(source, equals, equals), "a value is missing after this; an empty text is written ''")
+      return
+    end if
     if (takes_text(group, text(start:at - 1)) .and. is_unquoted(text(equals + 1:))) then
       item%name = lower(text(start:at - 1))
       item%span = span_type(source, start, at - 1)

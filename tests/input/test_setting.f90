@@ -78,7 +78,9 @@ contains
     call refused('pair(9).kind=helical', '--set: there are only 4 groups &pair')
     call refused('time.end=1 start=0', '--set: the setting ends before this; give one --set for each name')
     call refused('time.end=1 /', '--set: the setting ends before this; give one --set for each name')
-    call refused('time.end=', '')
+    call refused('time.end=', "--set: a value is missing after this; an empty text is written ''"//eol// &
+                 'time.end='//eol//'        ^')
+    call refused("output.table=''", '')
     call refused('pair(1).axis=0,0,0', '--set: the axis of pair 1 is zero')
     call refused('structure.cq=9', '--set: cq names coordinate 9')
   end subroutine what_is_refused
