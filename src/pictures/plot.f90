@@ -132,6 +132,7 @@ contains
     script = picture_script(self%title, self%request%curves, self%data, name_of(self%picture), name_of(script_path), &
                             source)
     call save_text(script_path, script, err)
+    call add_place(err, 'no plot '//self%picture//', and no whole script of it')
     if (allocated(err)) return
     if (folder == '') folder = '.'
     call run_gnuplot(script, found, err, folder, self%picture)

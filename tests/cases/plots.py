@@ -142,6 +142,9 @@ def test_no_place(folder):
         for ending in ('svg', 'png', 'pdf'):
             os.symlink('/dev/full', os.path.join(folder, 'full.' + ending))
             targets['full.' + ending] = 'disk full'
+        # here its script is
+        os.symlink('/dev/full', os.path.join(folder, 'script.gp'))
+        targets['script.svg'] = 'no whole script'
     for target, words in targets.items():
         done = run(mech9k, FIG1, '--quiet', '--table', 'kept.dat', '--plot', target + ':q1', folder=folder)
         checks.true(done.returncode == 8 and target in done.stderr and words in done.stderr, f'{target}: told', done.stderr)
