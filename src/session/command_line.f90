@@ -26,6 +26,7 @@ module mech9_command_line
     procedure :: arguments
     procedure :: number
     procedure :: converses
+    procedure :: answer
   end type command_line_type
 
 contains
@@ -303,25 +304,25 @@ contains
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (options%has('no-write') .and. (options%has('table') .or. options%has('hdf5') .or. options%has('plot'))) then
       call raise(err, exit_usage, '--no-write contradicts --table, --hdf5 and --plot')
-    else if (options%has('animate') .and. answer_wanted(options) /= '') then
-      call raise(err, exit_usage, '--animate shows a run, and --'//answer_wanted(options)//' makes none; leave one of them out')
+    else if (options%has('animate') .and. options%answer() /= '') then
+      call raise(err, exit_usage, '--animate shows a run, and --'//options%answer()//' makes none; leave one of them out')
     else if (options%converses()) then
       call judge_conversation(program_name, options, err)
     end if
   end subroutine judge
 
-  !> The first of the options that answer without a run; empty where none is given.
-  pure function answer_wanted(options) result(name)
-    type(command_line_type), intent(in) :: options
+  !> The option that is answered instead of a run, the first where there are several; empty where none is given.
+  pure function answer(self) result(name)
+    class(command_line_type), intent(in) :: self
     character(len=:), allocatable :: name
-    character(len=*), parameter :: answers(*) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'graph']
+    character(len=*), parameter :: answers(*) = [character(len=9) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph']
     integer :: i
 
     name = ''
     do i = size(answers), 1, -1
-      if (options%has(trim(answers(i)))) name = trim(answers(i))
+      if (self%has(trim(answers(i)))) name = trim(answers(i))
     end do
-  end function answer_wanted
+  end function answer
 
   !> Whether a conversation is asked for, instead of work on a data file as it is.
   pure logical function converses(self)

@@ -7,6 +7,7 @@ module mech9_dynamic_report
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_hdf5_sink, only: hdf5_sink_type
+  use mech9_diagnostics, only: diagnostics_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_recording, only: recording_outcome_type
@@ -117,19 +118,19 @@ contains
   end subroutine dynamic_facts
 
   !> The same, and more, as JSON.
-  subroutine save_dynamic_report(path, mechanism, plan, table_path, exit_code, outcome, run, err)
+  subroutine save_dynamic_report(path, mechanism, plan, table_path, diagnostics, outcome, run, err)
     character(len=*), intent(in) :: path
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan             !< at the start
     character(len=*), intent(in) :: table_path
-    integer, intent(in) :: exit_code                !< that the program is going to answer
+    type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
     type(recording_outcome_type), intent(in) :: outcome
     type(dynamic_run_type), intent(inout) :: run
     type(error_type), allocatable, intent(out) :: err
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call begin_report(json, 'mech9d', mechanism, exit_code, table_path)
+    call begin_report(json, 'mech9d', mechanism, diagnostics, table_path)
     call dynamic_facts(mechanism, plan, outcome, run, facts)
     call facts%to_json(json)
     call add_coefficients(json, plan, run%coefficients)

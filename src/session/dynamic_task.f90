@@ -49,11 +49,12 @@ contains
   end subroutine assemble
 
   !> Plan, assemble, work out the start, and run unless only a check is asked for.
-  subroutine work(self, options, mechanism, diagnostics, kept)
+  subroutine work(self, options, mechanism, diagnostics, reported, kept)
     class(dynamic_task_type), intent(in) :: self
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
     type(diagnostics_type), intent(inout) :: diagnostics
+    logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
     type(plan_type) :: plan
     type(state_type) :: start
@@ -61,6 +62,7 @@ contains
     type(dynamic_run_type) :: run
     type(error_type), allocatable :: err
 
+    reported = .false.
     call read_picture_requests(options, mechanism, self%program_name, pictures, err)
     if (.not. allocated(err)) call assemble_initial_state(mechanism, plan, start, err)
     if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err, pictures%any_wanted())
@@ -70,19 +72,20 @@ contains
       call print_check(options, pictures, mechanism, plan, run%needs, start, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
     else
-      call carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
+      call carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
     end if
     call run%close()
   end subroutine work
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
+  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(dynamic_run_type), intent(inout) :: run
     type(diagnostics_type), intent(inout) :: diagnostics
+    logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
     type(results_type), target :: results
     type(facts_type) :: facts
@@ -92,6 +95,7 @@ contains
     logical :: ready
 
     call begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
+    reported = ready .and. options%has('report')
     if (.not. ready) return
     call dynamic_facts(mechanism, plan, outcome, run, facts)
     call results%write_facts(facts)
@@ -104,8 +108,8 @@ contains
     call results%write_facts(facts, diagnostics%code())
     if (associated(hdf5)) call write_events(hdf5, run)
     call end_run(options, pictures, mechanism, run, results, diagnostics)
-    if (.not. options%has('report')) return
-    call save_dynamic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics%code(), &
+    if (.not. reported) return
+    call save_dynamic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics, &
                              outcome, run, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

@@ -6,6 +6,7 @@ module mech9_kinematic_report
   use mech9_text, only: to_text
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
+  use mech9_diagnostics, only: diagnostics_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_solver, only: work_count_type, work_of
@@ -85,19 +86,19 @@ contains
   end subroutine kinematic_facts
 
   !> The same, and more, as JSON.
-  subroutine save_kinematic_report(path, mechanism, plan, table_path, exit_code, outcome, tracker, err)
+  subroutine save_kinematic_report(path, mechanism, plan, table_path, diagnostics, outcome, tracker, err)
     character(len=*), intent(in) :: path
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     character(len=*), intent(in) :: table_path
-    integer, intent(in) :: exit_code               !< that the program is going to answer
+    type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
     type(recording_outcome_type), intent(in) :: outcome
     type(tracker_type), intent(in) :: tracker
     type(error_type), allocatable, intent(out) :: err
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call begin_report(json, 'mech9k', mechanism, exit_code, table_path)
+    call begin_report(json, 'mech9k', mechanism, diagnostics, table_path)
     call kinematic_facts(plan, outcome, tracker, facts)
     call facts%to_json(json)
     call add_structure(json, mechanism, plan)

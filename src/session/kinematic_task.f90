@@ -50,11 +50,12 @@ contains
   end subroutine assemble
 
   !> Plan, assemble, and run unless only a check is asked for.
-  subroutine work(self, options, mechanism, diagnostics, kept)
+  subroutine work(self, options, mechanism, diagnostics, reported, kept)
     class(kinematic_task_type), intent(in) :: self
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
     type(diagnostics_type), intent(inout) :: diagnostics
+    logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
     type(plan_type) :: plan
     type(state_type) :: start
@@ -62,6 +63,7 @@ contains
     type(kinematic_run_type) :: run
     type(error_type), allocatable :: err
 
+    reported = .false.
     call read_picture_requests(options, mechanism, self%program_name, pictures, err)
     if (.not. allocated(err)) call assemble_start(mechanism, plan, start, err)
     if (allocated(err)) then
@@ -75,17 +77,18 @@ contains
       return
     end if
     call new_kinematic_run(mechanism, plan, start, run, pictures%any_wanted())
-    call carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
+    call carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
   end subroutine work
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, kept)
+  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(kinematic_run_type), intent(inout) :: run
     type(diagnostics_type), intent(inout) :: diagnostics
+    logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
     type(results_type), target :: results
     type(facts_type) :: facts
@@ -94,6 +97,7 @@ contains
     logical :: ready
 
     call begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
+    reported = ready .and. options%has('report')
     if (.not. ready) return
     call kinematic_facts(run%plan, outcome, run%tracker, facts)
     call results%write_facts(facts)
@@ -104,8 +108,8 @@ contains
     call kinematic_facts(run%plan, outcome, run%tracker, facts)
     call results%write_facts(facts, diagnostics%code())
     call end_run(options, pictures, mechanism, run, results, diagnostics)
-    if (.not. options%has('report')) return
-    call save_kinematic_report(options%argument('report'), mechanism, run%plan, results%table_path, diagnostics%code(), &
+    if (.not. reported) return
+    call save_kinematic_report(options%argument('report'), mechanism, run%plan, results%table_path, diagnostics, &
                                outcome, run%tracker, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

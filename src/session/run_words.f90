@@ -1,14 +1,17 @@
-!> Words and JSON that the reports of all runs share. Uses text, json, mechanism, plan, version.
+!> Words and JSON that the reports of all runs share. Uses text, json, source, diagnostics, mechanism, plan, version.
 module mech9_run_words
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
+  use mech9_error, only: error_type, place_type
   use mech9_json, only: json_type
+  use mech9_source, only: span_type
+  use mech9_diagnostics, only: diagnostics_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_version, only: version, revision, compiler
   implicit none
   private
-  public :: duration, each, begin_report, add_structure
+  public :: duration, each, begin_report, add_structure, save_short_report
 
 contains
 
@@ -37,22 +40,82 @@ contains
   end function duration
 
   !> What a report begins with: which program this was, what it ran and what came of it.
-  subroutine begin_report(json, program_name, mechanism, exit_code, table_path)
+  subroutine begin_report(json, program_name, mechanism, diagnostics, table_path)
     type(json_type), intent(inout) :: json
     character(len=*), intent(in) :: program_name
     type(mechanism_type), intent(in) :: mechanism
-    integer, intent(in) :: exit_code               !< that the program is going to answer
-    character(len=*), intent(in) :: table_path     !< '-' is standard output; empty: no table
+    type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
+    character(len=*), intent(in) :: table_path          !< '-' is standard output; empty: no table
 
     call json%begin_object()
+    call add_outcome(json, program_name, mechanism, diagnostics%code())
+    call json%add('table', table_path)
+    call json%begin_array('errors')
+    call add_errors(json, diagnostics)
+    call json%end_array()
+  end subroutine begin_report
+
+  !> The report where nothing was run: an answer was asked for, or something is wrong.
+  subroutine save_short_report(path, program_name, mechanism, exit_code, choice, diagnostics, err)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: program_name
+    type(mechanism_type), intent(in) :: mechanism       !< as far as it was read
+    integer, intent(in) :: exit_code                    !< that the program is going to answer
+    type(diagnostics_type), intent(in) :: choice, diagnostics   !< what it is going to say
+    type(error_type), allocatable, intent(out) :: err
+    type(json_type) :: json
+
+    call json%begin_object()
+    call add_outcome(json, program_name, mechanism, exit_code)
+    call json%begin_array('errors')
+    call add_errors(json, choice)
+    call add_errors(json, diagnostics)
+    call json%end_array()
+    call json%end_object()
+    call json%save(path, err)
+  end subroutine save_short_report
+
+  !> Which program this was, and how it ends.
+  subroutine add_outcome(json, program_name, mechanism, exit_code)
+    type(json_type), intent(inout) :: json
+    character(len=*), intent(in) :: program_name
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: exit_code
+
     call json%add('program', program_name)
     call json%add('version', version)
     call json%add('revision', revision)
     call json%add('compiler', compiler())
-    call json%add('title', mechanism%title)
+    if (allocated(mechanism%title)) call json%add('title', mechanism%title)
     call json%add('exit_code', exit_code)
-    call json%add('table', table_path)
-  end subroutine begin_report
+  end subroutine add_outcome
+
+  !> What is wrong: each message, with its place where it has one.
+  subroutine add_errors(json, diagnostics)
+    type(json_type), intent(inout) :: json
+    type(diagnostics_type), intent(in) :: diagnostics
+    character(len=:), allocatable :: message
+    type(span_type) :: span
+    type(place_type) :: place
+    integer :: i
+
+    do i = 1, diagnostics%known()
+      call diagnostics%get(i, message, span)
+      call json%begin_object()
+      call json%add('message', message)
+      if (span%source > 0) then
+        associate (source => diagnostics%sources(span%source))
+          call json%add('file', source%name)
+          if (source%is_file .and. span%first > 0) then
+            place = source%place(span%first)
+            call json%add('line', place%line)
+            call json%add('column', place%column)
+          end if
+        end associate
+      end if
+      call json%end_object()
+    end do
+  end subroutine add_errors
 
   !> The structural vectors and the blocks.
   subroutine add_structure(json, mechanism, plan)

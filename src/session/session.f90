@@ -1,5 +1,5 @@
 !> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
-!> Uses command_line, system, the input floor, structure_text, task, choice_check, version.
+!> Uses command_line, system, the input floor, structure_text, run_words, task, choice_check, unused_options, version.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type, exit_done
@@ -20,7 +20,9 @@ module mech9_session
   use mech9_mechanism, only: mechanism_type
   use mech9_structure_text, only: print_structure
   use mech9_task, only: task_type, answers_only
+  use mech9_run_words, only: save_short_report
   use mech9_choice_check, only: judge_choice_of
+  use mech9_unused_options, only: print_unused_options
   implicit none
   private
   public :: carry_out, run_file, asks_for_text
@@ -84,7 +86,7 @@ contains
     type(structural_vectors_type) :: vectors
     type(mechanism_type) :: mechanism
     type(string_type), allocatable :: settings(:)
-    logical :: legible
+    logical :: legible, reported
     integer :: i
 
     ! an answer that takes too long leaves nothing to be kept: Ctrl-C ends it as it ends any program
@@ -95,21 +97,42 @@ contains
     do i = 1, size(settings)
       call apply_setting(document, settings(i)%text, diagnostics)
     end do
+    reported = .false.
     if (options%has('structure')) then
+      if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, mechanism)
       call read_structure_only(document, structure, vectors, diagnostics)
       if (.not. diagnostics%failed()) call print_structure(output_unit, vectors)
     else
       legible = .not. diagnostics%failed()
       call read_mechanism(document, task%needs_drives, mechanism, diagnostics)
       if (.not. diagnostics%failed()) then
-        call task%work(options, mechanism, diagnostics, kept)
+        if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, mechanism)
+        call task%work(options, mechanism, diagnostics, reported, kept)
       else if (legible .and. task%needs_drives) then
         call judge_choice_of(document, diagnostics, choice)
       end if
     end if
-    call choice%report(error_unit)
-    call diagnostics%report(error_unit)
     code = diagnostics%code()
     if (choice%failed()) code = choice%code()
+    if (options%has('report') .and. .not. reported) &
+      call report_briefly(task, options, mechanism, choice, diagnostics, code)
+    call choice%report(error_unit)
+    call diagnostics%report(error_unit)
   end subroutine run_file
+
+  !> The report where no run wrote one. A failure of that is one more error; the first one decides the code.
+  subroutine report_briefly(task, options, mechanism, choice, diagnostics, code)
+    class(task_type), intent(in) :: task
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(diagnostics_type), intent(in) :: choice
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, intent(inout) :: code
+    type(error_type), allocatable :: err
+
+    call save_short_report(options%argument('report'), task%program_name, mechanism, code, choice, diagnostics, err)
+    if (.not. allocated(err)) return
+    call diagnostics%add_error(err)
+    if (code == exit_done) code = err%code
+  end subroutine report_briefly
 end module mech9_session

@@ -45,12 +45,13 @@ module mech9_task
     end subroutine assemble_interface
 
     !> Do what the options ask for. Errors go to `diagnostics`, which knows the places in the data file.
-    subroutine work_interface(self, options, mechanism, diagnostics, kept)
+    subroutine work_interface(self, options, mechanism, diagnostics, reported, kept)
       import :: task_type, command_line_type, mechanism_type, diagnostics_type, kept_rows_type
       class(task_type), intent(in) :: self
       type(command_line_type), intent(in) :: options
       type(mechanism_type), intent(in) :: mechanism
       type(diagnostics_type), intent(inout) :: diagnostics
+      logical, intent(out) :: reported       !< a report was asked for, and it is written: there was a run
       type(kept_rows_type), intent(inout), optional :: kept   !< the rows of a run, for who looks at them after it
     end subroutine work_interface
   end interface

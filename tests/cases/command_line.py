@@ -167,6 +167,58 @@ def talk(s):
     s.ends(FILE, 'a report that cannot be written', FIG1, '--report', 'nowhere/report.json', says='nowhere/report.json')
 
 
+def report_after(s, code, why, *arguments):
+    """The report of a run that is expected to end so."""
+    if s.exists('short.json'):
+        os.remove(s.path('short.json'))
+    s.ends(code, why, *arguments, '--report', 'short.json')
+    report = json.loads(text_of(s.path('short.json')))
+    s.checks.equal((report['program'], report['exit_code']), ('mech9k', code), f'{why}: the report tells program and exit code')
+    s.checks.equal(report['errors'] == [], code == DONE, f'{why}: and what is wrong')
+    return report
+
+
+def short_reports(s):
+    """Reports where no run was made: as much as is known."""
+    s.checks.equal(report_after(s, DONE, 'a check', FIG1, '--check').get('title'),
+                   'Fig. 1: two closed chains, one degree of freedom', 'the title of what was checked')
+    report_after(s, DONE, 'the structure', FIG1, '--structure')
+    wrong = s.write('wrong.nml', text_of(FIG1).replace("'revolute'", "'revolutte'", 1))
+    error, = report_after(s, DATA, 'a misspelt kind', wrong)['errors']
+    row, line = next((n, l) for n, l in enumerate(text_of(wrong).split('\n'), 1) if 'revolutte' in l)
+    s.checks.equal((error['file'], error['line'], error['column']), (wrong, row, line.index("'revolutte'") + 1),
+                   'the place of the error')
+    s.checks.true("'revolute'" in error['message'], 'its message', error)
+    error, = report_after(s, DATA, 'a wrong setting', FIG1, '--set', 'time.intervals=many')['errors']
+    s.checks.true(error['file'] == '--set' and 'line' not in error, 'a setting has no line', error)
+    s.checks.equal(len(report_after(s, STRUCTURE, 'a wrong choice, a drive that is missing', FIG1, '--set',
+                                    'structure.cq=5, 1')['errors']), 2, 'both are told')
+    report_after(s, ASSEMBLY, 'what cannot be assembled', SLIDER, '--set', 'pair(4).point=0,2,0')
+    report_after(s, FILE, 'no data file', 'nowhere.nml')
+    report_after(s, FILE, 'results that cannot be opened', FIG1, '--table', 'nowhere/x.dat')
+    report_after(s, USAGE, 'a plot of nothing', FIG1, '--plot', 'q99')
+    s.ends(FILE, 'a report of a check that cannot be written', FIG1, '--check', '--report', 'nowhere/report.json',
+           says='nowhere/report.json')
+    s.ends(DATA, 'nor one of an error', FIG1, '--set', 'time.intervals=many', '--report', 'nowhere/report.json',
+           says=['nowhere/report.json', 'intervals'])
+
+
+def without_effect(s):
+    """Options that nothing comes of are named, unless all is to be quiet."""
+    for words, named in ((['--check', '--table', 'x.dat', '--plot', 'q1'], '--table, --plot'),
+                         (['--plan', '--hdf5', 'x.h5'], '--hdf5'), (['--range', '--no-write'], '--no-write'),
+                         (['--structure', '--check', '--sketch', 'x.svg'], '--check, --sketch'),
+                         (['--starts', '3', '--no-write'], '--starts'), (['--check', '--view', 'xy'], '--view'),
+                         (['--view', 'xy', '--no-write'], '--view')):
+        done = s.ends(DONE, ' '.join(words), FIG1, *words, says=f'mech9k: without effect: {named};')
+        s.checks.equal(s.ends(DONE, 'quietly', FIG1, *words, '--quiet').stderr, '', f'{words}: quiet')
+        s.checks.true(done.stderr.count('without effect') == 1, f'{words}: nothing else is said so', done.stderr)
+    for words in (['--check', '--view', 'xy', '--sketch', 'x.svg'], ['--branches', '--starts', '3'], ['--check', '--range'],
+                  ['--view', 'xy', '--no-write', '--set', 'output.animation=x.html'], ['--table', 'x.dat']):
+        done = s.ends(DONE, ' '.join(words), FIG1, *words)
+        s.checks.true('without effect' not in done.stderr, f'{words}: all have effect', done.stderr)
+
+
 def bad_data(s):
     text = text_of(FIG1)
     done = s.ends(DATA, 'a misspelt kind', s.write('kind.nml', text.replace("'revolute'", "'revolutte'", 1)),
@@ -236,7 +288,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Session(program, folder)
         help_and_version(s, version)
-        for part in (wrong_use, structure, tables, settings, answers, talk, bad_data, cannot_move, degrees):
+        for part in (wrong_use, structure, tables, settings, answers, talk, short_reports, without_effect, bad_data, cannot_move,
+                     degrees):
             part(s)
         s.checks.finish()
 
