@@ -5,7 +5,7 @@ module mech9_program
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
-  use mech9_system, only: exit_program
+  use mech9_system, only: exit_program, leave_quit_alone
   use mech9_session, only: carry_out, asks_for_text
   use mech9_task, only: task_type
   use mech9_converse, only: converse
@@ -20,6 +20,7 @@ contains
     class(task_type), intent(in) :: task
     integer :: code
 
+    call leave_quit_alone()
     call run_command_line(task, code)
     call exit_program(code)
   end subroutine run_program

@@ -8,14 +8,14 @@ module mech9_system
   implicit none
   private
   public :: exit_program, is_terminal, standard_input, standard_output, standard_error
-  public :: catch_interrupts, catch_size_limit, interrupted, hung_up, flush_output
+  public :: catch_interrupts, catch_size_limit, leave_quit_alone, interrupted, hung_up, flush_output
 
   !> The three standard files, for `is_terminal`.
   integer, parameter :: standard_input = 0, standard_output = 1, standard_error = 2
 
   ! Numbers of POSIX systems.
-  integer(c_int), parameter :: signal_file_size = 25, signal_hang_up = 1, signal_interrupt = 2, signal_broken_pipe = 13, &
-                               signal_terminate = 15
+  integer(c_int), parameter :: signal_file_size = 25, signal_hang_up = 1, signal_interrupt = 2, signal_quit = 3, &
+                               signal_broken_pipe = 13, signal_terminate = 15
   !> SIG_DFL and SIG_IGN as addresses.
   integer(c_intptr_t), parameter :: default_action = 0, ignore_action = 1
 
@@ -103,6 +103,13 @@ contains
 
     previous = c_signal(signal_file_size, action(ignore_action))
   end subroutine catch_size_limit
+
+  !> From now on Ctrl-\ ends the program as it ends others. gfortran's runtime library takes it, and prints a backtrace.
+  subroutine leave_quit_alone()
+    type(c_funptr) :: previous
+
+    previous = c_signal(signal_quit, action(default_action))
+  end subroutine leave_quit_alone
 
   !> Catch one signal, unless whoever started the program had it ignored (nohup, a job in the background).
   subroutine catch(number)

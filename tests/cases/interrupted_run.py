@@ -1,10 +1,11 @@
 """A run that is asked to end (Ctrl-C, kill, the terminal closed) keeps what was computed and says so; an answer
-just ends.
+just ends. Ctrl-\\ ends a run as it ends any program.
 
 usage: interrupted_run.py MECH9K MECH9D
 """
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -31,6 +32,7 @@ def default_actions():
     """Signals as an interactive shell leaves them, whatever the tests were started by."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def interrupted(words, folder, number, ready, seconds=0.3):
@@ -68,6 +70,7 @@ def check_rows(checks, program, data, settings, folder, number):
     with open(os.path.join(folder, 'part.json'), encoding='utf-8') as file:
         report = json.load(file)
     checks.equal(report['exit_code'], 130, f'{why}: the report is written')
+    checks.true(len(report['errors']) == 1 and report['errors'][0]['message'] in errors, f'{why}: it says what was said', report)
     checks.true(len(times) in report.values(), f'{why}: it counts the rows of the table', (len(times), report))
     if h5py:
         with h5py.File(os.path.join(folder, 'part.h5'), 'r') as file:
@@ -89,6 +92,10 @@ def main():
         checks.true(code == 130 and 'interrupted' in errors, 'mech9d, between two outputs', (code, errors))
         with open(path, encoding='utf-8') as file:
             checks.equal(read_table(file.read())['t'].tolist(), [0.0], 'mech9d, between two outputs: the start is kept')
+        # Ctrl-\\ is not taken
+        code, _, errors = interrupted([mech9k, FIG1, '--no-write', '--set', 'time.intervals=' + MANY], folder, signal.SIGQUIT,
+                                      lambda: True, 0.5)
+        checks.true(code == -signal.SIGQUIT and 'acktrace' not in errors, 'SIGQUIT ends a run without a backtrace', (code, errors))
         # an answer has nothing to keep
         code, _, errors = interrupted([mech9k, PLATFORM, '--branches', '--starts', MANY], folder, signal.SIGINT,
                                       lambda: True, 0.5)
