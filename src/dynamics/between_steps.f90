@@ -112,11 +112,11 @@ contains
     class(between_steps_type), intent(in) :: self     !< with two ends at least
     real(wp), intent(out) :: t
     real(wp), intent(out) :: y(:)
+    integer :: before
 
-    associate (before => self%points(place(self, 2)))
-      t = before%t
-      y = before%y
-    end associate
+    before = place(self, 2)
+    t = self%points(before)%t
+    y = self%points(before)%y
   end subroutine start_of_step
 
   !> Place of the i-th end, counted from the last one.

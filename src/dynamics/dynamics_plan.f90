@@ -40,6 +40,7 @@ module mech9_dynamics_plan
     integer, allocatable :: parent_entry(:)            !< (entries) the same column in the parent frame, 0 for none
     integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame
     logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
+    integer, allocatable :: acting(:)                  !< numbers of the loads that may move anything
     logical, allocatable :: load_links(:)              !< (N) links whose motion loads ask for
     integer, allocatable :: loaded(:)                  !< the same without link 1, which stays where it is
     logical :: open_chains = .false.                   !< no chain is closed: accelerations by articulated bodies
@@ -62,8 +63,10 @@ contains
       dynamics%place_of(plan%independent(i)) = i
     end do
     allocate (dynamics%load_links(plan%n_links), source=.false.)
-    do i = 1, size(mechanism%loads)
-      call mechanism%loads(i)%load%mark_links(dynamics%load_links)
+    dynamics%acting = pack([(i, i=1, size(mechanism%loads))], &
+                           [(.not. mechanism%loads(i)%load%is_idle(), i=1, size(mechanism%loads))])
+    do i = 1, size(dynamics%acting)
+      call mechanism%loads(dynamics%acting(i))%load%mark_links(dynamics%load_links)
     end do
     dynamics%loaded = pack([(i, i=2, plan%n_links)], dynamics%load_links(2:))
     call find_bodies(mechanism, plan, dynamics)
@@ -86,8 +89,7 @@ contains
     n = 0
     do i = 1, size(mechanism%bodies)
       associate (body => mechanism%bodies(i))
-        ! a link may have inertia about its axis and no mass
-        if (body%link == 1 .or. .not. (body%mass > 0.0_wp .or. any(abs(body%inertia) > 0.0_wp))) cycle
+        if (body%link == 1 .or. .not. body%has_inertia()) cycle
         n = n + 1
         if (plan%planar%used) dynamics%planar_bodies(n) = planar_body(plan, body)
         dynamics%bodies(n)%link = body%link

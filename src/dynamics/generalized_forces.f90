@@ -28,11 +28,11 @@ contains
     type(error_type), allocatable, intent(out) :: err
     integer :: i
 
-    if (size(mechanism%loads) == 0) return
+    if (size(dynamics%acting) == 0) return
     call show_state(plan, dynamics, state, work%view)
     call work%sum%clear()
-    do i = 1, size(mechanism%loads)
-      call mechanism%loads(i)%load%apply(work%view, work%sum, err)
+    do i = 1, size(dynamics%acting)
+      call mechanism%loads(dynamics%acting(i))%load%apply(work%view, work%sum, err)
       if (allocated(err)) return
     end do
   end subroutine collect_loads

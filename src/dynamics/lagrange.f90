@@ -93,7 +93,7 @@ contains
     call collect_inertia(dynamics, state, work)
     call collect_loads(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    if (size(mechanism%loads) > 0) call collect_forces(plan, dynamics, state, work)
+    if (size(dynamics%acting) > 0) call collect_forces(plan, dynamics, state, work)
   end subroutine find_equations
 
   !> The motion of open chains by articulated bodies. `found` is false where a coordinate has no inertia.

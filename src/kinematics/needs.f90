@@ -36,8 +36,11 @@ contains
     type(needs_type), intent(inout) :: needs
     integer :: i
 
-    needs%links(mechanism%bodies%link) = .true.
+    do i = 1, size(mechanism%bodies)
+      if (mechanism%bodies(i)%has_inertia()) needs%links(mechanism%bodies(i)%link) = .true.
+    end do
     do i = 1, size(mechanism%loads)
+      if (mechanism%loads(i)%load%is_idle()) cycle
       call mechanism%loads(i)%load%mark_links(needs%links)
       call mechanism%loads(i)%load%mark_coordinates(needs%coordinates)
     end do

@@ -12,5 +12,16 @@ module mech9_body
     real(wp) :: centre(3) = 0.0_wp         !< mass centre in the link's system [m]
     real(wp) :: inertia(3, 3) = 0.0_wp     !< tensor about the centre, link axes [kg m^2]
     type(place_type) :: place              !< of its group in the data file
+  contains
+    procedure :: has_inertia
   end type body_type
+
+contains
+
+  !> Whether it resists any motion; a link may have inertia about its axis and no mass.
+  pure logical function has_inertia(self)
+    class(body_type), intent(in) :: self
+
+    has_inertia = self%mass > 0.0_wp .or. any(abs(self%inertia) > 0.0_wp)
+  end function has_inertia
 end module mech9_body

@@ -19,12 +19,19 @@ module mech9_coordinate_load
     real(wp) :: force = 0.0_wp       !< [N m, N]
   contains
     procedure :: mark_links
+    procedure :: is_idle
     procedure :: mark_coordinates
     procedure :: apply
     procedure :: potential
   end type coordinate_load_type
 
 contains
+
+  pure logical function is_idle(self)
+    class(coordinate_load_type), intent(in) :: self
+
+    is_idle = .not. (abs(self%stiffness) > 0.0_wp .or. abs(self%damping) > 0.0_wp .or. abs(self%force) > 0.0_wp)
+  end function is_idle
 
   !> It acts on a coordinate and asks for no link.
   pure subroutine mark_links(self, needed)

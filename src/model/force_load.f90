@@ -18,11 +18,18 @@ module mech9_force_load
     logical :: turns_with_link = .false.
   contains
     procedure :: mark_links
+    procedure :: is_idle
     procedure :: apply
     procedure :: potential
   end type force_load_type
 
 contains
+
+  pure logical function is_idle(self)
+    class(force_load_type), intent(in) :: self
+
+    is_idle = self%link == 1 .or. .not. (any(abs(self%force) > 0.0_wp) .or. any(abs(self%torque) > 0.0_wp))
+  end function is_idle
 
   pure subroutine mark_links(self, needed)
     class(force_load_type), intent(in) :: self

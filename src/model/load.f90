@@ -14,6 +14,7 @@ module mech9_load
   contains
     procedure(mark_interface), deferred :: mark_links
     procedure :: mark_coordinates
+    procedure :: is_idle
     procedure(apply_interface), deferred :: apply
     procedure(potential_interface), deferred :: potential
   end type load_type
@@ -55,4 +56,11 @@ contains
     class(load_type), intent(in) :: self
     logical, intent(inout) :: needed(:)      !< (M)
   end subroutine mark_coordinates
+
+  !> Whether it never moves anything: it is zero, or acts on link 1 alone. Not, unless a kind says otherwise.
+  pure logical function is_idle(self)
+    class(load_type), intent(in) :: self
+
+    is_idle = .false.
+  end function is_idle
 end module mech9_load

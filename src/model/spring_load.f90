@@ -19,12 +19,19 @@ module mech9_spring_load
     real(wp) :: damping = 0.0_wp           !< [N s/m]
   contains
     procedure :: mark_links
+    procedure :: is_idle
     procedure :: apply
     procedure :: potential
     procedure, private :: span
   end type spring_load_type
 
 contains
+
+  pure logical function is_idle(self)
+    class(spring_load_type), intent(in) :: self
+
+    is_idle = .not. (abs(self%stiffness) > 0.0_wp .or. abs(self%damping) > 0.0_wp)
+  end function is_idle
 
   pure subroutine mark_links(self, needed)
     class(spring_load_type), intent(in) :: self

@@ -111,6 +111,7 @@ contains
       call facts%add('frames_placed', work%frames_placed, 'poses of frames that were found in closing chains')
       call facts%add('factorizations', work%factorizations, 'Jacobians of blocks that were factorized')
       call facts%add('links_with_inertia', size(run%system%dynamics%bodies), 'links that the coefficients of motion have terms of')
+      call facts%add('acting_loads', size(run%system%dynamics%acting), 'loads that may move anything')
       call facts%add('frames_carried', count(run%system%dynamics%carries(1:)), 'frames whose motion a mass or a load depends on')
     end if
     call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')

@@ -143,7 +143,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(dynamics_plan_type) :: dynamics
-    logical :: has_mass(plan%n_links), idle(plan%n_links)
+    logical :: has_mass(plan%n_links), idle(plan%n_links), without_effect(size(mechanism%loads))
     integer :: i
 
     call make_dynamics_plan(mechanism, plan, dynamics)
@@ -159,5 +159,8 @@ contains
     idle(1) = .false.
     call print_marked(unit, .not. has_mass, 'without mass, no terms of inertia: links ')
     call print_marked(unit, idle, 'no mass, load or later chain depends on their motion, left out: links ')
+    without_effect = .true.
+    without_effect(dynamics%acting) = .false.
+    call print_marked(unit, without_effect, 'zero, or on link 1 alone, left out: loads ')
   end subroutine print_dynamics_plan
 end module mech9_plan_text

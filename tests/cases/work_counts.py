@@ -204,6 +204,15 @@ def test_dynamics(case):
     heavy = table_and_report(case.dynamics, case.file(SIX_AND_TWO, more=exact + '&body link=3, mass=0 /\n'))
     checks.equal(heavy[1]['links_with_inertia'], 2, 'a body without mass is none')
     case.same(heavy[0], table, (0, 0, 0), 'a body without mass')
+    idle = "&load kind='force', link=1, force=1,2,3 /\n&load kind='coordinate', coordinate=10 /\n"
+    unloaded = table_and_report(case.dynamics, case.file(SIX_AND_TWO, more=exact + idle))
+    checks.equal(unloaded[1]['acting_loads'], 0, 'loads that move nothing')
+    case.same(unloaded[0], table, (0, 0, 0), 'loads that move nothing')
+    pushed = table_and_report(case.dynamics, case.file(SIX_AND_TWO, more=exact + idle + "&load kind='torque', link=2, torque=0,0,1 /"))
+    checks.equal(pushed[1]['acting_loads'], 1, 'and one that does')
+    checks.true(abs(pushed[0]['q3'][-1] - table['q3'][-1]) > 0.01, 'it does')
+    plan = run(case.dynamics, case.file(SIX_AND_TWO, more=idle), '--plan').stdout
+    checks.true('zero, or on link 1 alone, left out: loads 1, 2' in plan, 'the plan says so', plan)
     loaded = case.file(SIX_AND_TWO, more="&output coordinates=3 /\n&load kind='coordinate', coordinate=10, damping=0.1 /\n")
     checks.true('left out: no result' not in run(case.dynamics, loaded, '--plan').stdout, 'a load is a reason to solve')
 
