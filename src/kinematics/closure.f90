@@ -11,7 +11,7 @@ module mech9_closure
   use mech9_rotation, only: turn, turn_back, combine, cross, rotation_vector
   use mech9_plan, only: plan_type, closure_type, block_type
   use mech9_state, only: state_type, velocity_known
-  use mech9_planar_closure, only: planar_errors, planar_columns, planar_rates, planar_bias_rates, planar_gap
+  use mech9_planar_closure, only: planar_errors, planar_columns, planar_path_rates, planar_path_bias, planar_gap
   implicit none
   private
   public :: closure_errors, closure_jacobian, closure_column, closure_rates, closing_error, loop_screw, reduced_screw
@@ -109,42 +109,119 @@ contains
     end associate
   end subroutine closure_column
 
-  !> How fast the block's closures open: from the velocities in `state`, or from its accelerations.
+  !> How fast the block's closures open at the rates in `state`, or at its accelerations. The frames of blocks
+  !> before it must move as these say; of its own frames no accelerations are needed, and no velocities for the
+  !> first.
   pure subroutine closure_rates(plan, block, state, order, rates)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     type(state_type), intent(in) :: state
     integer, intent(in) :: order          !< velocity_known or acceleration_known: which of them
     real(wp), intent(out), contiguous :: rates(:)
-    real(wp) :: w(3), v(3), arm(3), place(3)
+    real(wp) :: w(3), v(3)
     integer :: c, row
 
-    if (plan%planar%used) then
-      if (order == velocity_known) then
-        call planar_rates(plan%planar, block%first_closure, block%last_closure, state%planar, rates)
-      else
-        call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, rates)
-      end if
-      return
-    end if
     row = 0
     do c = block%first_closure, block%last_closure
-      associate (closure => plan%closures(c), f => plan%closures(c)%closing, g => plan%closures(c)%target)
-        place = state%p(:, f)
-        arm = place - state%p(:, g)
-        if (order == velocity_known) then
-          w = state%omega(:, f) - state%omega(:, g)
-          v = state%v(:, f) - state%v(:, g) - cross(state%omega(:, g), arm)
+      associate (closure => plan%closures(c))
+        if (plan%planar%used) then
+          if (order == velocity_known) then
+            call planar_path_rates(plan%planar, c, size(closure%path%steps), closure%path%steps, closure%path%signs, &
+                              closure%path%stems, state%dq, state%planar, rates(row + 1:row + 3))
+          else
+            call planar_path_bias(plan%planar, c, size(closure%path%steps), closure%path%steps, closure%path%signs, &
+                                   closure%path%stems, state%dq, state%ddq, state%planar, rates(row + 1:row + 3))
+          end if
         else
-          w = state%alpha(:, f) - state%alpha(:, g)
-          v = state%a(:, f) - state%a(:, g) - cross(state%alpha(:, g), arm) &
-              - cross(state%omega(:, g), cross(state%omega(:, g), arm))
+          if (order == velocity_known) then
+            call opening_velocity(plan, closure, state, w, v)
+          else
+            call opening_acceleration(plan, closure, state, w, v)
+          end if
+          call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), rates(row + 1:row + closure%rank))
         end if
-        call reduced_screw(plan, closure, state, w, v, place, rates(row + 1:row + closure%rank))
         row = row + closure%rank
       end associate
     end do
   end subroutine closure_rates
+
+  !> Velocity of a closure's closing frame against what its target carries along.
+  pure subroutine opening_velocity(plan, closure, state, w, v)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(out) :: w(3), v(3)
+    real(wp) :: place(3), arm(3), spin(3), rate
+    integer :: i, s
+
+    place = state%p(:, closure%closing)
+    call stem_difference(closure, place, state%p, state%omega, state%v, w, v)
+    do i = 1, size(closure%path%steps)
+      s = closure%path%steps(i)
+      rate = closure%path%signs(i)*state%dq(plan%steps(s)%coordinate)
+      if (.not. abs(rate) > 0.0_wp) cycle
+      spin = rate*state%axis_w(:, s)
+      arm = place - state%p(:, s)
+      w = w + spin
+      v = v + rate*state%axis_v(:, s) + cross(spin, arm)
+    end do
+  end subroutine opening_velocity
+
+  !> What the two frames where the path of a closure begins would carry past each other at a place: the difference
+  !> of their velocities, or of accelerations without those of turning on.
+  pure subroutine stem_difference(closure, place, p, omega, v_frame, w, v)
+    type(closure_type), intent(in) :: closure
+    real(wp), intent(in) :: place(3), p(:, 0:), omega(:, 0:), v_frame(:, 0:)
+    real(wp), intent(out) :: w(3), v(3)
+    real(wp) :: arm(3)
+    integer :: f, g
+
+    f = closure%path%stems(1)
+    g = closure%path%stems(2)
+    w = 0.0_wp
+    v = 0.0_wp
+    if (f == g) return
+    arm = place - p(:, f)
+    v = v_frame(:, f) + cross(omega(:, f), arm)
+    arm = place - p(:, g)
+    v = v - v_frame(:, g) - cross(omega(:, g), arm)
+    w = omega(:, f) - omega(:, g)
+  end subroutine stem_difference
+
+  !> Its acceleration, likewise.
+  pure subroutine opening_acceleration(plan, closure, state, w, v)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(out) :: w(3), v(3)
+    real(wp) :: place(3), arm(3), spin(3), slip(3), rate, acceleration
+    integer :: i, s, f
+
+    place = state%p(:, closure%closing)
+    call stem_difference(closure, place, state%p, state%alpha, state%a, w, v)
+    do i = 1, size(closure%path%steps)
+      s = closure%path%steps(i)
+      f = plan%steps(s)%parent
+      rate = state%dq(plan%steps(s)%coordinate)
+      acceleration = state%ddq(plan%steps(s)%coordinate)
+      arm = state%p(:, s) - state%p(:, f)
+      spin = rate*state%axis_w(:, s)
+      slip = cross(state%omega(:, f), arm) + 2.0_wp*rate*state%axis_v(:, s)
+      spin = acceleration*state%axis_w(:, s) + cross(state%omega(:, f), spin)
+      slip = acceleration*state%axis_v(:, s) + cross(state%omega(:, f), slip)
+      if (.not. plan%steps(s)%is_screw) then
+        spin = spin + rate**2*state%axis_w_rate(:, s)
+        slip = slip + rate**2*state%axis_v_rate(:, s)
+      end if
+      w = w + closure%path%signs(i)*spin
+      arm = place - state%p(:, s)
+      v = v + closure%path%signs(i)*(slip + cross(spin, arm))
+    end do
+    f = closure%target
+    arm = place - state%p(:, f)
+    slip = cross(state%omega(:, f), arm)
+    v = v - cross(state%omega(:, f), slip)
+  end subroutine opening_acceleration
 
   !> How far a closure is from closed, all six components: a length [m], rotations times the mechanism's size.
   pure real(wp) function closing_error(plan, c, state)

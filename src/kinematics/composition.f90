@@ -1,17 +1,18 @@
 !> Composition of poses along the steps of a plan, (10), with the screws of the pairs on the way.
-!> Uses kinds, error, rotation, pose, pair, plan, state, planar_motion.
+!> Uses kinds, error, sine_cosine, rotation, pose, pair, plan, state, planar_motion.
 module mech9_composition
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_rotation, only: turn, combine, cross
+  use mech9_sine_cosine, only: cosines_and_sines
+  use mech9_rotation, only: turn, combine, cross, turn_on
   use mech9_pair, only: pair_motion_type
   use mech9_pose, only: inverse
   use mech9_plan, only: plan_type, step_type
   use mech9_state, only: state_type
-  use mech9_planar_motion, only: place_in_plane
+  use mech9_planar_motion, only: place_in_plane, nudge_in_plane
   implicit none
   private
-  public :: place_frames, reversed_motion
+  public :: place_frames, nudge_frames, reversed_motion
 
 contains
 
@@ -29,8 +30,46 @@ contains
       return
     end if
     do s = first, last
+      state%angle(s) = plan%steps(s)%turn*(state%q(plan%steps(s)%coordinate) + plan%steps(s)%offset)
+    end do
+    call cosines_and_sines(last - first + 1, state%angle(first:last), state%turn(:, first:last))
+    call compose_frames(plan, first, last, state, err)
+  end subroutine place_frames
+
+  !> The same after a small change of the coordinates of some steps: their angles are turned on, not computed anew.
+  subroutine nudge_frames(plan, first, last, changed, change, state, err)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first, last
+    integer, intent(in) :: changed(:)           !< steps
+    real(wp), intent(in) :: change(:)           !< of their coordinates, in units of these
+    type(state_type), intent(inout) :: state    !< its coordinates are changed already
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    if (plan%planar%used) then
+      call nudge_in_plane(plan%planar, first, last, changed, change, state%q, state%planar)
+      return
+    end if
+    do i = 1, size(changed)
+      associate (step => plan%steps(changed(i)))
+        if (abs(step%turn) > 0.0_wp) &
+          call turn_on(step%turn*change(i)*plan%unit_of(step%coordinate), state%turn(:, changed(i)))
+      end associate
+    end do
+    call compose_frames(plan, first, last, state, err)
+  end subroutine nudge_frames
+
+  !> Poses of frames from the angles of their steps.
+  subroutine compose_frames(plan, first, last, state, err)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first, last
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    integer :: s
+
+    do s = first, last
       if (plan%steps(s)%is_screw) then
-        call place_screw(plan%steps(s), state%q(plan%steps(s)%coordinate), &
+        call place_screw(plan%steps(s), state%q(plan%steps(s)%coordinate), state%turn(1, s), state%turn(2, s), &
                          state%r(:, :, plan%steps(s)%parent), state%p(:, plan%steps(s)%parent), &
                          state%r(:, :, s), state%p(:, s), state%axis_w(:, s), state%axis_v(:, s))
       else
@@ -38,21 +77,19 @@ contains
         if (allocated(err)) return
       end if
     end do
-  end subroutine place_frames
+  end subroutine compose_frames
 
   !> One step along a fixed axis: constant pose, then turn about and slide along z.
-  pure subroutine place_screw(step, q, r_parent, p_parent, r, p, axis_w, axis_v)
+  pure subroutine place_screw(step, q, c, s, r_parent, p_parent, r, p, axis_w, axis_v)
     type(step_type), intent(in) :: step
     real(wp), intent(in) :: q
+    real(wp), intent(in) :: c, s              !< cosine and sine of its turn
     real(wp), intent(in) :: r_parent(3, 3), p_parent(3)
     real(wp), intent(out) :: r(3, 3), p(3), axis_w(3), axis_v(3)
-    real(wp) :: x, c, s, advance, ex(3), ey(3), ez(3)
+    real(wp) :: advance, ex(3), ey(3), ez(3)
     integer :: i
 
-    x = q + step%offset
-    c = cos(step%turn*x)
-    s = sin(step%turn*x)
-    advance = step%slide*x
+    advance = step%slide*(q + step%offset)
     do i = 1, 3
       ex(i) = r_parent(i, 1)*step%before%r(1, 1) + r_parent(i, 2)*step%before%r(2, 1) + r_parent(i, 3)*step%before%r(3, 1)
       ey(i) = r_parent(i, 1)*step%before%r(1, 2) + r_parent(i, 2)*step%before%r(2, 2) + r_parent(i, 3)*step%before%r(3, 2)

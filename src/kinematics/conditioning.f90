@@ -4,13 +4,15 @@
 !> Rotations count in rad, lengths in the mechanism's; 1 where there is no closed chain.
 module mech9_conditioning
   use mech9_kinds, only: wp
-  use mech9_solver, only: block_work_type, least_pivot
+  use mech9_solver, only: block_work_type
   implicit none
   private
   public :: conditioning_type
 
   !> The least singular value is looked at when the least pivot has fallen to this part.
   real(wp), parameter :: worth_a_look = 0.99_wp
+  !> Of values that differ by no more than round-off, after a whole turn for example, the first one counts.
+  real(wp), parameter :: clearly_less = 1.0_wp - 1.0e-12_wp
 
   !> The worst of several positions.
   type :: conditioning_type
@@ -36,7 +38,7 @@ contains
 
     pivot = huge(pivot)
     do b = 1, size(work)
-      if (work(b)%equations%n > 0) pivot = min(pivot, least_pivot(work(b)))
+      if (work(b)%equations%n > 0) pivot = min(pivot, work(b)%equations%least_pivot())
     end do
     if (pivot >= worth_a_look*self%pivot) return
     self%pivot = pivot
@@ -52,7 +54,7 @@ contains
     integer :: block
 
     call find_conditioning(work, least, block)
-    if (block == 0 .or. (least >= self%least .and. self%block > 0)) return
+    if (block == 0 .or. (least >= clearly_less*self%least .and. self%block > 0)) return
     self%least = least
     self%t = t
     self%block = block

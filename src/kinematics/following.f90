@@ -13,7 +13,7 @@ module mech9_following
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
-    solve_rates, solve_accelerations
+    solve_rates, solve_accelerations, solve_motion
   use mech9_past_rates, only: past_rates_type, new_past_rates, forget_rates, take_rates
   use mech9_watch, only: watch_type, new_watch, watch_step, keep, nearness, is_near
   implicit none
@@ -60,6 +60,7 @@ module mech9_following
     type(departure_type) :: departure             !< the position accepted last
     type(block_work_type), allocatable :: work(:)
     type(watch_type), allocatable :: watches(:)
+    real(wp), allocatable :: per_unit(:)          !< (M) reciprocals of the coordinates' units
     integer, allocatable :: drives(:)             !< those that move closed chains
     integer :: last_block = huge(1)               !< the blocks after this one are left as they are
     logical :: with_accelerations = .true.        !< at every position, not only near singular ones
@@ -104,9 +105,11 @@ contains
     allocate (follower%departure%higher(m, 3), source=0.0_wp)
     allocate (follower%work(size(plan%blocks)), follower%watches(size(plan%blocks)))
     do b = 1, size(plan%blocks)
-      follower%work(b) = new_block_work(plan%blocks(b))
+      follower%work(b) = new_block_work(plan%blocks(b), plan)
       follower%watches(b) = new_watch(plan%blocks(b))
     end do
+    allocate (follower%per_unit(m))
+    follower%per_unit = 1.0_wp/plan%unit_of
     follower%drives = drives_of_chains(mechanism, plan)
   end function new_follower
 
@@ -151,7 +154,7 @@ contains
       last%before = 0.0_wp
       last%higher = 0.0_wp
     end associate
-    call keep(follower%watches)
+    call keep(follower%work, follower%watches)
     call forget_rates(follower%past)
   end subroutine settle
 
@@ -267,69 +270,90 @@ contains
     do b = 1, min(size(plan%blocks), follower%last_block)
       refused_by = b
       associate (block => plan%blocks(b), work => follower%work(b))
-        call predict(plan, block, follower%departure, follower%state)
-        ! beside a singular position what chains that are closed enough leave open is large: to the last digit
-        call close_block(plan, block, follower%state, work, newton, err, merge(1, 0, is_near(follower%watches(b))))
+        call predict(block, follower%departure, follower%state)
+        ! to the last digit: what chains that are closed enough leave open is large beside a singular position
+        call close_block(plan, block, follower%state, work, newton, err, 1)
         follower%iterations = follower%iterations + newton%iterations
         ! a pair may have no pose where a step that is too long leads
         if (allocated(err) .or. .not. newton%converged) worst = 4.0_wp
         if (worst > 1.0_wp) return
         if (size(block%unknowns) > 0) &
-          call watch_step(plan, block, follower%state, work, follower%watches(b), worst)
+          call watch_step(plan, block, follower%state, newton%factorized, work, follower%watches(b), worst)
         if (worst > 1.0_wp) return
-        call solve_rates(plan, block, follower%state, work)
-        call judge(plan, block, follower%departure, follower%state, newton, follower%watches(b)%trial_pivot, worst)
+        if (complete) then
+          call solve_motion(plan, block, follower%state, work)
+        else
+          call solve_rates(plan, block, follower%state, work)
+        end if
+        call judge(block, follower%per_unit, follower%departure, follower%state, newton, follower%watches(b)%trial_pivot, &
+                   worst)
         if (worst > 1.0_wp) return
-        if (complete) call solve_accelerations(plan, block, follower%state, work)
       end associate
     end do
   end subroutine try_step
 
   !> Polynomial prediction of a block's dependent coordinates.
-  pure subroutine predict(plan, block, departure, state)
-    type(plan_type), intent(in) :: plan
+  pure subroutine predict(block, departure, state)
     type(block_type), intent(in) :: block
     type(departure_type), intent(in) :: departure
     type(state_type), intent(inout) :: state
     real(wp) :: h, near
-    integer :: i, k
 
     h = state%t - departure%t
     ! far beyond two positions that are close together their round-off would be all there is
     near = 0.0_wp
     if (abs(h) <= longest_prediction*departure%before) near = h
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%q(k) = departure%q(k) + h*(departure%dq(k) + h*(0.5_wp*departure%ddq(k) + near*(departure%higher(k, 1) &
-                   + near*(departure%higher(k, 2) + near*departure%higher(k, 3)))))
-    end do
+    call follow_polynomial(size(block%coordinates), block%coordinates, size(state%q), h, near, departure%q, departure%dq, &
+                           departure%ddq, departure%higher, state%q)
   end subroutine predict
 
+  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+
+  !> The polynomial of some coordinates at time h, its higher terms at time `near`.
+  pure subroutine follow_polynomial(n, coordinates, m, h, near, q, dq, ddq, higher, q_then)
+    integer, intent(in) :: n, coordinates(n), m
+    real(wp), intent(in) :: h, near, q(m), dq(m), ddq(m), higher(m, 3)
+    real(wp), intent(inout) :: q_then(m)
+    integer :: i, k
+
+    do i = 1, n
+      k = coordinates(i)
+      q_then(k) = q(k) + h*(dq(k) + h*(0.5_wp*ddq(k) + near*(higher(k, 1) + near*(higher(k, 2) + near*higher(k, 3)))))
+    end do
+  end subroutine follow_polynomial
+
   !> Judge a block's prediction against its correction, and its movement against its rates.
-  pure subroutine judge(plan, block, departure, state, newton, pivot, worst)
-    type(plan_type), intent(in) :: plan
+  pure subroutine judge(block, per_unit, departure, state, newton, pivot, worst)
     type(block_type), intent(in) :: block
+    real(wp), intent(in), contiguous :: per_unit(:)
     type(departure_type), intent(in) :: departure
     type(state_type), intent(in) :: state
     type(newton_outcome_type), intent(in) :: newton
     real(wp), intent(in) :: pivot
     real(wp), intent(inout) :: worst
     real(wp) :: move, bend
-    integer :: i, k
 
     if (size(block%unknowns) == 0) return
     worst = max(worst, newton%correction/(trusted_correction*pivot))
     if (newton%correction > small_correction*pivot) worst = max(worst, newton%contraction/trusted_contraction)
-    move = 0.0_wp
-    bend = 0.0_wp
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      move = max(move, abs(state%q(k) - departure%q(k))/plan%unit_of(k))
-      bend = max(bend, abs(state%dq(k) - departure%dq(k))/plan%unit_of(k))
-    end do
+    move = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%q, departure%q)
+    bend = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%dq, departure%dq)
     bend = bend*abs(state%t - departure%t)
     worst = max(worst, move/longest_move, bend/(trusted_bend*max(move, trusted_correction*pivot)))
   end subroutine judge
+
+  !> Largest difference of some coordinates, in their units.
+  pure real(wp) function largest_change(n, coordinates, m, per_unit, now, before) result(largest)
+    integer, intent(in) :: n, coordinates(n), m
+    real(wp), intent(in) :: per_unit(m), now(m), before(m)
+    integer :: i, k
+
+    largest = 0.0_wp
+    do i = 1, n
+      k = coordinates(i)
+      largest = max(largest, abs(now(k) - before(k))*per_unit(k))
+    end do
+  end function largest_change
 
   !> The trial becomes the place of departure.
   pure subroutine accept(plan, follower, complete)
@@ -353,7 +377,7 @@ contains
       last%t = here%t
       last%before = abs(h)
     end associate
-    call keep(follower%watches)
+    call keep(follower%work, follower%watches)
   end subroutine accept
 
   !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth

@@ -300,6 +300,6 @@ contains
     type(watch_type), intent(in) :: watch
 
     work%right = -work%right
-    call work%equations%solve(work%right, work%change, tolerance=near*watch%largest_pivot/abs(work%equations%a(1, 1)))
+    call work%equations%solve(work%right, work%change, tolerance=near*watch%largest_pivot/work%equations%largest_pivot())
   end subroutine solve_where_determined
 end module mech9_passage

@@ -33,8 +33,11 @@ module mech9_plan
 
   !> The steps of a closed chain, as seen by its closure.
   type :: path_type
-    integer, allocatable :: steps(:)    !< all steps of the loop
+    integer, allocatable :: steps(:)    !< all steps of the loop; in the end only those of its block
     real(wp), allocatable :: signs(:)   !< +1 towards the closing frame, -1 towards the target
+    !> Frames from which these steps lead to the closing frame and to the target; the same, unless steps of
+    !> earlier blocks were left out.
+    integer :: stems(2) = 0
   end type path_type
 
   !> What a closed chain must satisfy: frame `closing` coincides with `in_target` of frame `target`.

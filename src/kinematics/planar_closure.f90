@@ -6,7 +6,8 @@ module mech9_planar_closure
   use mech9_planar_motion, only: planar_motion_type
   implicit none
   private
-  public :: planar_errors, planar_columns, planar_rates, planar_bias_rates, planar_gap, planar_difference
+  public :: planar_errors, planar_columns, planar_path_rates, planar_path_bias, planar_bias_rates, planar_gap, planar_difference
+  public :: move_to_base, stem_difference
 
 contains
 
@@ -135,23 +136,40 @@ contains
     end do
   end subroutine fill_columns
 
-  !> How fast the closures first .. last open: (3,closures), from velocities of the frames.
-  pure subroutine planar_rates(planar, first, last, motion, rates)
+  !> How fast a closure opens, from the rates of the coordinates on its path and the velocities of the frames
+  !> where that begins.
+  pure subroutine planar_path_rates(planar, c, n_steps, steps, signs, stems, dq, motion, rates)
     type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: first, last
+    integer, intent(in) :: c
+    integer, intent(in) :: n_steps
+    integer, intent(in) :: steps(n_steps)
+    real(wp), intent(in) :: signs(n_steps)
+    integer, intent(in) :: stems(2)
+    real(wp), intent(in), contiguous :: dq(:)         !< (M)
     type(planar_motion_type), intent(in) :: motion
-    real(wp), intent(out) :: rates(3, first:last)
-    integer :: c
+    real(wp), intent(out) :: rates(3)
 
-    do c = first, last
-      associate (closure => planar%closures(c), v => motion%velocity)
-        call find_difference(closure, 1.0_wp/planar%length, size(planar%steps), motion%pose, v(:, closure%closing), &
-                             v(:, closure%target), 0.0_wp, rates(:, c))
-      end associate
-    end do
-  end subroutine planar_rates
+    call sum_velocities(planar%closures(c), 1.0_wp/planar%length, size(planar%steps), planar%steps, n_steps, steps, &
+                        signs, stems, dq, motion%pose, motion%slide, motion%velocity, rates)
+  end subroutine planar_path_rates
 
-  !> The same from their accelerations.
+  !> The same of accelerations; of all frames of the path velocities must be known.
+  pure subroutine planar_path_bias(planar, c, n_steps, steps, signs, stems, dq, ddq, motion, rates)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: c
+    integer, intent(in) :: n_steps
+    integer, intent(in) :: steps(n_steps)
+    real(wp), intent(in) :: signs(n_steps)
+    integer, intent(in) :: stems(2)
+    real(wp), intent(in), contiguous :: dq(:), ddq(:)  !< (M)
+    type(planar_motion_type), intent(in) :: motion
+    real(wp), intent(out) :: rates(3)
+
+    call sum_accelerations(planar%closures(c), 1.0_wp/planar%length, size(planar%steps), planar%steps, n_steps, steps, &
+                           signs, stems, dq, ddq, motion%pose, motion%slide, motion%velocity, motion%acceleration, rates)
+  end subroutine planar_path_bias
+
+  !> How fast the closures first .. last open: (3,closures), from the accelerations of their frames.
   pure subroutine planar_bias_rates(planar, first, last, motion, rates)
     type(planar_plan_type), intent(in) :: planar
     integer, intent(in) :: first, last
@@ -166,6 +184,93 @@ contains
       end associate
     end do
   end subroutine planar_bias_rates
+
+  pure subroutine sum_velocities(closure, per_length, m, flat, n_steps, steps, signs, stems, dq, f, slide, v, rows)
+    type(planar_closure_type), intent(in) :: closure
+    real(wp), intent(in) :: per_length
+    integer, intent(in) :: m, n_steps
+    type(planar_step_type), intent(in) :: flat(m)
+    integer, intent(in) :: steps(n_steps), stems(2)
+    real(wp), intent(in) :: signs(n_steps), dq(m), f(4, 0:m), slide(2, m), v(3, 0:m)
+    real(wp), intent(out) :: rows(3)
+    real(wp) :: w, x, y, place(2), rate
+    integer :: i, s
+
+    place = f(3:4, closure%closing)
+    call stem_difference(m, stems, place, f, v, w, x, y)
+    do i = 1, n_steps
+      s = steps(i)
+      rate = signs(i)*dq(flat(s)%coordinate)
+      if (.not. abs(rate) > 0.0_wp) cycle
+      if (flat(s)%turns) then
+        rate = rate*flat(s)%turn
+        w = w + rate
+        x = x - rate*(place(2) - f(4, s))
+        y = y + rate*(place(1) - f(3, s))
+      else
+        x = x + rate*slide(1, s)
+        y = y + rate*slide(2, s)
+      end if
+    end do
+    call move_to_base(closure, per_length, m, f, w, x, y, rows)
+  end subroutine sum_velocities
+
+  pure subroutine sum_accelerations(closure, per_length, m, flat, n_steps, steps, signs, stems, dq, ddq, f, slide, v, a, rows)
+    type(planar_closure_type), intent(in) :: closure
+    real(wp), intent(in) :: per_length
+    integer, intent(in) :: m, n_steps
+    type(planar_step_type), intent(in) :: flat(m)
+    integer, intent(in) :: steps(n_steps), stems(2)
+    real(wp), intent(in) :: signs(n_steps), dq(m), ddq(m), f(4, 0:m), slide(2, m), v(3, 0:m), a(3, 0:m)
+    real(wp), intent(out) :: rows(3)
+    real(wp) :: w, x, y, place(2), square, coriolis, angular
+    integer :: i, s, p
+
+    place = f(3:4, closure%closing)
+    call stem_difference(m, stems, place, f, a, w, x, y)
+    do i = 1, n_steps
+      s = steps(i)
+      p = flat(s)%parent
+      square = signs(i)*v(1, p)**2
+      angular = signs(i)*ddq(flat(s)%coordinate)
+      x = x - square*(f(3, s) - f(3, p))
+      y = y - square*(f(4, s) - f(4, p))
+      if (flat(s)%turns) then
+        angular = angular*flat(s)%turn
+        w = w + angular
+        x = x - angular*(place(2) - f(4, s))
+        y = y + angular*(place(1) - f(3, s))
+      else
+        coriolis = 2.0_wp*signs(i)*v(1, p)*dq(flat(s)%coordinate)
+        x = x + angular*slide(1, s) - coriolis*slide(2, s)
+        y = y + angular*slide(2, s) + coriolis*slide(1, s)
+      end if
+    end do
+    s = closure%target
+    square = v(1, s)**2
+    x = x + square*(place(1) - f(3, s))
+    y = y + square*(place(2) - f(4, s))
+    call move_to_base(closure, per_length, m, f, w, x, y, rows)
+  end subroutine sum_accelerations
+
+  !> What two frames would carry past each other at a place: the difference of their velocities, or of
+  !> accelerations without those of turning on.
+  pure subroutine stem_difference(m, stems, place, f, v, w, x, y)
+    integer, intent(in) :: m, stems(2)
+    real(wp), intent(in) :: place(2), f(4, 0:m), v(3, 0:m)
+    real(wp), intent(out) :: w, x, y
+    integer :: i, k
+
+    w = 0.0_wp
+    x = 0.0_wp
+    y = 0.0_wp
+    i = stems(1)
+    k = stems(2)
+    if (i == k) return
+    w = v(1, i) - v(1, k)
+    x = v(2, i) - v(1, i)*(place(2) - f(4, i)) - v(2, k) + v(1, k)*(place(2) - f(4, k))
+    y = v(3, i) + v(1, i)*(place(1) - f(3, i)) - v(3, k) - v(1, k)*(place(1) - f(3, k))
+  end subroutine stem_difference
 
   !> Rows of the difference of two velocities: that of the closing frame less what the target gives it.
   pure subroutine planar_difference(planar, c, motion, closing, target, rows)

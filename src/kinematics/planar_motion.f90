@@ -1,18 +1,22 @@
 !> Planar arithmetic: poses, velocities and accelerations of frames that keep one normal, and how these
-!> look in space. Uses kinds, planar_plan.
+!> look in space. Uses kinds, sine_cosine, rotation, planar_plan.
 !>
 !> A pose is (cosine, sine, x, y) in frame 0 of the plane; a velocity is the angular velocity about the
 !> normal and the velocity of the frame's origin, an acceleration likewise.
 module mech9_planar_motion
   use mech9_kinds, only: wp
+  use mech9_sine_cosine, only: cosines_and_sines
+  use mech9_rotation, only: turn_on
   use mech9_planar_plan, only: planar_plan_type, planar_step_type
   implicit none
   private
-  public :: planar_motion_type, new_planar_motion, place_in_plane, planar_velocities, planar_accelerations, &
-    to_space, to_plane
+  public :: planar_motion_type, new_planar_motion, place_in_plane, nudge_in_plane, planar_velocities, planar_accelerations, &
+    find_accelerations, to_space, to_plane
 
   type :: planar_motion_type
     real(wp), allocatable :: pose(:, :)           !< (4,0:M) cosine, sine, x, y [m]
+    real(wp), allocatable :: angle(:)             !< (M) that each step turns by [rad]
+    real(wp), allocatable :: turn(:, :)           !< (2,M) its cosine and sine
     real(wp), allocatable :: slide(:, :)          !< (2,M) velocity of the new origin per unit rate
     real(wp), allocatable :: velocity(:, :)       !< (3,0:M) [rad/s, m/s]
     real(wp), allocatable :: acceleration(:, :)   !< (3,0:M) [rad/s^2, m/s^2]
@@ -25,9 +29,10 @@ contains
     integer, intent(in) :: m
     type(planar_motion_type) :: motion
 
-    allocate (motion%pose(4, 0:m), motion%slide(2, m), source=0.0_wp)
+    allocate (motion%pose(4, 0:m), motion%angle(m), motion%turn(2, m), motion%slide(2, m), source=0.0_wp)
     allocate (motion%velocity(3, 0:m), motion%acceleration(3, 0:m), source=0.0_wp)
     motion%pose(1, :) = 1.0_wp
+    motion%turn(1, :) = 1.0_wp
   end function new_planar_motion
 
   !> Poses of the frames first .. last.
@@ -37,17 +42,48 @@ contains
     real(wp), intent(in), contiguous :: q(:)      !< (M)
     type(planar_motion_type), intent(inout) :: motion
 
-    call place(size(q), planar%steps, first, last, q, motion%pose, motion%slide)
+    call find_angles(size(q), planar%steps, first, last, q, motion%angle)
+    call cosines_and_sines(last - first + 1, motion%angle(first:last), motion%turn(:, first:last))
+    call place(size(q), planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
   end subroutine place_in_plane
+
+  !> The same after a small change of some coordinates: their angles are turned on, not computed anew.
+  pure subroutine nudge_in_plane(planar, first, last, changed, change, q, motion)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: first, last
+    integer, intent(in) :: changed(:)             !< steps
+    real(wp), intent(in) :: change(:)             !< of their coordinates
+    real(wp), intent(in), contiguous :: q(:)      !< (M) all coordinates afterwards
+    type(planar_motion_type), intent(inout) :: motion
+    integer :: i
+
+    do i = 1, size(changed)
+      if (planar%steps(changed(i))%turns) &
+        call turn_on(planar%steps(changed(i))%turn*change(i), motion%turn(:, changed(i)))
+    end do
+    call place(size(q), planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
+  end subroutine nudge_in_plane
 
   ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
 
-  pure subroutine place(m, steps, first, last, q, f, slide)
+  pure subroutine find_angles(m, steps, first, last, q, angles)
     integer, intent(in) :: m, first, last
     type(planar_step_type), intent(in) :: steps(m)
     real(wp), intent(in) :: q(m)
+    real(wp), intent(inout) :: angles(m)
+    integer :: i
+
+    do i = first, last
+      angles(i) = steps(i)%turn*q(steps(i)%coordinate) + steps(i)%angle
+    end do
+  end subroutine find_angles
+
+  pure subroutine place(m, steps, first, last, q, cs, f, slide)
+    integer, intent(in) :: m, first, last
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(in) :: q(m), cs(2, m)
     real(wp), intent(inout) :: f(4, 0:m), slide(2, m)
-    real(wp) :: x, y, c, s, cp, sp, angle
+    real(wp) :: x, y, cp, sp
     integer :: i, p
 
     do i = first, last
@@ -57,11 +93,8 @@ contains
       x = steps(i)%place(1)
       y = steps(i)%place(2)
       if (steps(i)%turns) then
-        angle = steps(i)%turn*q(steps(i)%coordinate) + steps(i)%angle
-        c = cos(angle)
-        s = sin(angle)
-        f(1, i) = cp*c - sp*s
-        f(2, i) = sp*c + cp*s
+        f(1, i) = cp*cs(1, i) - sp*cs(2, i)
+        f(2, i) = sp*cs(1, i) + cp*cs(2, i)
       else
         x = x + q(steps(i)%coordinate)*steps(i)%slide(1)
         y = y + q(steps(i)%coordinate)*steps(i)%slide(2)
@@ -117,6 +150,7 @@ contains
                             motion%velocity, motion%acceleration)
   end subroutine planar_accelerations
 
+  !> The same from plain arrays.
   pure subroutine find_accelerations(m, steps, first, last, dq, ddq, f, slide, v, a)
     integer, intent(in) :: m, first, last
     type(planar_step_type), intent(in) :: steps(m)

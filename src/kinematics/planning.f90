@@ -297,8 +297,21 @@ contains
           own = path%steps >= plan%blocks(b)%first_step
           path%signs = pack(path%signs, own)
           path%steps = pack(path%steps, own)
+          path%stems = [stem_of(plan, plan%closures(c)%closing, plan%blocks(b)%first_step), &
+                        stem_of(plan, plan%closures(c)%target, plan%blocks(b)%first_step)]
         end associate
       end do
     end do
   end subroutine trim_paths
+
+  !> The frame before step `first` from which a frame is reached.
+  pure integer function stem_of(plan, frame, first) result(stem)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: frame, first
+
+    stem = frame
+    do while (stem >= first)
+      stem = plan%steps(stem)%parent
+    end do
+  end function stem_of
 end module mech9_planning

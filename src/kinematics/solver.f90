@@ -1,18 +1,19 @@
 !> One block at one time: Newton's method for its positions, then its exact rates and accelerations.
-!> Uses kinds, error, least_squares, plan, state, composition, closure, motion.
+!> Uses kinds, error, least_squares, plan, state, composition, closure, planar_chain, motion.
 module mech9_solver
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, velocity_known, acceleration_known
-  use mech9_composition, only: place_frames
+  use mech9_composition, only: place_frames, nudge_frames
   use mech9_closure, only: closure_errors, closure_jacobian, closure_rates
+  use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_motion
   use mech9_motion, only: spread_velocities, spread_accelerations
   implicit none
   private
-  public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, apply_change
-  public :: closed_enough, newton_outcome_type, least_pivot, work_count_type, work_of
+  public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, solve_motion
+  public :: apply_change, closed_enough, newton_outcome_type, work_count_type, work_of
 
   !> A chain counts as closed when its independent equations hold to this many times round-off,
   !> rotations in rad, translations in lengths of the mechanism: a sum over the steps of a loop
@@ -20,6 +21,10 @@ module mech9_solver
   real(wp), parameter :: closed_enough = 32.0_wp*epsilon(1.0_wp)
   !> Once a correction is this small, the next error is its square: round-off.
   real(wp), parameter :: last_correction = 1.0e-9_wp
+  !> Angles that change by less are turned on to second order: what is left out is round-off.
+  real(wp), parameter :: small_turn = 1.0e-5_wp
+  !> A correction by less than this is round-off of poses and Jacobians, which stay as they are.
+  real(wp), parameter :: same_place = 8.0_wp*epsilon(1.0_wp)
   integer, parameter :: most_iterations = 12
 
   !> How much was done.
@@ -33,7 +38,9 @@ module mech9_solver
 
   !> Scratch of one block, sized once.
   type :: block_work_type
-    type(least_squares_type) :: equations      !< Jacobian and its factors
+    real(wp), allocatable :: jacobian(:, :)    !< (equations,unknowns), as it was factorized last
+    type(least_squares_type) :: equations      !< its factors
+    type(planar_chain_type) :: chain           !< the block in arithmetic of its own, where that is used
     integer, allocatable :: column_of(:)       !< unknown of each of the block's steps, 0 for none
     real(wp), allocatable :: right(:)          !< (equations)
     real(wp), allocatable :: change(:)         !< (unknowns)
@@ -47,21 +54,25 @@ module mech9_solver
     integer :: iterations = 0
     real(wp) :: correction = 0.0_wp      !< of all iterations together, largest coordinate in its unit
     real(wp) :: contraction = 0.0_wp     !< second correction against the first; 0 where one was enough
+    logical :: factorized = .false.      !< the Jacobian's factors are those of the closed position
   end type newton_outcome_type
 
 contains
 
-  !> Scratch for a block.
-  pure function new_block_work(block) result(work)
+  !> Scratch for a block. With its plan complete, a planar chain of three unknowns gets arithmetic of its own.
+  pure function new_block_work(block, plan) result(work)
     type(block_type), intent(in) :: block
+    type(plan_type), intent(in), optional :: plan
     type(block_work_type) :: work
     integer :: i
 
     call work%equations%create(block%equations, size(block%unknowns))
+    allocate (work%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
     allocate (work%column_of(block%last_step - block%first_step + 1), source=0)
     do i = 1, size(block%unknowns)
       work%column_of(block%unknowns(i) - block%first_step + 1) = i
     end do
+    if (present(plan)) work%chain = new_planar_chain(plan, block)
     allocate (work%right(block%equations), work%change(size(block%unknowns)), source=0.0_wp)
   end function new_block_work
 
@@ -81,18 +92,14 @@ contains
     least = 0
     if (present(at_least)) least = at_least
     previous = 0.0_wp
-    do
-      call place_frames(plan, block%first_step, block%last_step, state, err)
-      if (allocated(err)) return
-      work%count%frames_placed = work%count%frames_placed + steps_of(block)
-      if (size(block%unknowns) == 0) then
-        outcome%converged = .true.
-        return
-      end if
+    call place_frames(plan, block%first_step, block%last_step, state, err)
+    if (allocated(err)) return
+    work%count%frames_placed = work%count%frames_placed + steps_of(block)
+    outcome%converged = size(block%unknowns) == 0
+    do while (.not. outcome%converged)
       call closure_errors(plan, block, state, work%right)
       lack = maxval(abs(work%right))
-      outcome%converged = (lack <= closed_enough .and. outcome%iterations >= least) .or. &
-                          (outcome%iterations > 0 .and. previous <= last_correction)
+      outcome%converged = lack <= closed_enough .and. outcome%iterations >= least
       if (outcome%converged) return
       ! not a number, or no progress
       if (outcome%iterations == most_iterations .or. .not. lack < huge(lack)) return
@@ -102,6 +109,18 @@ contains
       call apply_change(plan, block, work%change, state)
       outcome%iterations = outcome%iterations + 1
       size_of_change = maxval(abs(work%change))
+      if (size_of_change <= same_place) then
+        outcome%factorized = .true.
+      else
+        work%count%frames_placed = work%count%frames_placed + steps_of(block)
+        if (size_of_change <= small_turn) then
+          call nudge_frames(plan, block%first_step, block%last_step, block%unknowns, work%change, state, err)
+        else
+          call place_frames(plan, block%first_step, block%last_step, state, err)
+        end if
+      end if
+      if (allocated(err)) return
+      outcome%converged = size_of_change <= last_correction
       outcome%correction = outcome%correction + size_of_change
       if (outcome%iterations == 2) outcome%contraction = size_of_change/max(previous, tiny(previous))
       previous = size_of_change
@@ -116,8 +135,12 @@ contains
     type(block_work_type), intent(inout) :: work
 
     if (work%factors_stay) return
-    call closure_jacobian(plan, block, state, work%column_of, work%equations%a)
-    call work%equations%factorize()
+    if (work%chain%used) then
+      call chain_jacobian(plan%planar, work%chain, state%planar, work%jacobian)
+    else
+      call closure_jacobian(plan, block, state, work%column_of, work%jacobian)
+    end if
+    call work%equations%factorize(work%jacobian)
     work%count%factorizations = work%count%factorizations + 1
     work%factors_stay = block%is_constant
   end subroutine factorize_block
@@ -141,29 +164,14 @@ contains
     steps_of = block%last_step - block%first_step + 1
   end function steps_of
 
-  !> Least pivot of a block's factorized Jacobian: about its least singular value, somewhat above it
-  !> (rotations in rad, lengths in the mechanism's); 0 where rows are missing.
-  pure real(wp) function least_pivot(work)
-    type(block_work_type), intent(in) :: work
-
-    least_pivot = 0.0_wp
-    associate (m => work%equations%m, n => work%equations%n)
-      if (n > 0 .and. m >= n) least_pivot = abs(work%equations%a(n, n))
-    end associate
-  end function least_pivot
-
   !> Add a change, given in units of the coordinates, to the block's dependent coordinates.
   pure subroutine apply_change(plan, block, change, state)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
-    real(wp), intent(in) :: change(:)
+    real(wp), intent(in), contiguous :: change(:)
     type(state_type), intent(inout) :: state
-    integer :: i, k
 
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%q(k) = state%q(k) + change(i)*plan%unit_of(k)
-    end do
+    call add_at(size(change), block%coordinates, change, plan%unit_of, state%q)
   end subroutine apply_change
 
   !> Rates of the block's dependent coordinates, J_d dq_d = -J_i dq_i, and velocities of its frames.
@@ -174,16 +182,15 @@ contains
     type(state_type), intent(inout) :: state
     type(block_work_type), intent(inout) :: work
     real(wp), intent(out), optional :: remainder   !< what no rates of the unknowns can make up for
-    integer :: i, k
 
     if (present(remainder)) remainder = 0.0_wp
-    do i = 1, size(block%unknowns)
-      state%dq(block%coordinates(i)) = 0.0_wp
-    end do
-    call spread_velocities(plan, block%first_step, block%last_step, state)
     work%count%rates = work%count%rates + 1
-    work%count%frames_moved = work%count%frames_moved + steps_of(block)
-    if (block%equations == 0) return
+    call clear_at(size(block%unknowns), block%coordinates, state%dq)
+    if (block%equations == 0) then
+      call spread_velocities(plan, block%first_step, block%last_step, state)
+      work%count%frames_moved = work%count%frames_moved + steps_of(block)
+      return
+    end if
     call closure_rates(plan, block, state, velocity_known, work%right)
     work%right = -work%right
     if (present(remainder)) then
@@ -191,13 +198,30 @@ contains
     else
       call work%equations%solve(work%right, work%change)
     end if
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%dq(k) = work%change(i)*plan%unit_of(k)
-    end do
+    call add_at(size(work%change), block%coordinates, work%change, plan%unit_of, state%dq)
     call spread_velocities(plan, block%first_step, block%last_step, state)
     work%count%frames_moved = work%count%frames_moved + steps_of(block)
   end subroutine solve_rates
+
+  !> Rates and accelerations of the block's dependent coordinates and the motion of its frames. The Jacobian must be
+  !> factorized at this position.
+  subroutine solve_motion(plan, block, state, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+
+    if (work%chain%used .and. work%equations%by_cofactors) then
+      call chain_motion(plan%planar, work%chain, work%equations%inverse, state%dq, state%ddq, state%planar)
+      work%count%rates = work%count%rates + 1
+      work%count%accelerations = work%count%accelerations + 1
+      work%count%frames_moved = work%count%frames_moved + steps_of(block) &
+                                + (work%chain%last_moved - block%first_step + 1)
+    else
+      call solve_rates(plan, block, state, work)
+      call solve_accelerations(plan, block, state, work)
+    end if
+  end subroutine solve_motion
 
   !> Accelerations of the block's dependent coordinates, J_d ddq_d = -J_i ddq_i - dJ/dt dq, and of its frames.
   !> The Jacobian must be factorized at this position and the rates be known.
@@ -206,27 +230,42 @@ contains
     type(block_type), intent(in) :: block
     type(state_type), intent(inout) :: state
     type(block_work_type), intent(inout) :: work
-    integer :: i, k, last
+    integer :: last
 
     work%count%accelerations = work%count%accelerations + 1
     last = min(block%last_step, block%last_moved)
-    if (size(block%unknowns) == 0) then
-      call spread_accelerations(plan, block%first_step, last, state)
-      work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
-      return
+    call clear_at(size(block%unknowns), block%coordinates, state%ddq)
+    if (size(block%unknowns) > 0) then
+      call closure_rates(plan, block, state, acceleration_known, work%right)
+      work%right = -work%right
+      call work%equations%solve(work%right, work%change)
+      call add_at(size(work%change), block%coordinates, work%change, plan%unit_of, state%ddq)
     end if
-    do i = 1, size(block%unknowns)
-      state%ddq(block%coordinates(i)) = 0.0_wp
-    end do
-    call spread_accelerations(plan, block%first_step, block%last_step, state)
-    call closure_rates(plan, block, state, acceleration_known, work%right)
-    work%right = -work%right
-    call work%equations%solve(work%right, work%change)
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%ddq(k) = work%change(i)*plan%unit_of(k)
-    end do
     call spread_accelerations(plan, block%first_step, last, state)
-    work%count%frames_moved = work%count%frames_moved + steps_of(block) + (last - block%first_step + 1)
+    work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
   end subroutine solve_accelerations
+
+  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+
+  pure subroutine clear_at(n, places, values)
+    integer, intent(in) :: n, places(n)
+    real(wp), intent(inout) :: values(*)
+    integer :: i
+
+    do i = 1, n
+      values(places(i)) = 0.0_wp
+    end do
+  end subroutine clear_at
+
+  !> Add a change, given in units, to some of the values.
+  pure subroutine add_at(n, places, change, unit_of, values)
+    integer, intent(in) :: n, places(n)
+    real(wp), intent(in) :: change(n), unit_of(*)
+    real(wp), intent(inout) :: values(*)
+    integer :: i
+
+    do i = 1, n
+      values(places(i)) = values(places(i)) + change(i)*unit_of(places(i))
+    end do
+  end subroutine add_at
 end module mech9_solver

@@ -22,6 +22,8 @@ module mech9_state
     real(wp), allocatable :: q(:)                !< coordinates [rad, m]
     real(wp), allocatable :: dq(:)               !< rates
     real(wp), allocatable :: ddq(:)              !< accelerations
+    real(wp), allocatable :: angle(:)            !< (M) that each step turns by [rad]
+    real(wp), allocatable :: turn(:, :)          !< (2,M) its cosine and sine
     real(wp), allocatable :: r(:, :, :)          !< (3,3,0:M) rotation of each frame
     real(wp), allocatable :: p(:, :)             !< (3,0:M) origin of each frame [m]
     real(wp), allocatable :: axis_w(:, :)        !< (3,M) angular velocity that each step gives per unit rate
@@ -50,6 +52,8 @@ contains
       return
     end if
     allocate (state%r(3, 3, 0:m), state%p(3, 0:m), source=0.0_wp)
+    allocate (state%angle(m), state%turn(2, m), source=0.0_wp)
+    state%turn(1, :) = 1.0_wp
     allocate (state%axis_w(3, m), state%axis_v(3, m), source=0.0_wp)
     allocate (state%axis_w_rate(3, m), state%axis_v_rate(3, m), source=0.0_wp)
     allocate (state%omega(3, 0:m), state%v(3, 0:m), state%alpha(3, 0:m), state%a(3, 0:m), source=0.0_wp)

@@ -37,7 +37,8 @@ module mech9_tracking
     integer(long) :: positions = 0                !< that were asked for
     integer(long) :: passages = 0                 !< special positions that were passed
     type(conditioning_type) :: conditioning       !< the worst of the positions asked for
-    real(wp) :: worst_closure = 0.0_wp            !< largest closure error of any position asked for [m]
+    real(wp) :: closure = 0.0_wp                  !< largest closure error of the position asked for last [m]
+    real(wp) :: worst_closure = 0.0_wp            !< and of any position asked for
     real(wp), allocatable :: limit(:)             !< (M): independent coordinates where the motion ends
   end type tracker_type
 
@@ -287,7 +288,8 @@ contains
     type(tracker_type), intent(inout) :: tracker
 
     tracker%positions = tracker%positions + 1
-    tracker%worst_closure = max(tracker%worst_closure, largest_closure(plan, tracker%state))
+    tracker%closure = largest_closure(plan, tracker%state)
+    tracker%worst_closure = max(tracker%worst_closure, tracker%closure)
     call tracker%conditioning%glance(tracker%state%t, tracker%work)
   end subroutine record
 

@@ -1,12 +1,11 @@
 !> Watching the Jacobian of a block from step to step: can it have been singular on the way?
-!> Uses kinds, balance, plan, state, solver, closure.
+!> Uses kinds, balance, plan, state, solver.
 module mech9_watch
   use mech9_kinds, only: wp
   use mech9_balance, only: balance
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_solver, only: block_work_type, least_pivot
-  use mech9_closure, only: closure_jacobian
+  use mech9_solver, only: block_work_type, factorize_block
   implicit none
   private
   public :: watch_type, new_watch, factorize_trial, watch_step, keep, nearness, is_near
@@ -24,9 +23,8 @@ module mech9_watch
 
   !> What is known of a block's Jacobian: at the departure and at the end of the step on trial.
   type :: watch_type
-    real(wp), allocatable :: jacobian(:, :), trial_jacobian(:, :)
+    real(wp), allocatable :: jacobian(:, :)                    !< at the departure; on trial is that in the block's work
     real(wp), allocatable :: change(:, :)                      !< scratch
-    logical :: taken = .false.                                 !< it was on trial
     integer :: sign = 1, trial_sign = 1                        !< of the determinant of a square one
     real(wp) :: pivot = 1.0_wp, trial_pivot = 1.0_wp           !< the least
     real(wp) :: largest_pivot = 0.0_wp                         !< largest least pivot of any position so far
@@ -40,7 +38,6 @@ contains
     type(watch_type) :: watch
 
     allocate (watch%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
-    allocate (watch%trial_jacobian, source=watch%jacobian)
     allocate (watch%change(size(block%unknowns), size(block%unknowns)), source=0.0_wp)
   end function new_watch
 
@@ -52,33 +49,39 @@ contains
     type(block_work_type), intent(inout) :: work
     type(watch_type), intent(inout) :: watch
 
-    if (size(block%unknowns) == 0 .or. (work%factors_stay .and. watch%taken)) return
-    call closure_jacobian(plan, block, state, work%column_of, watch%trial_jacobian)
-    call copy(size(watch%trial_jacobian), watch%trial_jacobian, work%equations%a)
-    call work%equations%factorize()
-    work%count%factorizations = work%count%factorizations + 1
-    watch%trial_pivot = least_pivot(work)
-    watch%trial_sign = work%equations%determinant_sign()
-    work%factors_stay = block%is_constant
-    watch%taken = .true.
+    if (size(block%unknowns) == 0) return
+    call factorize_block(plan, block, state, work)
+    call take_trial(work, watch)
   end subroutine factorize_trial
 
-  !> Factorize the block's Jacobian at the end of a step and judge whether a singular one lies between.
-  subroutine watch_step(plan, block, state, work, watch, worst)
+  !> Put the Jacobian that stands factorized in `work` on trial.
+  subroutine take_trial(work, watch)
+    type(block_work_type), intent(inout) :: work
+    type(watch_type), intent(inout) :: watch
+
+    watch%trial_pivot = work%equations%least_pivot()
+    watch%trial_sign = work%equations%determinant_sign()
+  end subroutine take_trial
+
+  !> Factorize the block's Jacobian at the end of a step, unless it is, and judge whether a singular one lies
+  !> between.
+  subroutine watch_step(plan, block, state, factorized, work, watch, worst)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     type(state_type), intent(in) :: state
+    logical, intent(in) :: factorized
     type(block_work_type), intent(inout) :: work
     type(watch_type), intent(inout) :: watch
     real(wp), intent(inout) :: worst
     real(wp) :: change
 
-    call factorize_trial(plan, block, state, work, watch)
+    if (.not. factorized) call factorize_block(plan, block, state, work)
+    call take_trial(work, watch)
     if (.not. watch%trial_pivot > 0.0_wp) then
       worst = hopeless
       return
     end if
-    change = distance(size(watch%jacobian), watch%trial_jacobian, watch%jacobian)/(harmless_change*watch%trial_pivot)
+    change = distance(size(watch%jacobian), work%jacobian, watch%jacobian)/(harmless_change*watch%trial_pivot)
     ! the closer look is worth its while where it may allow longer steps
     if (change > 0.5_wp) change = min(change, relative_change(work, watch)/trusted_change)
     worst = max(worst, change)
@@ -118,7 +121,7 @@ contains
     change = hopeless
     if (work%equations%rank() < work%equations%n) return
     do j = 1, work%equations%n
-      work%right = watch%trial_jacobian(:, j) - watch%jacobian(:, j)
+      work%right = work%jacobian(:, j) - watch%jacobian(:, j)
       call work%equations%solve(work%right, work%change)
       watch%change(:, j) = work%change
     end do
@@ -127,13 +130,14 @@ contains
   end function relative_change
 
   !> The Jacobians on trial become those of the departure.
-  pure subroutine keep(watches)
+  pure subroutine keep(work, watches)
+    type(block_work_type), intent(in) :: work(:)
     type(watch_type), intent(inout) :: watches(:)
     integer :: b
 
     do b = 1, size(watches)
       associate (watch => watches(b))
-        call copy(size(watch%jacobian), watch%trial_jacobian, watch%jacobian)
+        call copy(size(watch%jacobian), work(b)%jacobian, watch%jacobian)
         watch%sign = watch%trial_sign
         watch%pivot = watch%trial_pivot
         watch%largest_pivot = max(watch%largest_pivot, watch%pivot)

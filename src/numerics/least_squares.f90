@@ -1,12 +1,15 @@
 !> Least squares by QR with column pivoting: factorized once, solved for several right-hand sides.
-!> Uses kinds, lapack, householder.
+!> Uses kinds, lapack, householder, cofactors.
 !>
 !> Small matrices, the rule in mechanisms, are factorized by Householder loops of our own,
-!> which beat the call into LAPACK there; larger ones by LAPACK. Nothing is allocated after `create`.
+!> which beat the call into LAPACK there; larger ones by LAPACK. Three well determined equations in three unknowns
+!> are solved by cofactors, which are faster still; their factors are found only where someone asks for more.
+!> Nothing is allocated after `create`.
 module mech9_least_squares
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgeqp3, dormqr
   use mech9_householder, only: householder, reflect, back_substitute
+  use mech9_cofactors, only: invert_by_cofactors
   implicit none
   private
   public :: least_squares_type, nearly_dependent
@@ -19,8 +22,11 @@ module mech9_least_squares
   type :: least_squares_type
     integer :: m = 0                            !< equations
     integer :: n = 0                            !< unknowns
-    real(wp), allocatable :: a(:, :)            !< (m,n): the matrix before, its factors after `factorize`
-    integer, allocatable :: pivot(:)            !< column of the matrix at each place
+    real(wp), allocatable :: a(:, :)            !< (m,n): the matrix; overwritten by `factorize`
+    integer, allocatable, private :: pivot(:)   !< column of the matrix at each place
+    real(wp), allocatable, private :: lengths(:)      !< of the pivots, not increasing
+    logical :: by_cofactors = .false.           !< a is still the matrix, and `inverse` serves
+    real(wp) :: inverse(3, 3) = 0.0_wp          !< of the matrix, where that is solved by cofactors
     integer, allocatable, private :: order(:)
     real(wp), allocatable, private :: tau(:)
     real(wp), allocatable, private :: reciprocal(:)   !< of the pivots that are not lost in round-off
@@ -34,6 +40,8 @@ module mech9_least_squares
     procedure :: solve
     procedure :: rank
     procedure :: conditioning
+    procedure :: largest_pivot
+    procedure :: least_pivot
     procedure :: least_singular_value
     procedure :: determinant_sign
   end type least_squares_type
@@ -47,28 +55,51 @@ contains
 
     self%m = m
     self%n = n
-    if (allocated(self%a)) deallocate (self%a, self%pivot, self%order, self%tau, self%reciprocal, self%norms, self%work)
-    allocate (self%a(m, n), self%tau(n), self%reciprocal(n), self%norms(n), source=0.0_wp)
+    if (allocated(self%a)) deallocate (self%a, self%pivot, self%order, self%tau, self%reciprocal, self%norms, &
+                                       self%lengths, self%work)
+    allocate (self%a(m, n), self%tau(n), self%reciprocal(n), self%norms(n), self%lengths(min(m, n)), source=0.0_wp)
     allocate (self%pivot(n), self%order(n), source=0)
     allocate (self%work(max(m, 2*n + (n + 1)*32, 32*32)), source=0.0_wp)
   end subroutine create
 
-  !> Factorize the matrix that stands in `a`.
-  subroutine factorize(self)
+  !> Factorize a matrix, or the one that stands in `a`.
+  subroutine factorize(self, matrix)
+    class(least_squares_type), intent(inout) :: self
+    real(wp), intent(in), contiguous, optional :: matrix(:, :)   !< (m,n)
+
+    if (present(matrix)) call copy(self%m*self%n, matrix, self%a)
+    self%by_cofactors = .false.
+    if (self%m == 3 .and. self%n == 3) then
+      call invert_by_cofactors(self%a, self%inverse, self%lengths, self%sign_of_det)
+      self%by_cofactors = self%lengths(3) > nearly_dependent*self%lengths(1)
+    end if
+    if (self%by_cofactors) then
+      self%safe_rank = 3
+    else
+      call find_factors(self)
+    end if
+  end subroutine factorize
+
+  !> The QR factorization of the matrix that stands in `a`.
+  subroutine find_factors(self)
     class(least_squares_type), intent(inout) :: self
     integer :: info, j
 
+    self%by_cofactors = .false.
     if (self%n < lapack_from) then
       call householder(self%m, self%n, self%a, self%pivot, self%tau, self%sign_of_det, self%norms)
     else
       self%pivot = 0
       call dgeqp3(self%m, self%n, self%a, self%m, self%pivot, self%tau, self%work, size(self%work), info)
     end if
-    self%safe_rank = self%rank(16.0_wp*epsilon(1.0_wp)*max(self%m, self%n))
+    do j = 1, size(self%lengths)
+      self%lengths(j) = abs(self%a(j, j))
+    end do
+    self%safe_rank = rank_within(self, 16.0_wp*epsilon(1.0_wp)*max(self%m, self%n))
     do j = 1, self%safe_rank
       self%reciprocal(j) = 1.0_wp/self%a(j, j)
     end do
-  end subroutine factorize
+  end subroutine find_factors
 
   !> x with |a x - b| least, and the length of what remains; columns at and beyond the numerical rank
   !> are not used.
@@ -83,14 +114,25 @@ contains
     real(wp), intent(in), optional :: noise
     integer :: j, k, info, rank
 
+    rank = self%safe_rank
+    if (present(tolerance)) rank = min(rank, rank_within(self, tolerance))
+    if (self%by_cofactors) then
+      if (rank == 3) then
+        ! no column is nearly dependent, and so there is no noise to be feared
+        do j = 1, 3
+          x(j) = self%inverse(j, 1)*b(1) + self%inverse(j, 2)*b(2) + self%inverse(j, 3)*b(3)
+        end do
+        if (present(remainder)) remainder = 0.0_wp
+        return
+      end if
+      call find_factors(self)
+    end if
     k = min(self%m, self%n)
     if (self%n < lapack_from) then
       call reflect(self%m, k, self%a, self%tau, b)
     else
       call dormqr('L', 'T', self%m, 1, k, self%a, self%m, self%tau, b, self%m, self%work, size(self%work), info)
     end if
-    rank = self%safe_rank
-    if (present(tolerance)) rank = min(rank, self%rank(tolerance))
     if (present(remainder)) remainder = norm2(b(rank + 1:self%m))
     if (present(noise) .and. self%conditioning() < nearly_dependent) then
       call substitute_above_noise(self, rank, noise, b)
@@ -103,6 +145,14 @@ contains
     end do
   end subroutine solve
 
+  pure subroutine copy(n, from, to)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: from(n)
+    real(wp), intent(out) :: to(n)
+
+    to = from
+  end subroutine copy
+
   !> R^-1 b in the first `rank` columns, without what is noise.
   pure subroutine substitute_above_noise(self, rank, noise, b)
     class(least_squares_type), intent(in) :: self
@@ -114,7 +164,7 @@ contains
 
     do j = rank, 1, -1
       b(j) = b(j)*self%reciprocal(j)
-      s = abs(self%a(j, j)/self%a(1, 1))
+      s = self%lengths(j)/self%lengths(1)
       if (s < nearly_dependent .and. abs(b(j))*s**2 <= noise) b(j) = 0.0_wp
       do i = 1, j - 1
         b(i) = b(i) - self%a(i, j)*b(j)
@@ -126,16 +176,37 @@ contains
   pure integer function rank(self, tolerance)
     class(least_squares_type), intent(in) :: self
     real(wp), intent(in), optional :: tolerance   !< against the largest; round-off unless given
-    real(wp) :: least
 
     rank = self%safe_rank
-    if (.not. present(tolerance)) return
-    least = tolerance
-    if (min(self%m, self%n) > 0) least = least*abs(self%a(1, 1))
-    do rank = 0, min(self%m, self%n) - 1
-      if (.not. abs(self%a(rank + 1, rank + 1)) > least) return
-    end do
+    if (present(tolerance)) rank = rank_within(self, tolerance)
   end function rank
+
+  !> Number of pivots above this part of the largest.
+  pure integer function rank_within(self, tolerance) result(rank)
+    class(least_squares_type), intent(in) :: self
+    real(wp), intent(in) :: tolerance
+
+    do rank = 0, size(self%lengths) - 1
+      if (.not. self%lengths(rank + 1) > tolerance*self%lengths(1)) return
+    end do
+  end function rank_within
+
+  !> Length of the largest pivot: about the largest singular value; 0 where there is none.
+  pure real(wp) function largest_pivot(self)
+    class(least_squares_type), intent(in) :: self
+
+    largest_pivot = 0.0_wp
+    if (size(self%lengths) > 0) largest_pivot = self%lengths(1)
+  end function largest_pivot
+
+  !> Length of the least pivot: about the least singular value, somewhat above it; 0 where there are fewer
+  !> equations than unknowns, or none.
+  pure real(wp) function least_pivot(self)
+    class(least_squares_type), intent(in) :: self
+
+    least_pivot = 0.0_wp
+    if (self%n > 0 .and. self%m >= self%n) least_pivot = self%lengths(self%n)
+  end function least_pivot
 
   !> Least against largest pivot: about the reciprocal condition number; 0 where columns depend on
   !> each other, 1 where there are none.
@@ -146,7 +217,7 @@ contains
     if (self%n == 0) return
     conditioning = 0.0_wp
     if (self%m < self%n) return
-    if (abs(self%a(1, 1)) > 0.0_wp) conditioning = abs(self%a(self%n, self%n)/self%a(1, 1))
+    if (self%lengths(1) > 0.0_wp) conditioning = self%lengths(self%n)/self%lengths(1)
   end function conditioning
 
   !> The least singular value, by inverse iteration with the factors; 0 where columns depend on each
@@ -163,6 +234,7 @@ contains
     if (n == 0) return
     least = 0.0_wp
     if (self%rank() < n) return
+    if (self%by_cofactors) call find_factors(self)
     ! pivoting leaves what is nearly lost to the last column; the rest is for the case that it does not
     do i = 1, n
       self%work(i) = 0.01_wp

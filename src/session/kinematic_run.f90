@@ -8,7 +8,7 @@ module mech9_kinematic_run
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_needs, only: needs_of_results, leave_out
-  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs, largest_closure
+  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs
   use mech9_columns, only: kinematic_columns
   use mech9_recording, only: motion_source_type
   implicit none
@@ -80,7 +80,7 @@ contains
     call self%columns%fill(self%mechanism, self%plan, self%tracker%state, row)
     next = self%columns%motion + 1
     call self%columns%fill_poses(self%plan, self%tracker%state, row)
-    row(next) = largest_closure(self%plan, self%tracker%state)
+    row(next) = self%tracker%closure
     if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%tracker%state)
     if (self%mechanism%output%conditioning) &
       call self%tracker%conditioning%look(t, self%tracker%work, row(next + 1))

@@ -5,7 +5,8 @@ module mech9_rotation
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, rotation_vector, axial_vector, quaternion
+  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, turn_on, rotation_vector, axial_vector, &
+    quaternion
 
   !> The rotation that turns nothing.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, &
@@ -74,6 +75,18 @@ contains
     e = a/largest
     e = e/norm2(e)
   end function unit
+
+  !> Cosine and sine of an angle that grows by a small one, to second order.
+  pure subroutine turn_on(small, turned)
+    real(wp), intent(in) :: small          !< [rad]
+    real(wp), intent(inout) :: turned(2)   !< cosine and sine
+    real(wp) :: c, s
+
+    c = turned(1)
+    s = turned(2)
+    turned(1) = c - small*(s + 0.5_wp*small*c)
+    turned(2) = s + small*(c - 0.5_wp*small*s)
+  end subroutine turn_on
 
   !> Rotation by an angle [rad] about a unit axis (Rodrigues).
   pure function about_axis(axis, angle) result(r)

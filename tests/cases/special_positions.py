@@ -271,7 +271,9 @@ def conditioning_of_chains(s):
     s.checks.near(table['conditioning'] / np.min(values, axis=0), 1.0, 1e-11, 'the least singular value of both loops')
     with open(report, encoding='utf-8') as file:
         found = json.load(file)
-    row = int(np.argmin(np.min(values, axis=0)))
+    # the last row is the first one again, a turn later: of equal ones the first counts
+    least = np.min(values, axis=0)
+    row = int(np.argmax(least <= np.min(least) * (1 + 1e-12)))
     s.checks.near(found['least_conditioning_time'], table['t'][row], 1e-15, 'when it is least of all')
     block = found['blocks'][found['least_conditioning_block'] - 1]
     s.checks.equal(sorted(block['unknowns']), [[2, 3, 4], [6, 7, 8]][worse[row]], 'and in which chain')

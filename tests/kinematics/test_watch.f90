@@ -19,7 +19,7 @@ program test_watch
   type(four_bar_type), parameter :: bar = four_bar_type(ground=1.0_wp, crank=0.75_wp, coupler=1.0_wp, rocker=0.4_wp)
   type(plan_type) :: plan
   type(state_type) :: state
-  type(block_work_type) :: work
+  type(block_work_type) :: work(1)
   type(watch_type) :: watches(1)
   real(wp) :: middle
 
@@ -40,7 +40,7 @@ contains
     call test%no_error(err, 'plan and assembly')
     if (allocated(err)) call test%finish()
     call test%is_true(size(plan%blocks) == 1, 'one block')
-    work = new_block_work(plan%blocks(1))
+    work(1) = new_block_work(plan%blocks(1))
     watches(1) = new_watch(plan%blocks(1))
   end subroutine begin
 
@@ -59,8 +59,8 @@ contains
     integer, intent(in) :: branch
 
     call go_to(angle, branch)
-    call factorize_trial(plan, plan%blocks(1), state, work, watches(1))
-    call keep(watches)
+    call factorize_trial(plan, plan%blocks(1), state, work(1), watches(1))
+    call keep(work, watches)
   end subroutine depart
 
   !> What watching a step to a position adds: up to 1 it is trusted.
@@ -70,7 +70,7 @@ contains
 
     call go_to(angle, branch)
     worst = 0.0_wp
-    call watch_step(plan, plan%blocks(1), state, work, watches(1), worst)
+    call watch_step(plan, plan%blocks(1), state, .false., work(1), watches(1), worst)
   end function step_to
 
   subroutine watch_changes()

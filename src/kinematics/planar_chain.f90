@@ -1,0 +1,204 @@
+!> A planar closed chain that determines three coordinates by itself, the commonest block: its Jacobian and its
+!> motion, with all places looked up beforehand. Uses kinds, plan, planar_plan, planar_motion, planar_closure.
+!>
+!> The numbers are those of closures and frames of any block; what is saved is the way to them. Rates, velocities of
+!> the frames, accelerations of the coordinates and of the frames take one loop each.
+module mech9_planar_chain
+  use mech9_kinds, only: wp
+  use mech9_plan, only: plan_type, block_type
+  use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
+  use mech9_planar_motion, only: planar_motion_type, find_accelerations
+  use mech9_planar_closure, only: move_to_base, stem_difference
+  implicit none
+  private
+  public :: planar_chain_type, new_planar_chain, chain_jacobian, chain_motion
+
+  type :: planar_chain_type
+    logical :: used = .false.
+    integer :: first_step = 0, last_step = 0
+    integer :: last_moved = 0                  !< the last step of which accelerations are asked for
+    integer :: closure = 0
+    integer :: unknowns(3) = 0                 !< steps
+    integer :: coordinates(3) = 0              !< of these
+    real(wp) :: units(3) = 1.0_wp              !< of the coordinates
+    integer :: stems(2) = 0                    !< frames of other blocks from which it departs
+    real(wp), allocatable :: signs(:)          !< (first_step:last_step) of each step in the loop; 0: not in it
+    integer, allocatable :: given(:)           !< steps of the loop whose coordinates are given
+  end type planar_chain_type
+
+contains
+
+  !> A block as such a chain; not used where it is none.
+  pure function new_planar_chain(plan, block) result(chain)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(planar_chain_type) :: chain
+    integer :: i, s
+
+    if (.not. plan%planar%used .or. block%first_closure /= block%last_closure .or. size(block%unknowns) /= 3) return
+    chain%first_step = block%first_step
+    chain%last_step = block%last_step
+    chain%last_moved = min(block%last_step, block%last_moved)
+    chain%closure = block%first_closure
+    chain%unknowns = block%unknowns
+    chain%coordinates = block%coordinates
+    chain%units = plan%unit_of(block%coordinates)
+    allocate (chain%signs(block%first_step:block%last_step), source=0.0_wp)
+    associate (path => plan%closures(chain%closure)%path)
+      chain%stems = path%stems
+      do i = 1, size(path%steps)
+        s = path%steps(i)
+        if (s < block%first_step) return
+        chain%signs(s) = path%signs(i)
+      end do
+      chain%given = pack(path%steps, .not. plan%steps(path%steps)%dependent)
+    end associate
+    chain%used = .true.
+  end function new_planar_chain
+
+  !> Derivatives of the three equations with respect to the three coordinates, each in its unit.
+  pure subroutine chain_jacobian(planar, chain, motion, jacobian)
+    type(planar_plan_type), intent(in) :: planar
+    type(planar_chain_type), intent(in) :: chain
+    type(planar_motion_type), intent(in) :: motion
+    real(wp), intent(out) :: jacobian(3, 3)
+
+    call fill(chain%unknowns, chain%first_step, chain%last_step, chain%signs, planar%closures(chain%closure)%base, &
+              1.0_wp/planar%length, size(planar%steps), planar%steps, motion%pose, motion%slide, jacobian)
+  end subroutine chain_jacobian
+
+  !> Rates and accelerations of the three coordinates, velocities and accelerations of the frames, from those of the
+  !> given coordinates and of the blocks before.
+  pure subroutine chain_motion(planar, chain, inverse, dq, ddq, motion)
+    type(planar_plan_type), intent(in) :: planar
+    type(planar_chain_type), intent(in) :: chain
+    real(wp), intent(in) :: inverse(3, 3)                  !< of the Jacobian
+    real(wp), intent(inout), contiguous :: dq(:), ddq(:)   !< (M)
+    type(planar_motion_type), intent(inout) :: motion
+
+    call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
+              chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+              dq, ddq, motion%velocity, motion%acceleration)
+  end subroutine chain_motion
+
+  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+
+  pure subroutine fill(unknowns, first, last, signs, base, per_length, m, steps, f, slide, jacobian)
+    integer, intent(in) :: unknowns(3), first, last, base, m
+    real(wp), intent(in) :: signs(first:last), per_length, f(4, 0:m), slide(2, m)
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(out) :: jacobian(3, 3)
+    real(wp) :: w
+    integer :: j, s
+
+    do j = 1, 3
+      s = unknowns(j)
+      if (steps(s)%turns) then
+        w = signs(s)*steps(s)%turn
+        jacobian(1, j) = w
+        w = w*per_length
+        jacobian(2, j) = w*(f(4, s) - f(4, base))
+        jacobian(3, j) = w*(f(3, base) - f(3, s))
+      else
+        jacobian(1, j) = 0.0_wp
+        jacobian(2, j) = signs(s)*slide(1, s)
+        jacobian(3, j) = signs(s)*slide(2, s)
+      end if
+    end do
+  end subroutine fill
+
+  pure subroutine move(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
+                       dq, ddq, v, a)
+    type(planar_chain_type), intent(in) :: chain
+    type(planar_closure_type), intent(in) :: closure
+    integer, intent(in) :: first, last, n_given, given(n_given), m
+    real(wp), intent(in) :: signs(first:last), per_length, inverse(3, 3), f(4, 0:m), slide(2, m)
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(inout) :: dq(m), ddq(m), v(3, 0:m), a(3, 0:m)
+    real(wp) :: opening(3), swing(2)
+
+    call stem_difference(m, chain%stems, f(3:4, closure%closing), f, v, opening(1), opening(2), opening(3))
+    call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, dq, opening)
+    call close_rates(chain, closure, per_length, inverse, m, f, opening, dq)
+    call find_velocities(first, last, signs, m, steps, f, slide, dq, v, swing)
+    call stem_difference(m, chain%stems, f(3:4, closure%closing), f, a, opening(1), opening(2), opening(3))
+    call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, ddq, opening)
+    ! what the target carries along swings about it
+    opening(2) = opening(2) + swing(1) + v(1, closure%target)**2*(f(3, closure%closing) - f(3, closure%target))
+    opening(3) = opening(3) + swing(2) + v(1, closure%target)**2*(f(4, closure%closing) - f(4, closure%target))
+    call close_rates(chain, closure, per_length, inverse, m, f, opening, ddq)
+    call find_accelerations(m, steps, first, chain%last_moved, dq, ddq, f, slide, v, a)
+  end subroutine move
+
+  !> Add by how much the given coordinates' rates open the chain at a place: an angle and a way.
+  pure subroutine add_given(n, given, first, last, signs, place, m, steps, f, slide, rates, opening)
+    integer, intent(in) :: n, given(n), first, last, m
+    real(wp), intent(in) :: signs(first:last), place(2), f(4, 0:m), slide(2, m), rates(m)
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(inout) :: opening(3)
+    real(wp) :: rate
+    integer :: i, s
+
+    do i = 1, n
+      s = given(i)
+      rate = signs(s)*rates(steps(s)%coordinate)
+      if (steps(s)%turns) then
+        rate = rate*steps(s)%turn
+        opening(1) = opening(1) + rate
+        opening(2) = opening(2) - rate*(place(2) - f(4, s))
+        opening(3) = opening(3) + rate*(place(1) - f(3, s))
+      else
+        opening(2) = opening(2) + rate*slide(1, s)
+        opening(3) = opening(3) + rate*slide(2, s)
+      end if
+    end do
+  end subroutine add_given
+
+  !> The rates of the three coordinates that make up for an opening.
+  pure subroutine close_rates(chain, closure, per_length, inverse, m, f, opening, rates)
+    type(planar_chain_type), intent(in) :: chain
+    type(planar_closure_type), intent(in) :: closure
+    integer, intent(in) :: m
+    real(wp), intent(in) :: per_length, inverse(3, 3), f(4, 0:m), opening(3)
+    real(wp), intent(inout) :: rates(m)
+    real(wp) :: rows(3)
+    integer :: j
+
+    call move_to_base(closure, per_length, m, f, opening(1), opening(2), opening(3), rows)
+    do j = 1, 3
+      rates(chain%coordinates(j)) = -chain%units(j)*(inverse(j, 1)*rows(1) + inverse(j, 2)*rows(2) + inverse(j, 3)*rows(3))
+    end do
+  end subroutine close_rates
+
+  !> Velocities of the frames, and the way in which the loop would open if it only kept them.
+  pure subroutine find_velocities(first, last, signs, m, steps, f, slide, dq, v, swing)
+    integer, intent(in) :: first, last, m
+    real(wp), intent(in) :: signs(first:last), f(4, 0:m), slide(2, m), dq(m)
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(inout) :: v(3, 0:m)
+    real(wp), intent(out) :: swing(2)
+    real(wp) :: w, x, y, rate, square, coriolis
+    integer :: i, p
+
+    swing = 0.0_wp
+    do i = first, last
+      p = steps(i)%parent
+      rate = dq(steps(i)%coordinate)
+      w = v(1, p)
+      x = f(3, i) - f(3, p)
+      y = f(4, i) - f(4, p)
+      v(1, i) = w + steps(i)%turn*rate
+      v(2, i) = v(2, p) - w*y
+      v(3, i) = v(3, p) + w*x
+      square = signs(i)*w**2
+      swing(1) = swing(1) - square*x
+      swing(2) = swing(2) - square*y
+      if (steps(i)%turns) cycle
+      v(2, i) = v(2, i) + rate*slide(1, i)
+      v(3, i) = v(3, i) + rate*slide(2, i)
+      coriolis = 2.0_wp*signs(i)*w*rate
+      swing(1) = swing(1) - coriolis*slide(2, i)
+      swing(2) = swing(2) + coriolis*slide(1, i)
+    end do
+  end subroutine find_velocities
+end module mech9_planar_chain

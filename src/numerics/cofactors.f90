@@ -1,0 +1,67 @@
+!> The inverse of a 3 by 3 matrix by its cofactors. Uses kinds only.
+!>
+!> The cofactors are the products of two columns each. Their lengths give the pivots that a QR factorization
+!> with column pivoting would find: the longest column, the largest area that another one spans with it, and
+!> the volume of all three.
+module mech9_cofactors
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: invert_by_cofactors
+
+contains
+
+  !> Inverse and pivots. Where columns depend on each other pivots are zero and the inverse is not set. Where the
+  !> least pivot is much below the largest, the inverse is less certain than a solution by reflections.
+  pure subroutine invert_by_cofactors(a, inverse, pivots, sign_of_det)
+    real(wp), intent(in) :: a(3, 3)
+    real(wp), intent(inout) :: inverse(3, 3)
+    real(wp), intent(out) :: pivots(3)     !< lengths, not increasing
+    integer, intent(out) :: sign_of_det    !< -1 or 1
+    real(wp) :: c1(3), c2(3), c3(3), l1, l2, l3, longest, area, volume, per_volume
+
+    c1 = product_of(a(:, 2), a(:, 3))
+    c2 = product_of(a(:, 3), a(:, 1))
+    c3 = product_of(a(:, 1), a(:, 2))
+    l1 = a(1, 1)**2 + a(2, 1)**2 + a(3, 1)**2
+    l2 = a(1, 2)**2 + a(2, 2)**2 + a(3, 2)**2
+    l3 = a(1, 3)**2 + a(2, 3)**2 + a(3, 3)**2
+    volume = a(1, 1)*c1(1) + a(2, 1)*c1(2) + a(3, 1)*c1(3)
+    longest = max(l1, l2, l3)
+    ! areas that the longest column spans with the others
+    if (l1 >= longest) then
+      area = max(square(c2), square(c3))
+    else if (l2 >= longest) then
+      area = max(square(c1), square(c3))
+    else
+      area = max(square(c1), square(c2))
+    end if
+    sign_of_det = merge(-1, 1, volume < 0.0_wp)
+    pivots(1) = sqrt(longest)
+    pivots(2:3) = 0.0_wp
+    if (.not. area > 0.0_wp) return
+    area = sqrt(area)
+    pivots(2) = area/pivots(1)
+    pivots(3) = abs(volume)/area
+    if (.not. pivots(3) > 0.0_wp) return
+    per_volume = 1.0_wp/volume
+    inverse(1, :) = per_volume*c1
+    inverse(2, :) = per_volume*c2
+    inverse(3, :) = per_volume*c3
+  end subroutine invert_by_cofactors
+
+  pure function product_of(u, v) result(w)
+    real(wp), intent(in) :: u(3), v(3)
+    real(wp) :: w(3)
+
+    w(1) = u(2)*v(3) - u(3)*v(2)
+    w(2) = u(3)*v(1) - u(1)*v(3)
+    w(3) = u(1)*v(2) - u(2)*v(1)
+  end function product_of
+
+  pure real(wp) function square(v)
+    real(wp), intent(in) :: v(3)
+
+    square = v(1)**2 + v(2)**2 + v(3)**2
+  end function square
+end module mech9_cofactors

@@ -1,0 +1,58 @@
+!> Cosines and sines of many angles at once. Uses kinds only.
+!>
+!> The intrinsic functions are called for one angle after the other. Here the loop runs over all of them without a
+!> branch, so that the compiler can take several together: whole quarter turns are taken away, and what is left,
+!> at most half of one, goes into the series of sine and cosine.
+module mech9_sine_cosine
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: cosines_and_sines
+
+  !> Angles up to this are reduced exactly enough [rad].
+  real(wp), parameter :: largest_angle = 1.0e6_wp
+  !> A quarter turn in three parts; the first two have 33 bits each, so that multiples of them have no rounding.
+  real(wp), parameter :: quarter(3) = [1.57079632673412561417_wp, 6.07710050630396597660e-11_wp, 2.02226624879595063154e-21_wp]
+  real(wp), parameter :: per_quarter = 0.636619772367581343076_wp
+  !> A number of this size has no room for a fraction: adding it and taking it away again rounds to whole numbers.
+  real(wp), parameter :: whole = 1.5_wp*2.0_wp**52
+
+contains
+
+  !> Right to little more than half of the last digit, like the intrinsic functions.
+  pure subroutine cosines_and_sines(n, angles, turned)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: angles(n)      !< [rad]
+    real(wp), intent(out) :: turned(2, n)  !< cosine and sine of each
+    real(wp) :: quarters, x, left, z, most, c, s
+    integer :: i, k
+
+    if (.not. all(abs(angles) <= largest_angle)) then
+      do i = 1, n
+        turned(1, i) = cos(angles(i))
+        turned(2, i) = sin(angles(i))
+      end do
+      return
+    end if
+    do i = 1, n
+      quarters = (angles(i)*per_quarter + whole) - whole
+      k = int(quarters)
+      ! the rest, and what its last digit leaves out
+      z = angles(i) - quarters*quarter(1)
+      most = z - quarters*quarter(2)
+      x = most - quarters*quarter(3)
+      left = ((z - most) - quarters*quarter(2)) + ((most - x) - quarters*quarter(3))
+      z = x**2
+      s = x + (left*(1.0_wp - 0.5_wp*z) + x*z*(-1.0_wp/6.0_wp + z*(1.0_wp/120.0_wp + z*(-1.0_wp/5040.0_wp + z*(1.0_wp/362880.0_wp &
+          + z*(-1.0_wp/39916800.0_wp + z*(1.0_wp/6227020800.0_wp + z*(-1.0_wp/1307674368000.0_wp &
+          + z*(1.0_wp/355687428096000.0_wp)))))))))
+      ! what 1 - z/2 loses in its last digit is added with the small terms
+      most = 1.0_wp - 0.5_wp*z
+      c = most + (((1.0_wp - most) - 0.5_wp*z) - x*left + z**2*(1.0_wp/24.0_wp + z*(-1.0_wp/720.0_wp + z*(1.0_wp/40320.0_wp &
+          + z*(-1.0_wp/3628800.0_wp + z*(1.0_wp/479001600.0_wp + z*(-1.0_wp/87178291200.0_wp &
+          + z*(1.0_wp/20922789888000.0_wp))))))))
+      turned(1, i) = merge(c, s, iand(k, 1) == 0)*merge(1.0_wp, -1.0_wp, iand(k + 1, 2) == 0)
+      turned(2, i) = merge(s, c, iand(k, 1) == 0)*merge(1.0_wp, -1.0_wp, iand(k, 2) == 0)
+    end do
+  end subroutine cosines_and_sines
+end module mech9_sine_cosine

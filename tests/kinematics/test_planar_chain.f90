@@ -1,0 +1,90 @@
+!> A planar chain of three unknowns in arithmetic of its own, against that of any block.
+program test_planar_chain
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates, solve_accelerations, solve_motion
+  use mech9_sample_mechanisms, only: fig1
+  use mech9_planar_mechanisms, only: four_bar_type, random_crank, slider_crank, watt_six_bar
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(random_type) :: random
+  type(mechanism_type) :: mechanism
+  type(four_bar_type) :: bar
+  integer :: trial
+
+  do trial = 1, 20
+    call slider_crank(0.3_wp + 0.1_wp*random%symmetric(), 0.9_wp, 0.1_wp*random%symmetric(), 3.0_wp*random%symmetric(), &
+                      merge(1, -1, mod(trial, 2) == 0), mechanism)
+    call check_same_motion(mechanism, 1, 'a slider-crank')
+    bar = random_crank(random, 0.3_wp)
+    call watt_six_bar(bar, [0.4_wp, 0.3_wp], [2.0_wp, 0.5_wp], [2.0_wp, 1.8_wp], random%symmetric(), 1, 1, mechanism)
+    call check_same_motion(mechanism, 2, 'a six-bar')
+  end do
+  call fig1(5, mechanism)
+  call check_same_motion(mechanism, 2, 'Fig. 1')
+  call fig1(1, mechanism)
+  call check_same_motion(mechanism, 0, 'Fig. 1 driven at q1: its chains need each other')
+  call test%finish()
+
+contains
+
+  !> Rates and accelerations of coordinates and frames, at random ones of the independent coordinates.
+  subroutine check_same_motion(mechanism, chains, name)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: chains                !< blocks that are such chains
+    character(len=*), intent(in) :: name
+    type(plan_type) :: plan
+    type(state_type) :: state, other
+    type(error_type), allocatable :: err
+    type(block_work_type) :: any_block, chain
+    integer :: b, i, found
+    real(wp) :: allowed
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, name)
+    if (allocated(err)) return
+    do i = 1, size(plan%independent)
+      state%dq(plan%independent(i)) = 1.0_wp + random%symmetric()
+      state%ddq(plan%independent(i)) = 2.0_wp*random%symmetric()
+    end do
+    other = state
+    found = 0
+    allowed = 1.0e-14_wp
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b))
+        any_block = new_block_work(block)
+        chain = new_block_work(block, plan)
+        if (chain%chain%used) found = found + 1
+        call factorize_block(plan, block, state, any_block)
+        call solve_rates(plan, block, state, any_block)
+        call solve_accelerations(plan, block, state, any_block)
+        call factorize_block(plan, block, other, chain)
+        call test%is_true(maxval(abs(chain%jacobian - any_block%jacobian)) <= 4.0_wp*epsilon(1.0_wp), name//': Jacobian')
+        call solve_motion(plan, block, other, chain)
+        ! round-off over the conditioning: once in rates, again in accelerations, and on in the next block
+        allowed = allowed*4.0_wp/min(1.0_wp, any_block%equations%conditioning())**2
+      end associate
+    end do
+    call test%is_true(found == chains, name//': its chains of three')
+    call check_close(other%dq, state%dq, allowed, name//': rates')
+    call check_close(other%ddq, state%ddq, allowed, name//': accelerations')
+    call check_close(reshape(other%planar%velocity, [size(state%planar%velocity)]), &
+                     reshape(state%planar%velocity, [size(state%planar%velocity)]), allowed, name//': velocities of frames')
+    call check_close(reshape(other%planar%acceleration, [size(state%planar%acceleration)]), &
+                     reshape(state%planar%acceleration, [size(state%planar%acceleration)]), allowed, &
+                     name//': accelerations of frames')
+  end subroutine check_same_motion
+
+  subroutine check_close(values, expected, allowed, name)
+    real(wp), intent(in) :: values(:), expected(:), allowed
+    character(len=*), intent(in) :: name
+
+    call test%near(maxval(abs(values - expected))/max(1.0_wp, maxval(abs(expected))), 0.0_wp, allowed, name)
+  end subroutine check_close
+end program test_planar_chain
