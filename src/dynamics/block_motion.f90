@@ -42,6 +42,7 @@ contains
       end if
       if (plan%planar%used) then
         call factorize_in_plane(plan, dynamics%planar_blocks(b), state%planar, work%blocks(b)%equations)
+        work%blocks(b)%count%factorizations = work%blocks(b)%count%factorizations + 1
       else
         call factorize_block(plan, block, state, work%blocks(b))
       end if

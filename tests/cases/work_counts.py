@@ -127,7 +127,9 @@ def test_derivatives(case):
     for derivatives, orders in (0, ['']), (1, ['', 'd']):
         less, report = table_and_report(case.kinematics, path, '--set', f'output.derivatives={derivatives}')
         checks.equal(report['acceleration_solutions'], 3, 'accelerations of all blocks at the start')
-        checks.true(report['frames_moved'] < 0.7*whole['frames_moved'], 'frames are moved less', report['frames_moved'])
+        # velocities of ten frames at each position, and accelerations at most at the start
+        checks.true(report['frames_moved'] <= 10*report['positions'] + 10, 'velocities of frames', report['frames_moved'])
+        checks.true(report['frames_moved'] < whole['frames_moved'], 'frames are moved less', report['frames_moved'])
         names = ['t'] + [f'{order}q{k}' for order in orders for k in range(1, 11)]
         names += ['P.' + order + axis for order in ('', 'v')[:derivatives + 1] for axis in 'xyz'] + ['closure']
         checks.equal(list(less), names, f'columns with {derivatives} derivatives')
