@@ -57,8 +57,9 @@ contains
     if (.not. self%pacer%due()) return
     elapsed = seconds() - self%started
     if (elapsed < first_line_after) return
-    write (error_unit, '(2a)', advance='no', iostat=status) achar(13), &
-      progress_line(self%label, fraction, elapsed)
+    ! back at its beginning, lest the terminal's echo of Ctrl-C flow over into the next line
+    write (error_unit, '(3a)', advance='no', iostat=status) achar(13), &
+      progress_line(self%label, fraction, elapsed), achar(13)
     flush (error_unit, iostat=status)
     self%shown = .true.
   end subroutine update

@@ -117,6 +117,8 @@ def test_progress():
     check(len(shown) >= 3, "a long run shows progress", got)
     check(all(len(line) <= 79 for line in lines), "within 80 columns")
     check(all(line.startswith("probe ") for line in shown), "with its label")
+    # what is echoed of Ctrl-C then stands over the line, and goes with it
+    check(all(after == "" for line, after in zip(lines, lines[1:]) if "left" in line), "the cursor waits at its beginning", got)
     # from the first line, after a second, the third of the work is done
     check(shown and 33 <= int(shown[0].split()[1]) < 80, "not before a second has passed", shown[:1])
     check(lines[-2].strip() == "" and len(lines[-2]) >= len(shown[-1].rstrip()) and lines[-1] == "",
