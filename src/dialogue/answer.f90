@@ -80,21 +80,28 @@ contains
     if (mark == '/') text = '; write a quotient as a number, 0.5 instead of 1/2'
   end function advice
 
-  !> All messages, a line each, at most a few.
+  !> All messages, each once and in a line, at most a few.
   pure function messages_of(diagnostics) result(text)
     type(diagnostics_type), intent(in) :: diagnostics
     character(len=:), allocatable :: text, message
     type(span_type) :: span
     integer, parameter :: most = 4
-    integer :: i
+    integer :: i, shown
 
     text = ''
-    do i = 1, min(diagnostics%known(), most)
+    shown = 0
+    do i = 1, diagnostics%known()
       call diagnostics%get(i, message, span)
-      if (i > 1) text = text//new_line('a')
-      text = text//message
+      ! a word that is repeated is wrong once
+      if (index(new_line('a')//text, new_line('a')//message//new_line('a')) > 0) cycle
+      shown = shown + 1
+      if (shown <= most) text = text//message//new_line('a')
     end do
-    if (diagnostics%count > most) text = text//new_line('a')//'and '//to_text(diagnostics%count - most)//' more'
+    if (shown > most) then
+      text = text//'and '//to_text(shown - most)//' more'
+    else if (text /= '') then
+      text = text(:len(text) - 1)
+    end if
   end function messages_of
 
   !> A text in quotes, its own quotes doubled.

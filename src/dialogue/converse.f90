@@ -3,6 +3,7 @@
 module mech9_converse
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: exit_done, exit_usage, exit_interrupted
+  use mech9_text, only: to_text
   use mech9_command_line, only: command_line_type
   use mech9_system, only: is_terminal, standard_input
   use mech9_diagnostics, only: diagnostics_type
@@ -79,6 +80,9 @@ contains
       if (bookmark /= '') conversation%draft_path = path
     end if
     call greet(conversation, task%program_name, path)
+    if (draft%comments_left_out > 0) &
+      call conversation%say('Comments inside and behind groups, '//to_text(draft%comments_left_out)// &
+                            ' here, are not kept when it is saved.')
     call conversation%interview%start(task%program_name, draft)
     if (path /= '') then
       conversation%interview%at = size(conversation%interview%questions)

@@ -157,6 +157,9 @@ contains
       call add_group(conversation, trim(adjustl(line(len(word) + 1:))), found)
     else if (word == 'remove') then
       call remove(conversation, trim(adjustl(line(len(word) + 1:))), found)
+    else if (line == word .and. word == 'change') then
+      found = .false.
+      call conversation%say('Say which answer: change time end = 2, or by its number, change 5; list shows them.')
     else if (word == 'change') then
       call change_answer(conversation, trim(adjustl(line(len(word) + 1:))), found)
     else

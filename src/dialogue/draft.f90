@@ -25,6 +25,7 @@ module mech9_draft
   type :: draft_type
     character(len=:), allocatable :: head          !< comment lines at the beginning of the file
     type(draft_group_type), allocatable :: groups(:)
+    integer :: comments_left_out = 0               !< comments of the data file it was made from that it does not hold
   contains
     procedure :: clear
     procedure :: find
@@ -48,6 +49,7 @@ contains
     class(draft_type), intent(inout) :: self
 
     self%head = ''
+    self%comments_left_out = 0
     if (allocated(self%groups)) deallocate (self%groups)
     allocate (self%groups(0))
   end subroutine clear

@@ -59,7 +59,9 @@ contains
     if (first == 0) return
     first = first + len(mark) + 1
     last = index(document%source%text(first:), ' (')
-    if (last > 0) bookmark = document%source%text(first:first + last - 2)
+    if (last == 0) return
+    bookmark = document%source%text(first:first + last - 2)
+    draft%comments_left_out = draft%comments_left_out - 1
   end subroutine load_draft
 
   !> Remove a file; whether it was there or not does not matter.

@@ -38,6 +38,10 @@ contains
     if (size(checked%groups) == 0) return
     call find_comment(document%source, checked%groups(1)%span%first, .true., comment)
     draft%head = comment
+    draft%comments_left_out = count_comments(document%source%text) - count_comments(draft%head)
+    do i = 1, size(draft%groups)
+      draft%comments_left_out = draft%comments_left_out - count_comments(draft%groups(i)%comment)
+    end do
   end subroutine draft_from_document
 
   pure subroutine take_group(document, group, draft)
@@ -157,6 +161,28 @@ contains
       end if
     end do
   end subroutine take_lines
+
+  !> How many comments a text has; an exclamation mark in quotes begins none.
+  pure integer function count_comments(text) result(count)
+    character(len=*), intent(in) :: text
+    character :: quote
+    integer :: at
+
+    count = 0
+    quote = ' '
+    at = 1
+    do while (at <= len(text))
+      if (quote /= ' ') then
+        if (text(at:at) == quote .or. text(at:at) == line_end) quote = ' '
+      else if (text(at:at) == '!') then
+        count = count + 1
+        at = at + index(text(at:)//line_end, line_end) - 1
+      else if (scan(text(at:at), '''"') == 1) then
+        quote = text(at:at)
+      end if
+      at = at + 1
+    end do
+  end function count_comments
 
   pure logical function is_comment(line)
     character(len=*), intent(in) :: line

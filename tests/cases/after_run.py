@@ -76,6 +76,11 @@ def test_show(session):
     checks.true(all(len(line) <= 79 for text in said for line in text.splitlines()), 'show: within 80 columns')
 
 
+def test_bare_change(session):
+    said, _ = session.after_run('change', 'done')
+    session.checks.true('which answer' in said[0], 'change alone: what is missing is said', said[0])
+
+
 def test_compare(session):
     checks = session.checks
     before = session.independent()
@@ -190,7 +195,7 @@ def test_simple_terminal(session):
 def main():
     checks = Checks()
     kinematics, dynamics = sys.argv[1:3]
-    for test in (test_show, test_compare, test_change, test_change_before, test_plot, test_failed_run):
+    for test in (test_show, test_bare_change, test_compare, test_change, test_change_before, test_plot, test_failed_run):
         with Session(checks, kinematics, 'fig1') as session:
             test(session)
     with Session(checks, dynamics, 'pendulum') as session:

@@ -201,6 +201,16 @@ def edited_files(talks):
                 tables.append(rows_of(os.path.join(folder, path + '.dat')))
             talks.checks.true(tables[0] == tables[1], f'--edit {name}: the same table from the copy')
     with tempfile.TemporaryDirectory() as folder:
+        # this file has no exclamation mark that begins no comment
+        shutil.copy(os.path.join(TREE, 'examples', 'fig1', 'fig1.nml'), folder)
+        inside = sum('!' in line and not line.startswith('!') for line in text_of(os.path.join(folder, 'fig1.nml')).splitlines())
+        done = piped(talks.mech9k, '--edit', 'fig1.nml', folder=folder, answers='time end = 2\nquit\n')
+        talks.checks.true(inside > 0 and f'groups, {inside} here, are not kept' in done.stderr,
+                          '--edit: comments that get lost are told', done.stderr)
+        done = piped(talks.mech9k, '--resume', 'fig1.draft.nml', folder=folder, answers='quit\n')
+        talks.checks.true('are not kept' not in done.stderr and '-- Summary --' in done.stderr, '--resume: none is left to lose',
+                          done.stderr)
+    with tempfile.TemporaryDirectory() as folder:
         shutil.copy(EXAMPLE['simple_pendulum'], os.path.join(folder, 'p.nml'))
         steps = [('Enter if all is right', 'time end'), ('end (s) [10.0]', '2'), ('all is right', 'add load'),
                  ('load 1, kind', 'coordinate'), ('coordinate: ', '1'), ('force', ''), ('stiffness', ''), ('rest', ''),

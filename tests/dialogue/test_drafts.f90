@@ -82,6 +82,9 @@ contains
     call tester%is_true(draft%value('pair', 2, 'point') == '0.3, 0, 0', 'a list in pieces becomes one')
     call tester%is_true(draft%value('pair', 1, 'axis') == '0, 0, 1', 'repeats are written out')
     call tester%is_true(unquoted(draft%value('mechanism', 1, 'title')) == "It's a slider/crank! & more", 'a text with marks')
+    call tester%is_true(draft%comments_left_out == 0, 'no comment is left out')
+    call read_text(slider_crank//"&time end=1 ! 'the end' !"//eol//" ! no more"//eol//"/ ! so"//eol//"! behind"//eol, again)
+    call tester%is_true(again%comments_left_out == 4, 'comments inside and behind groups are left out')
     call write_draft(draft, '', first)
     call tester%is_true(index(first%text, '! An offset slider-crank.'//eol) == 1, 'the first comment stays')
     call tester%is_true(index(first%text, '! the crank'//eol//'&pair coordinate=1') > 0, 'a comment above a group stays')
@@ -136,6 +139,10 @@ contains
         call tester%is_true(problem /= '' .or. row%type == 'text', trim(row%name)//': a group is no answer')
         call read_answer(row, 'a'//achar(7), text, problem)
         call tester%is_true(problem /= '', trim(row%name)//': a control character is no answer')
+        if (row%type /= 'integer') cycle
+        call read_answer(row, 'many many', text, problem)
+        call tester%is_true(problem /= '' .and. index(problem, 'none', back=.true.) == index(problem, 'none'), &
+                            trim(row%name)//': what is wrong twice is told once')
       end associate
     end do
   end subroutine answers
