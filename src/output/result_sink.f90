@@ -10,6 +10,7 @@ module mech9_result_sink
   !> A sink is open when it is handed to a recording.
   type, abstract :: result_sink_type
     logical :: takes_poses = .false.    !< its rows go on with the columns of the poses
+    logical :: is_lacking = .false.     !< its words tell of what could not be made: who wants quiet hears them, too
   contains
     procedure(rows_interface), deferred :: write_rows
     procedure :: flush => flush_nothing

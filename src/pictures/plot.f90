@@ -141,6 +141,7 @@ contains
     if (found) then
       self%said = 'plot: '//self%picture//', drawn by '//script_path
     else
+      self%is_lacking = .true.
       self%said = 'plot: gnuplot is not here; install '//gnuplot_package//' and run: gnuplot '//name_of(script_path)
       if (folder /= '.') self%said = self%said//' in '//folder
     end if

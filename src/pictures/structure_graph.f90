@@ -30,10 +30,11 @@ contains
 
   !> Write the graph into a file; by its ending as text (.dot, .gv), or as a picture (.svg, .png, .pdf) with the text
   !> beside it. Where dot is not there the text is kept, and `said` tells how to use it.
-  subroutine save_structure_graph(path, mechanism, plan, said, err)
+  subroutine save_structure_graph(path, mechanism, plan, drawn, said, err)
     character(len=*), intent(in) :: path
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
+    logical, intent(out) :: drawn                        !< or else the words tell why there is no such picture
     character(len=:), allocatable, intent(out) :: said   !< a line for the user
     type(error_type), allocatable, intent(out) :: err
     character(len=:), allocatable :: text, text_path
@@ -46,15 +47,17 @@ contains
       text_path = path
     end select
     said = 'graph: '//path
+    drawn = .true.
     call save_text(text_path, text, err)
     if (allocated(err) .or. text_path == path) return
-    call draw(path, text, text_path, said, err)
+    call draw(path, text, text_path, drawn, said, err)
     call add_place(err, 'no picture of the structure')
   end subroutine save_structure_graph
 
   !> Let dot draw.
-  subroutine draw(path, text, text_path, said, err)
+  subroutine draw(path, text, text_path, drawn, said, err)
     character(len=*), intent(in) :: path, text, text_path
+    logical, intent(out) :: drawn
     character(len=:), allocatable, intent(inout) :: said
     type(error_type), allocatable, intent(out) :: err
     type(child_outcome_type) :: outcome
@@ -64,10 +67,11 @@ contains
     words(2)%text = '-T'//ending_of(path)
     words(3)%text = '-o'//path
     call run_child(words, text, outcome, err)
+    drawn = .not. allocated(err) .and. outcome%found
     if (allocated(err)) return
     if (.not. outcome%found) then
       said = 'graph: dot is not here; install Graphviz (Debian: apt-get install graphviz) and run: '// &
-             'dot -T'//ending_of(path)//' -O '//text_path
+             'dot -T'//ending_of(path)//' -o '//path//' '//text_path
     else if (outcome%code /= 0) then
       call raise(err, exit_file, 'dot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%said)))
     end if

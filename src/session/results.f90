@@ -233,14 +233,16 @@ contains
     call hdf5%file%put('diagnostics/exit_code', code, 'what the program answered to the shell; -1: the run did not end')
   end subroutine write_facts
 
-  !> What the user is told about what was written, once all is closed.
-  subroutine print_words(self, unit)
+  !> What the user is told about what was written, once all is closed; to be `quiet`, about what was not.
+  subroutine print_words(self, unit, quiet)
     class(results_type), intent(in) :: self
     integer, intent(in) :: unit
+    logical, intent(in) :: quiet
     character(len=:), allocatable :: words
     integer :: i
 
     do i = 1, size(self%sinks)
+      if (quiet .and. .not. self%sinks(i)%sink%is_lacking) cycle
       words = self%sinks(i)%sink%words()
       if (words /= '') write (unit, '(a)') words
     end do

@@ -115,11 +115,12 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics
     type(error_type), allocatable :: err
     character(len=:), allocatable :: said
+    logical :: drawn
 
-    call save_structure_graph(options%argument('graph'), mechanism, plan, said, err)
+    call save_structure_graph(options%argument('graph'), mechanism, plan, drawn, said, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
-    else if (.not. options%has('quiet')) then
+    else if (.not. (drawn .and. options%has('quiet'))) then
       write (error_unit, '(a)') said
     end if
   end subroutine draw_graph
@@ -155,7 +156,7 @@ contains
 
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
-    if (.not. options%has('quiet')) call results%print_words(error_unit)
+    call results%print_words(error_unit, options%has('quiet'))
     if (allocated(run%film)) call draw(options, pictures, mechanism, run%film, diagnostics)
   end subroutine end_run
 

@@ -232,6 +232,9 @@ def test_without_gnuplot(folder):
         done = run(mech9k, FIG1, '--table', 'a.dat', '--plot', 'q1', folder=folder)
         checks.true(done.returncode == 0 and 'gnuplot a.gp' in done.stderr, 'no gnuplot: the script is kept', done.stderr)
         checks.true(not os.path.exists(os.path.join(folder, 'a.svg')), 'no picture then')
+        done = run(mech9k, FIG1, '--table', 'a.dat', '--plot', 'q1', '--quiet', folder=folder)
+        checks.true(done.stderr.startswith('plot: gnuplot is not here') and done.stderr.count('\n') == 1,
+                    'no gnuplot: told to who wants quiet, too', done.stderr)
         done = run(mech9k, FIG1, '--quiet', '--plot', 'term:q1', folder=folder)
         checks.true(done.returncode == 8 and 'gnuplot' in done.stderr, 'no gnuplot for the terminal', done.stderr)
         # one that fails, and one that is ended

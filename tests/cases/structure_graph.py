@@ -99,9 +99,11 @@ def test_failures(folder):
     path, os.environ['PATH'] = os.environ['PATH'], folder
     try:
         done = run(mech9k, fig1, '--graph', 'x.svg', folder=folder)
+        quiet = run(mech9k, fig1, '--graph', 'x.svg', '--quiet', folder=folder)
     finally:
         os.environ['PATH'] = path
-    checks.true(done.returncode == 0 and 'dot -Tsvg' in done.stderr, 'no dot: a word how to draw it', done.stderr)
+    checks.true(done.returncode == 0 and 'dot -Tsvg -o x.svg x.dot' in done.stderr, 'no dot: a word how to draw it', done.stderr)
+    checks.equal(quiet.stderr, done.stderr, 'no dot: told to who wants quiet, too')
     checks.equal(os.listdir(folder), ['x.dot'], 'the text is kept')
 
 
