@@ -137,7 +137,8 @@ contains
 
     do i = 1, size(numbers)
       if (ieee_is_finite(numbers(i))) cycle
-      call raise(err, exit_integrator, what//' number '//to_text(i)//' is not finite')
+      call raise(err, exit_integrator, what//' number '//to_text(i)// &
+                 ' is not finite: the motion, or a force, grows beyond all bounds')
       return
     end do
   end subroutine must_be_finite

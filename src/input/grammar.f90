@@ -57,7 +57,7 @@ module mech9_grammar
     group_row_type('time', .false., '', 'both', &
                    'when results are given: at start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', 'mech9d', 'how to integrate'), &
-    group_row_type('output', .false., '', 'both', 'which files to write'), &
+    group_row_type('output', .false., '', 'both', 'what is recorded, and in which files'), &
     group_row_type('user', .false., '', 'both', 'numbers handed to the user''s own procedures')]
 
   type(item_row_type), parameter :: general_items(*) = [ &

@@ -53,7 +53,7 @@ module mech9_options
     option_type('no-write', no_argument, '', any_text, .false., both, &
                 'compute all that is asked for, write no results'), &
     option_type('report', needed_argument, 'FILE', any_text, .false., both, &
-                'write the report of the run as JSON'), &
+                'write how it went, what was wrong and what it took as JSON'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
     option_type('dialogue', no_argument, '', any_text, .false., both, &
@@ -65,7 +65,7 @@ module mech9_options
     option_type('quiet', no_argument, '', any_text, .false., both, &
                 'say nothing but errors'), &
     option_type('verbose', no_argument, '', any_text, .false., both, &
-                'say more'), &
+                'say more: the structural vectors and the plan before the run'), &
     option_type('help', no_argument, '', any_text, .false., both, &
                 'print this text'), &
     option_type('help-data', optional_argument, 'GROUP[.NAME]', any_text, .false., both, &
