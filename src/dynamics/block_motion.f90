@@ -11,6 +11,7 @@ module mech9_block_motion
   use mech9_motion, only: spread_velocities, spread_accelerations
   use mech9_closure, only: closure_rates
   use mech9_solver, only: block_work_type, factorize_block
+  use mech9_tracking, only: words_of_block
   use mech9_dynamics_plan, only: dynamics_plan_type
   use mech9_jacobian, only: jacobian_type, find_jacobian, noise_of_rates
   use mech9_planar_block, only: planar_block_type, fill_columns, add_earlier, move_frames
@@ -48,7 +49,8 @@ contains
       end if
       conditioning = work%blocks(b)%equations%conditioning()
       if (conditioning < singular) then
-        call raise(err, exit_singular, 'a closed chain is in a singular position for these independent coordinates')
+        call raise(err, exit_singular, words_of_block(plan, block)// &
+                   ' is in a singular position for these independent coordinates')
       else if (plan%planar%used .and. conditioning >= nearly_dependent) then
         call move_in_plane(plan, dynamics, block, dynamics%planar_blocks(b), state, work%jacobian, work%sides, &
                            work%blocks(b))

@@ -128,7 +128,11 @@ contains
     call leave_out(used, run%needs)
     allocate (run%system)
     call set_motion_system(mechanism, used, start, run%system, err)
-    if (allocated(err)) return
+    if (allocated(err)) then
+      if (err%code == exit_singular) &
+        err%message = err%message//'; choose other independent coordinates, or start a little beside it'
+      return
+    end if
     run%coefficients = run%system%work%coefficients
   end subroutine start_dynamic_run
 

@@ -286,6 +286,20 @@ def conditioning_of_motion(s):
 &output conditioning=.true. /"""), 'mech9d')
 
 
+def flat_positions_of_motion(s):
+    """Dynamics of a parallelogram: no coordinate serves in its flat positions; the chain is named."""
+    moving = '''&initial coordinate=1, position={start!r}, velocity=240.0 /
+                &body link=2, mass=1.0, centre=0.2,0,0, inertia=0.01,0.01,0.02,0,0,0 /'''
+    for start, words in ((0.0, ['start a little beside it']), (60.0, ['cannot go on from t = '])):
+        # with mass on the crank alone and without loads it turns evenly: it is flat at 180 degrees, after 0.5 s
+        done = s.run(four_bar((1.0, 0.4, 1.0, 0.4), (start, 0.0), 1.0, 10, more=moving.format(start=start)), '--table', '-')
+        s.checks.equal(done.returncode, 6, f'dynamics of a parallelogram from {start} degrees: exit code')
+        for word in ['closed chain 1 (coordinates 2, 3, 4) is in a singular position', *words]:
+            s.checks.true(word in done.stderr, f'dynamics of a parallelogram from {start} degrees: says {word!r}', done.stderr)
+    times = read_table(done.stdout)['t']
+    s.checks.near(times, np.arange(5) / 10.0, 1e-15, 'the table holds what lies before the flat position')
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Cases(os.path.abspath(sys.argv[1]), folder)
@@ -293,6 +307,7 @@ def main():
             case(s)
         s.program = os.path.abspath(sys.argv[2])
         conditioning_of_motion(s)
+        flat_positions_of_motion(s)
         s.checks.finish()
 
 
