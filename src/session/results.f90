@@ -114,11 +114,23 @@ contains
       call plot%open(requests(i)%text, mechanism%title, columns%names(:columns%count), &
                      columns%units(:columns%count), mechanism%time%intervals + 1, &
                      default_picture(self%table_path, options%file, i), self%table_path, err)
-      if (allocated(err)) return
+      if (allocated(err)) then
+        if (leaves_out(mechanism)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
+        return
+      end if
       call move_alloc(plot, sink)
       call append_sink(plots, sink)
     end do
   end subroutine open_plots
+
+  !> Whether the results have fewer columns than they could have.
+  pure logical function leaves_out(mechanism)
+    type(mechanism_type), intent(in) :: mechanism
+
+    associate (output => mechanism%output)
+      leaves_out = output%derivatives < 2 .or. .not. (output%energies .and. all(output%recorded(size(mechanism%pairs))))
+    end associate
+  end function leaves_out
 
   subroutine open_table(self, mechanism, program_name, columns, err)
     class(results_type), intent(inout) :: self
@@ -242,8 +254,8 @@ contains
     integer :: i
 
     do i = 1, size(self%sinks)
-      if (quiet .and. .not. self%sinks(i)%sink%is_lacking) cycle
-      words = self%sinks(i)%sink%words()
+      words = ''
+      if (self%sinks(i)%sink%is_lacking .or. .not. quiet) words = self%sinks(i)%sink%words()
       if (words /= '') write (unit, '(a)') words
     end do
   end subroutine print_words

@@ -212,6 +212,11 @@ def test_terminal(folder):
 def test_refusals(folder):
     done = run(mech9k, FIG1, '--table', 'none.dat', '--plot', 'q1,q33', folder=folder)
     checks.true(done.returncode == 2 and "did you mean 'q3'?" in done.stderr, 'an unknown name', done.stderr)
+    for setting, name in (('output.derivatives=0', 'dq3'), ('output.coordinates=5', 'q3')):
+        left_out = run(mech9k, FIG1, '--table', 'none.dat', '--plot', name, '--set', setting, folder=folder)
+        checks.true(left_out.returncode == 2 and 'leave some out' in left_out.stderr, f'{name} is left out by {setting}',
+                    left_out.stderr)
+    checks.true('leave some out' not in done.stderr, 'where nothing is left out it is not said', done.stderr)
     checks.equal(os.listdir(folder), [], 'nothing is written then')
     for table, plot in (('a.gp', 'q1'), ('a.svg', 'a.svg:q1'), ('b/a.gp', 'b/a.png:q1')):
         done = run(mech9k, FIG1, '--table', table, '--plot', plot, folder=folder)
