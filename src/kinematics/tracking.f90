@@ -1,11 +1,12 @@
 !> Following a driven motion from output to output, through special positions or up to where it ends.
-!> Uses kinds, error, text, mechanism, plan, state, solver, conditioning, closure, watch, following,
+!> Uses kinds, error, text, mechanism, result_units, plan, state, solver, conditioning, closure, watch, following,
 !> special_position, passage, special_start, motion, planning.
 module mech9_tracking
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_solver, only: solve_rates, solve_accelerations
@@ -66,7 +67,7 @@ contains
       associate (block => plan%blocks(b), work => tracker%work(b))
         call factorize_trial(plan, block, tracker%state, work, tracker%watches(b))
         if (work%equations%conditioning() < singular) then
-          call leave_special(plan, block, special, tracker, err)
+          call leave_special(mechanism, plan, block, special, tracker, err)
           if (allocated(err)) return
           special = .true.
         else
@@ -86,7 +87,8 @@ contains
   end subroutine start_tracking
 
   !> Rates of a block that starts in a singular position, if it can leave it in one way only.
-  subroutine leave_special(plan, block, already, tracker, err)
+  subroutine leave_special(mechanism, plan, block, already, tracker, err)
+    type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     logical, intent(in) :: already                 !< a block before it does so too
@@ -105,7 +107,7 @@ contains
       text = text//', a dead point, where rates are not finite; start a little beside it'
     else if (ways%count == 2) then
       text = text//', where two branches meet: '
-      call append_rates(plan, block, ways, text)
+      call append_rates(mechanism, block, ways, text)
       text = text//'; start a little beside it, on the one that is meant'
     else if (ways%unclear .or. already) then
       text = text//', where it is not certain how it goes on; start a little beside it'
@@ -120,21 +122,22 @@ contains
   end subroutine leave_special
 
   !> Append the rates by which it could go on: "dq2 = 1, dq3 = 0.5 or dq2 = 1, dq3 = -0.5 (rad/s, m/s)".
-  pure subroutine append_rates(plan, block, ways, text)
-    type(plan_type), intent(in) :: plan
+  pure subroutine append_rates(mechanism, block, ways, text)
+    type(mechanism_type), intent(in) :: mechanism
     type(block_type), intent(in) :: block
     type(ways_type), intent(in) :: ways
     character(len=:), allocatable, intent(inout) :: text
-    integer :: way, i
+    integer :: way, i, k
 
     do way = 1, ways%count
       if (way > 1) text = text//' or '
       do i = 1, size(block%unknowns)
         if (i > 1) text = text//', '
-        text = text//'dq'//to_text(block%coordinates(i))//' = '//to_text(ways%rates(i, way), 5)
+        k = block%coordinates(i)
+        text = text//'dq'//to_text(k)//' = '//to_text(ways%rates(i, way)/unit_of(mechanism, k), 5)
       end do
     end do
-    text = text//' (rad/s, m/s)'
+    text = text//merge(' (rad/s, m/s)', ' (deg/s, m/s)', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
   end subroutine append_rates
 
   !> The way on from a special start.

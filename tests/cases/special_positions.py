@@ -173,6 +173,17 @@ def passed(s):
     s.checks.equal(values['special_positions_passed'], 3, 'and so does its JSON')
 
 
+def flat_start(s):
+    """A start in a flat position is refused with the rates of both ways: a parallelogram's coupler keeps its direction."""
+    done = s.run(four_bar((1.0, 0.4, 1.0, 0.4), (0.0, 240.0), 1.0, 10), '--table', '-')
+    s.checks.equal(done.returncode, 6, 'a flat start is refused')
+    rates = [{int(k): float(rate) for k, rate in re.findall(r'dq(\d) = ([-+.\deE]+)', way)}
+             for way in re.search(r'two branches meet: (.*) \(deg/s, m/s\)', done.stderr).group(1).split(' or ')]
+    expected = {2: -240.0, 3: 240.0, 4: 240.0}
+    s.checks.true(any(all(abs(way[k] - rate) <= 0.01 for k, rate in expected.items()) for way in rates),
+                  'the way of the parallelogram, in the units of the file', done.stderr)
+
+
 def end_of_table(s):
     """A drive by a table that ends just in the flat position of a parallelogram: rates there by their limit."""
     with open(os.path.join(s.folder, 'drive.txt'), 'w', encoding='utf-8') as file:
@@ -303,7 +314,7 @@ def flat_positions_of_motion(s):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Cases(os.path.abspath(sys.argv[1]), folder)
-        for case in (dead_point, escaping, ranges, passed, end_of_table, conditioning, conditioning_of_chains):
+        for case in (dead_point, escaping, ranges, passed, flat_start, end_of_table, conditioning, conditioning_of_chains):
             case(s)
         s.program = os.path.abspath(sys.argv[2])
         conditioning_of_motion(s)
