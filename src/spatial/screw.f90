@@ -114,7 +114,8 @@ contains
     do j = 1, n_slides
       slides(:, j) = a(4:6, n_turns + j)/norm2(a(4:6, n_turns + j))
     end do
+    ! one slide goes along the axis, and then no turning needs it; two go across
     screws = .false.
-    if (n_turns == 1) screws = abs(dot_product(a(1:3, 1), a(4:6, 1))) > tolerance
+    if (n_turns == 1 .and. mod(n_slides, 2) == 0) screws = abs(dot_product(a(1:3, 1), a(4:6, 1))) > tolerance
   end subroutine split_space
 end module mech9_screw

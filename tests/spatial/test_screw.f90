@@ -5,7 +5,7 @@ program test_screw
   use mech9_differentiation, only: half_width, derivatives_from_stencil
   use mech9_rotation, only: cross, about_axis
   use mech9_pose, only: pose_type, compose, inverse
-  use mech9_screw, only: bracket, moved_screw, generated_algebra, orthonormal_basis
+  use mech9_screw, only: bracket, moved_screw, generated_algebra, orthonormal_basis, split_space
   use mech9_random_geometry, only: random_vector, random_unit, random_pose, random_matrix
   use mech9_testing, only: tester_type
   implicit none
@@ -20,6 +20,7 @@ program test_screw
   call bracket_as_rate(test)
   call bases(test)
   call algebras(test)
+  call split_spaces(test)
   call test%finish()
 
 contains
@@ -261,4 +262,66 @@ contains
     end do
     call check_algebra(test, random, reshape([real(wp) ::], [6, 0]), 0, 'no joints')
   end subroutine algebras
+
+  !> Split the space of some screws, written in a random frame: how many directions there are, that the slides belong to
+  !> the space, the axis where there is one, and whether it turns only by screwing.
+  subroutine check_split(test, random, screws, n_turns, n_slides, by_screwing, axis, why)
+    type(tester_type), intent(inout) :: test
+    type(random_type), intent(inout) :: random
+    real(wp), intent(in) :: screws(:, :)
+    integer, intent(in) :: n_turns, n_slides
+    logical, intent(in) :: by_screwing
+    real(wp), intent(in) :: axis(3)              !< of its only turning, a unit vector
+    character(len=*), intent(in) :: why
+    type(pose_type) :: frame
+    real(wp) :: moved(6, size(screws, 2)), basis(6, 6), turns(3, 3), slides(3, 3)
+    integer :: rank, turning, sliding, i
+    logical :: screwing
+
+    frame = random_pose(random)
+    do i = 1, size(screws, 2)
+      moved(:, i) = moved_screw(frame, screws(:, i))
+    end do
+    call orthonormal_basis(moved, tolerance, basis, rank)
+    call split_space(basis(:, :rank), turns, turning, slides, sliding, screwing)
+    call test%is_true(turning == n_turns .and. sliding == n_slides, why//': turnings and slides')
+    call test%is_true(screwing .eqv. by_screwing, why//': whether it screws')
+    do i = 1, sliding
+      call test%near(norm2(slides(:, i)), 1.0_wp, round_off, why//': unit vectors')
+      call test%is_true(within(basis, rank, reshape(slide(slides(:, i)), [6, 1])), why//': a slide of the space')
+    end do
+    if (turning == 1) call test%near(abs(dot_product(turns(:, 1), matmul(frame%r, axis))), 1.0_wp, 10.0_wp*tolerance, &
+                                     why//': its axis')
+  end subroutine check_split
+
+  !> What the subgroups of rigid motions turn about and slide along.
+  subroutine split_spaces(test)
+    type(tester_type), intent(inout) :: test
+    type(random_type) :: random
+    real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], y(3) = [0.0_wp, 1.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
+    real(wp) :: p(3), basis(6, 6), turns(3, 3), slides(3, 3)
+    integer :: i, rank, turning, sliding
+    logical :: screwing
+
+    do i = 1, 20
+      p = random_vector(random)
+      call check_split(test, random, reshape(joint(z, p, 0.0_wp), [6, 1]), 1, 0, .false., z, 'one axis')
+      call check_split(test, random, reshape(joint(z, p, 0.3_wp), [6, 1]), 1, 0, .true., z, 'one helical axis')
+      call check_split(test, random, reshape([joint(z, p, 0.3_wp), slide(z)], [6, 2]), 1, 1, .false., z, 'cylindrical')
+      call check_split(test, random, reshape([joint(z, p, 0.0_wp), slide(x), slide(y)], [6, 3]), 1, 2, .false., z, 'planar')
+      call check_split(test, random, reshape([joint(z, p, 0.4_wp), slide(x), slide(y)], [6, 3]), 1, 2, .true., z, &
+                       'parallel screws of one pitch')
+      call check_split(test, random, reshape([joint(z, p, 0.4_wp), slide(x), slide(y), slide(z)], [6, 4]), 1, 3, .false., z, &
+                       'Schoenflies')
+      call check_split(test, random, reshape([joint(x, p, 0.0_wp), joint(y, p, 0.0_wp), joint(z, p, 0.0_wp)], [6, 3]), 3, 0, &
+                       .false., z, 'spherical')
+      call check_split(test, random, reshape([slide(x + p), slide(y)], [6, 2]), 0, 2, .false., z, 'two slides')
+    end do
+    ! as simple as can be: slides along the axes of the frame where these lie in their plane
+    call orthonormal_basis(reshape([joint(z, x + 2.0_wp*y, 0.0_wp), slide(x + y), slide(x - 2.0_wp*y)], [6, 3]), tolerance, &
+                           basis, rank)
+    call split_space(basis(:, :rank), turns, turning, slides, sliding, screwing)
+    call test%near(maxval(abs(abs(slides(:, 1)) - x)), 0.0_wp, round_off, 'planar: along x')
+    call test%near(maxval(abs(abs(slides(:, 2)) - y)), 0.0_wp, round_off, 'planar: along y')
+  end subroutine split_spaces
 end program test_screw
