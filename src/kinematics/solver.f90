@@ -145,16 +145,18 @@ contains
     work%factors_stay = block%is_constant
   end subroutine factorize_block
 
-  !> What was done for all blocks together.
-  pure function work_of(blocks) result(all)
+  !> What was done for all blocks together, and before them.
+  pure function work_of(blocks, before) result(all)
     type(block_work_type), intent(in) :: blocks(:)
+    type(work_count_type), intent(in), optional :: before   !< nothing unless given
     type(work_count_type) :: all
 
-    all%frames_placed = sum(blocks%count%frames_placed)
-    all%frames_moved = sum(blocks%count%frames_moved)
-    all%factorizations = sum(blocks%count%factorizations)
-    all%rates = sum(blocks%count%rates)
-    all%accelerations = sum(blocks%count%accelerations)
+    if (present(before)) all = before
+    all%frames_placed = all%frames_placed + sum(blocks%count%frames_placed)
+    all%frames_moved = all%frames_moved + sum(blocks%count%frames_moved)
+    all%factorizations = all%factorizations + sum(blocks%count%factorizations)
+    all%rates = all%rates + sum(blocks%count%rates)
+    all%accelerations = all%accelerations + sum(blocks%count%accelerations)
   end function work_of
 
   !> Frames that a block makes.

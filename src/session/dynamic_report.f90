@@ -12,7 +12,7 @@ module mech9_dynamic_report
   use mech9_plan, only: plan_type
   use mech9_recording, only: recording_outcome_type
   use mech9_integration_methods, only: integration_methods
-  use mech9_solver, only: work_count_type, work_of
+  use mech9_solver, only: work_count_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_dynamic_run, only: dynamic_run_type
   use mech9_run_words, only: duration, each, begin_report, add_structure
@@ -107,7 +107,7 @@ contains
     call facts%add('least_conditioning', run%conditioning%least, 'least singular value of any block: 0 is singular', '1')
     call facts%add('least_conditioning_time', run%conditioning%t, 'when it was that', 's')
     if (associated(run%system)) then
-      work = work_of(run%system%work%blocks)
+      work = run%work_done()
       call facts%add('frames_placed', work%frames_placed, 'poses of frames that were found in closing chains')
       call facts%add('factorizations', work%factorizations, 'Jacobians of blocks that were factorized')
       call facts%add('links_with_inertia', size(run%system%dynamics%bodies), 'links that the coefficients of motion have terms of')

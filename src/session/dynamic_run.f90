@@ -9,6 +9,7 @@ module mech9_dynamic_run
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
+  use mech9_solver, only: work_count_type, work_of
   use mech9_needs, only: needs_of_results, add_forces, leave_out
   use mech9_conditioning, only: conditioning_type
   use mech9_tracking, only: largest_closure
@@ -56,6 +57,7 @@ module mech9_dynamic_run
     real(wp) :: look_below = doubtful             !< conditioning at which other coordinates are looked for
     logical :: started = .false.
     type(integration_statistics_type) :: before   !< of the integrators before the present one
+    type(work_count_type) :: work_before          !< for the blocks of the systems before the present one
     real(wp) :: energy_at_start = 0.0_wp          !< [J]
     real(wp) :: largest_energy_change = 0.0_wp    !< of kinetic + potential, against the start [J]
     real(wp) :: worst_closure = 0.0_wp            !< [m]
@@ -63,6 +65,7 @@ module mech9_dynamic_run
   contains
     procedure :: row_at
     procedure :: statistics
+    procedure :: work_done
     procedure :: close => close_run
     procedure, private :: go_to
     procedure, private :: step
@@ -325,6 +328,15 @@ contains
     call add_statistics(self%aside%statistics(), .false., all)
   end function statistics
 
+  !> What was done for the blocks of all systems of the run, the present one included.
+  pure function work_done(self) result(all)
+    class(dynamic_run_type), intent(in) :: self
+    type(work_count_type) :: all
+
+    all = self%work_before
+    if (associated(self%system)) all = work_of(self%system%work%blocks, all)
+  end function work_done
+
   !> Add what an integrator took.
   pure subroutine add_statistics(own, goes_on, all)
     type(integration_statistics_type), intent(in) :: own
@@ -386,6 +398,7 @@ contains
     end if
     call self%stop_integrator()
     other%iterations = self%system%iterations
+    self%work_before = self%work_done()
     deallocate (self%system)
     allocate (self%system, source=other)
     call add_event(self%events, self%t, plan%independent)

@@ -3,13 +3,16 @@
 usage: work_counts.py MECH9K MECH9D
 """
 import os
+import re
 import sys
 import tempfile
 
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, run, table_and_report, table_of
+from mech9_cases import REFERENCE, Checks, run, table_and_report, table_of, text_of
+
+FIVE_BAR = os.path.join(REFERENCE, 'dynamics_fivebar.nml')
 
 # a crank-rocker; link 5 joins its coupler to the rocker 6, and link 8 the rocker 6 to the rocker 7: three chains,
 # each its own block
@@ -118,6 +121,43 @@ def test_blocks(case):
     checks.equal(plan.count('left out: no result or load depends on it'), 2, 'the plan says so')
 
 
+def renumbered(text, numbers):
+    """The same mechanism with other numbers of its coordinates."""
+    return re.sub(r'coordinate=(\d+)', lambda found: f'coordinate={numbers.get(int(found[1]), int(found[1]))}', text)
+
+
+def test_earlier_links(case):
+    """Chains that begin at link 1 and end on a link of an earlier chain need that chain, too."""
+    checks = case.checks
+    table = table_of(case.kinematics, case.file(SIX_AND_TWO, more=''))
+    numbers = {5: 6, 6: 5, 8: 9, 9: 8}
+    path = case.file(renumbered(SIX_AND_TWO.format(more=''), numbers))
+    plan = run(case.kinematics, path, '--plan').stdout
+    for ending in 'closes on link 3', 'closes on link 6':
+        checks.true(ending in plan, f'a chain {ending}', plan)
+    for old, blocks in (6, 2), (9, 3):
+        new = numbers[old]
+        less, report = table_and_report(case.kinematics, path, '--set', f'output.coordinates={new}')
+        checks.equal(len(report['blocks']), blocks, f'blocks for coordinate {new}, other numbers')
+        # another direction through the chain turns no coordinate
+        case.same({f'q{old}': less[f'q{new}'], f'dq{old}': less[f'dq{new}'], f'ddq{old}': less[f'ddq{new}']}, table,
+                  (POSITION, VELOCITY, ACCELERATION), f'coordinate {new}, other numbers')
+
+
+def test_pictures(case):
+    """Poses and pictures show all links, whatever coordinates are recorded."""
+    checks = case.checks
+    film = os.path.join(case.folder, 'film.html')
+    less = ('--set', 'output.coordinates=4', '--set', 'output.derivatives=0')
+    for program in case.kinematics, case.dynamics:
+        films = []
+        for settings in (), less:
+            done = run(program, case.file(SIX_AND_TWO, more=''), '--quiet', '--table', os.devnull, '--animate', film, *settings)
+            checks.equal(done.returncode, 0, f'a film; stderr: {done.stderr}')
+            films.append(text_of(film))
+        checks.true(len(films[0]) > 10000 and films[0] == films[1], f'{os.path.basename(program)}: the same film')
+
+
 def test_derivatives(case):
     """Accelerations that are not recorded are not found, and rates of points neither."""
     checks = case.checks
@@ -130,6 +170,8 @@ def test_derivatives(case):
         # velocities of ten frames at each position, and accelerations at most at the start
         checks.true(report['frames_moved'] <= 10*report['positions'] + 10, 'velocities of frames', report['frames_moved'])
         checks.true(report['frames_moved'] < whole['frames_moved'], 'frames are moved less', report['frames_moved'])
+        checks.true(report['newton_iterations'] < 1.3*whole['newton_iterations'], 'rates alone predict nearly as well',
+                    [report['newton_iterations'], whole['newton_iterations']])
         names = ['t'] + [f'{order}q{k}' for order in orders for k in range(1, 11)]
         names += ['P.' + order + axis for order in ('', 'v')[:derivatives + 1] for axis in 'xyz'] + ['closure']
         checks.equal(list(less), names, f'columns with {derivatives} derivatives')
@@ -217,6 +259,22 @@ def test_dynamics(case):
     checks.true('zero, or on link 1 alone, left out: loads 1, 2' in plan, 'the plan says so', plan)
     loaded = case.file(SIX_AND_TWO, more="&output coordinates=3 /\n&load kind='coordinate', coordinate=10, damping=0.1 /\n")
     checks.true('left out: no result' not in run(case.dynamics, loaded, '--plan').stdout, 'a load is a reason to solve')
+    spring = exact + "&load kind='spring', links=1,8, position=0,1,0, second_position=0.1,0,0, stiffness=100, free_length=0.1 /\n"
+    path = case.file(SIX_AND_TWO, more=spring)
+    sprung, less = table_of(case.dynamics, path), table_of(case.dynamics, path, '--set', 'output.coordinates=1')
+    checks.true(np.max(np.abs(sprung['q1'] - table['q1'])) > 1e-3, 'a spring on a link of the last chain')
+    case.same(less, sprung, (1e-9, 1e-9, 1e-9), 'what a spring holds is followed')
+
+
+def test_changed_coordinates(case):
+    """Counts go on where other coordinates become the independent ones."""
+    report = table_and_report(case.dynamics, FIVE_BAR, '--set', 'time.end=5')[1]
+    case.checks.true(len(report['events']) > 3, 'it changes coordinates', report['events'])
+    case.checks.true(report['factorizations'] >= report['evaluations'], 'its block is factorized in each evaluation',
+                     [report['factorizations'], report['evaluations']])
+    # five coordinates make five frames, those of one loop
+    case.checks.true(report['frames_placed'] >= 5*report['steps'], 'and closed after each step',
+                     [report['frames_placed'], report['steps']])
 
 
 def test_refused(case):
@@ -234,11 +292,14 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         case = Case(checks, folder, os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
         test_blocks(case)
+        test_earlier_links(case)
+        test_pictures(case)
         test_derivatives(case)
         test_frames(case)
         test_constants(case)
         test_open_chains(case)
         test_dynamics(case)
+        test_changed_coordinates(case)
         test_refused(case)
     checks.finish()
 
