@@ -184,6 +184,43 @@ def flat_start(s):
                   'the way of the parallelogram, in the units of the file', done.stderr)
 
 
+def positions_only(s):
+    """Without accelerations, or rates, the same positions and the same ends: what lies ahead is seen as well."""
+    flat = (1.0, 0.4, 1.0, 0.4)
+    table = 60.0 + 12.0 * np.arange(11)
+    with open(os.path.join(s.folder, 'drive.txt'), 'w', encoding='utf-8') as file:
+        file.writelines(f'{i / 10!r} {value!r}\n' for i, value in enumerate(table.tolist()))
+    motions = {f'a parallelogram, {n} intervals': four_bar(flat, (60.0, 240.0, 30.0), 2.25, n) for n in (3, 54, 777)}
+    motions.update({f'a dead point, {n} intervals': four_bar((1.2, 0.7, 0.9, 0.4), (40.0, 100.0), 3.0, n)
+                    for n in (3, 50, 4000)})
+    motions.update({f'an escape, {n} intervals': SLOT.format(intervals=n) for n in (3, 30, 3000)})
+    motions['the end of a table'] = four_bar(flat, (60.0, 0.0), 1.0, 30).replace(
+        "kind='polynomial', coefficients=60.0, 0.0", "kind='table', file='drive.txt'")
+    report = os.path.join(s.folder, 'report.json')
+    for why, text in motions.items():
+        done = s.run(text, '--table', '-', '--report', report)
+        whole, counts = read_table(done.stdout), json.loads(text_of(report))
+        for derivatives in (0, 1):
+            less = s.run(text, '--table', '-', '--report', report, '--set', f'output.derivatives={derivatives}')
+            case = f'{why}, {derivatives} derivatives'
+            s.checks.equal(less.returncode, done.returncode, f'{case}: the same exit code')
+            s.checks.equal(re.findall(r'cannot go on.*', less.stderr), re.findall(r'cannot go on.*', done.stderr),
+                           f'{case}: for the same reason at the same time')
+            found = json.loads(text_of(report))
+            s.checks.equal(found['special_positions_passed'], counts['special_positions_passed'],
+                           f'{case}: passes as many special positions')
+            if len(whole['t']) > 500:
+                s.checks.true(found['acceleration_solutions'] < 0.5 * counts['acceleration_solutions'],
+                              f'{case}: it goes on without accelerations beyond them', found['acceleration_solutions'])
+            table = read_table(less.stdout)
+            if not s.checks.equal(list(table['t']), list(whole['t']), f'{case}: the same times'):
+                continue
+            for name in table:
+                if name[0] == 'q':
+                    # beside and in a special position they are those of a polynomial through positions near by
+                    s.checks.near(table[name], whole[name], LIMIT, f'{case}: {name}')
+
+
 def end_of_table(s):
     """A drive by a table that ends just in the flat position of a parallelogram: rates there by their limit."""
     with open(os.path.join(s.folder, 'drive.txt'), 'w', encoding='utf-8') as file:
@@ -314,7 +351,8 @@ def flat_positions_of_motion(s):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Cases(os.path.abspath(sys.argv[1]), folder)
-        for case in (dead_point, escaping, ranges, passed, flat_start, end_of_table, conditioning, conditioning_of_chains):
+        for case in (dead_point, escaping, ranges, passed, flat_start, positions_only, end_of_table, conditioning,
+                     conditioning_of_chains):
             case(s)
         s.program = os.path.abspath(sys.argv[2])
         conditioning_of_motion(s)
