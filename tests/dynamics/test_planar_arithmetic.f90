@@ -51,10 +51,11 @@ contains
     call compare(mechanism, .true., 'two freedoms')
   end subroutine known_mechanisms
 
-  !> Two loops with sliding pairs and an open end, in the plane z = 0 and turned into any other, the links
-  !> at different heights, a pair given either way round.
+  !> Two loops with sliding pairs and an open end, driven by turning and by sliding, and a loop on a turning link; in the
+  !> plane z = 0 and turned into any other, the links at different heights, a pair given either way round.
   subroutine any_plane()
     integer, parameter :: links(2, 8) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 3, 5, 6, 5, 6, 1, 5, 7], [2, 8])
+    integer, parameter :: on_link_2(2, 5) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 2], [2, 5])
     type(mechanism_type) :: mechanism
     type(random_type) :: random
     type(axis_type) :: axes(8)
@@ -78,6 +79,13 @@ contains
       call home_mechanism(7, links, axes, [1, 8], mechanism)
       call load_everything(random, mechanism)
       call compare(mechanism, .true., 'any plane')
+      call home_mechanism(7, links, axes, [2, 8], mechanism)
+      call load_everything(random, mechanism)
+      call compare(mechanism, .true., merge('any plane, driven by a slide', 'any plane, driven by a hinge', &
+                                            axes(2)%slides))
+      call home_mechanism(5, on_link_2, axes(:5), [1, 2], mechanism)
+      call load_everything(random, mechanism)
+      call compare(mechanism, .true., 'a loop on a turning link')
     end do
   end subroutine any_plane
 
