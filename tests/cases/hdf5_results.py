@@ -6,6 +6,7 @@ What stands in both must agree to the last bit: both are written from the same r
 """
 import json
 import os
+import re
 import resource
 import shutil
 import signal
@@ -170,6 +171,22 @@ def test_parts(session):
                     checks.near(table[f'q{k}'], whole[f'q{k}'], 1e-12, f'{why}: q{k} is that of the whole run')
 
 
+def test_poses_of_all(session):
+    """Poses are those of all links, whatever coordinates are recorded."""
+    data = session.path('no_points.nml')
+    with open(data, 'w', encoding='utf-8') as file:
+        file.write(re.sub(r'&point[^/]*/', '', text_of(FIG1)))
+    found = []
+    for settings in [], ['--set', 'output.coordinates=6', '--set', 'output.derivatives=0']:
+        path = session.both(session.mech9k, data, '--set', 'output.poses=.true.', *settings)[1]
+        with h5py.File(path, 'r') as file:
+            found.append((file['rotation'][:], file['origin'][:]))
+    session.checks.true(np.all(np.ptp(found[0][0], axis=0).max(axis=(1, 2))[1:] > 0.1), 'all links but the frame turn')
+    for whole, part in zip(*found):
+        # chains are closed to round-off, in either run
+        session.checks.near(part, whole, 1e-12, 'the poses of all links')
+
+
 def test_dynamics(session):
     checks = session.checks
     table, path = session.both(session.mech9d, DYNAMIC_FIG1)
@@ -305,6 +322,7 @@ def main():
         test_fig1(session, version)
         test_units(session)
         test_parts(session)
+        test_poses_of_all(session)
         test_dynamics(session)
         test_dead_point(session)
         test_compression(session)

@@ -2,6 +2,7 @@
 
 usage: work_counts.py MECH9K MECH9D
 """
+import json
 import os
 import re
 import sys
@@ -13,6 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from mech9_cases import REFERENCE, Checks, run, table_and_report, table_of, text_of
 
 FIVE_BAR = os.path.join(REFERENCE, 'dynamics_fivebar.nml')
+LOOSE = ('--set', 'time.end=5', '--set', 'time.intervals=1', '--set', 'solver.relative_tolerance=1e-5')
 
 # a crank-rocker; link 5 joins its coupler to the rocker 6, and link 8 the rocker 6 to the rocker 7: three chains,
 # each its own block
@@ -268,13 +270,29 @@ def test_dynamics(case):
 
 def test_changed_coordinates(case):
     """Counts go on where other coordinates become the independent ones."""
+    checks = case.checks
     report = table_and_report(case.dynamics, FIVE_BAR, '--set', 'time.end=5')[1]
-    case.checks.true(len(report['events']) > 3, 'it changes coordinates', report['events'])
-    case.checks.true(report['factorizations'] >= report['evaluations'], 'its block is factorized in each evaluation',
-                     [report['factorizations'], report['evaluations']])
+    checks.true(len(report['events']) > 3, 'it changes coordinates', report['events'])
+    checks.true(report['factorizations'] >= report['evaluations'], 'its block is factorized in each evaluation',
+                [report['factorizations'], report['evaluations']])
+    text = run(case.dynamics, FIVE_BAR, '--table', os.devnull, '--report', os.path.join(case.folder, 'r.json'), *LOOSE).stderr
+    with open(os.path.join(case.folder, 'r.json'), encoding='utf-8') as file:
+        loose = json.load(file)
+    # long steps come to singular positions, and are refused there
+    checks.true(loose['refusals'] > 0, 'steps that are refused are counted', loose['refusals'])
+    again = loose['error_test_failures'] + loose['convergence_failures'] + loose['refusals']
+    checks.true(f"{loose['steps']} steps, {again} made again" in text, 'and in words, with the others', text)
+    # where other coordinates are taken, between two rows, the conditioning jumps up
+    table, report_of_second = table_and_report(case.dynamics, FIVE_BAR, '--set', 'time.end=1', '--set', 'time.intervals=4000',
+                                               '--set', 'output.conditioning=.true.')
+    jumps = np.flatnonzero(table['conditioning'][1:] > 2*table['conditioning'][:-1])
+    times = np.array([event['t'] for event in report_of_second['events']])
+    if checks.equal(len(jumps), len(times), 'the conditioning jumps at each change'):
+        checks.true(np.all(table['t'][jumps] <= times + 1e-12) and np.all(times < table['t'][jumps + 1]),
+                    'changes are told when they happen', [list(table['t'][jumps]), list(times)])
     # five coordinates make five frames, those of one loop
-    case.checks.true(report['frames_placed'] >= 5*report['steps'], 'and closed after each step',
-                     [report['frames_placed'], report['steps']])
+    checks.true(report['frames_placed'] >= 5*report['steps'], 'and closed after each step',
+                [report['frames_placed'], report['steps']])
 
 
 def test_refused(case):
