@@ -2,7 +2,7 @@
 !> Uses error, text, mechanism, the sinks of the output and pictures floors, command_line, hdf5_record, version.
 module mech9_results
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
@@ -76,10 +76,6 @@ contains
     self%table_path = path_of(options, 'table', mechanism%output%table)
     self%hdf5_path = path_of(options, 'hdf5', mechanism%output%hdf5)
     if (self%table_path == '' .and. self%hdf5_path == '' .and. .not. needs_no_table(options)) self%table_path = '-'
-    if (self%table_path == self%hdf5_path .and. self%table_path /= '') then
-      call raise(err, exit_usage, "the table and the HDF5 file cannot both be '"//self%table_path//"'")
-      return
-    end if
     ! a wrong name in a plot is found before a file is touched
     call self%open_plots(options, mechanism, columns, plots, err)
     if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(mechanism, program_name, columns, err)

@@ -1,5 +1,6 @@
 !> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
-!> Uses command_line, system, the input floor, structure_text, run_words, task, choice_check, unused_options, version.
+!> Uses command_line, system, the input floor, structure_text, run_words, task, choice_check, unused_options,
+!> overwriting, version.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type, exit_done
@@ -23,6 +24,7 @@ module mech9_session
   use mech9_run_words, only: save_short_report
   use mech9_choice_check, only: judge_choice_of
   use mech9_unused_options, only: print_unused_options
+  use mech9_overwriting, only: refuse_overwriting
   implicit none
   private
   public :: carry_out, run_file, asks_for_text
@@ -86,6 +88,7 @@ contains
     type(structural_vectors_type) :: vectors
     type(mechanism_type) :: mechanism
     type(string_type), allocatable :: settings(:)
+    type(error_type), allocatable :: err
     logical :: legible, reported
     integer :: i
 
@@ -93,6 +96,12 @@ contains
     call catch_size_limit()
     if (.not. answers_only(options)) call catch_interrupts()
     call read_document(path, document, diagnostics)
+    call refuse_overwriting(options, diagnostics%sources, err)
+    if (allocated(err)) then
+      write (error_unit, '(3a)') task%program_name, ': ', err%message
+      code = err%code
+      return
+    end if
     call options%arguments('set', settings)
     do i = 1, size(settings)
       call apply_setting(document, settings(i)%text, diagnostics)
@@ -107,7 +116,10 @@ contains
       call read_mechanism(document, task%needs_drives, mechanism, diagnostics)
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, mechanism)
-        call task%work(options, mechanism, diagnostics, reported, kept)
+        call refuse_overwriting(options, diagnostics%sources, err, mechanism%output)
+        reported = allocated(err)
+        if (allocated(err)) call diagnostics%add_error(err)
+        if (.not. allocated(err)) call task%work(options, mechanism, diagnostics, reported, kept)
       else if (legible .and. task%needs_drives) then
         call judge_choice_of(document, diagnostics, choice)
       end if

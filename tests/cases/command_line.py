@@ -219,6 +219,30 @@ def without_effect(s):
         s.checks.true('without effect' not in done.stderr, f'{words}: all have effect', done.stderr)
 
 
+def overwriting(s):
+    """What is read is not written over, by whatever name; nor one result by another."""
+    data = s.write('mine.nml', text_of(FIG1))
+    os.makedirs(s.path('beside'))
+    os.symlink(data, s.path('link.dat'))
+    kept = text_of(data)
+    for words in (['--table', data], ['--hdf5', 'mine.nml'], ['--table', 'beside/../mine.nml'], ['--table', 'link.dat'],
+                  ['--report', 'mine.nml', '--check'], ['--graph', 'mine.nml'], ['--set', 'output.table=mine.nml']):
+        s.ends(USAGE, ' '.join(words), data, *words, says='would overwrite')
+        s.checks.true(text_of(data) == kept, f'{words}: the data file is as it was')
+    driven = s.write('driven.nml', kept.replace("kind='polynomial', coefficients=0.5, 6.0", "kind='table', file='motion.txt'"))
+    motion = ''.join(f'{i / 4} {0.5 + i}\n' for i in range(5))
+    s.write('motion.txt', motion)
+    s.ends(DONE, 'a drive from a table', driven, '--no-write')
+    s.ends(USAGE, 'a table over the drive', driven, '--table', 'motion.txt', says='would overwrite')
+    s.checks.equal(text_of(s.path('motion.txt')), motion, 'the drive is as it was')
+    for words in (['--table', 'twice', '--hdf5', 'twice'], ['--table', 'twice', '--report', 'twice'],
+                  ['--set', 'output.hdf5=twice', '--report', 'twice']):
+        s.ends(USAGE, ' '.join(words), FIG1, *words, says="cannot both be 'twice'")
+        s.checks.true(not s.exists('twice'), f'{words}: nothing is written')
+    s.ends(DONE, 'what is not written overwrites nothing', data, '--check', '--table', 'mine.nml')
+    s.checks.equal(text_of(data), kept, 'nor does it')
+
+
 def bad_data(s):
     text = text_of(FIG1)
     done = s.ends(DATA, 'a misspelt kind', s.write('kind.nml', text.replace("'revolute'", "'revolutte'", 1)),
@@ -288,8 +312,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Session(program, folder)
         help_and_version(s, version)
-        for part in (wrong_use, structure, tables, settings, answers, talk, short_reports, without_effect, bad_data, cannot_move,
-                     degrees):
+        for part in (wrong_use, structure, tables, settings, answers, talk, short_reports, without_effect, overwriting, bad_data,
+                     cannot_move, degrees):
             part(s)
         s.checks.finish()
 
