@@ -110,6 +110,7 @@ contains
   subroutine take_leave(conversation, code)
     type(conversation_type), intent(inout) :: conversation
     integer, intent(out) :: code
+    character(len=:), allocatable :: missing
 
     code = exit_done
     if (conversation%state == finished) return
@@ -124,8 +125,10 @@ contains
       end if
     else if (code == exit_interrupted) then
       if (is_terminal(standard_input)) return
-      write (error_unit, '(a)') conversation%program_name//': no data file is given and nothing was answered; '// &
-        conversation%program_name//' FILE runs one, '//conversation%program_name//' --help tells more'
+      missing = 'nothing was answered'
+      if (conversation%data_path == '') missing = 'no data file is given and nothing was answered'
+      write (error_unit, '(a)') conversation%program_name//': '//missing//'; '//conversation%program_name// &
+        ' FILE runs a data file, '//conversation%program_name//' --help tells more'
       code = exit_usage
     end if
   end subroutine take_leave

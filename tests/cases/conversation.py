@@ -201,6 +201,9 @@ def edited_files(talks):
                 tables.append(rows_of(os.path.join(folder, path + '.dat')))
             talks.checks.true(tables[0] == tables[1], f'--edit {name}: the same table from the copy')
     with tempfile.TemporaryDirectory() as folder:
+        done = piped(talks.mech9k, '--edit', os.path.join(TREE, 'examples', 'fig1', 'fig1.nml'), folder=folder, answers='')
+        talks.checks.true(done.returncode == USAGE and 'nothing was answered' in done.stderr
+                          and 'no data file is given' not in done.stderr, '--edit without answers', done.stderr)
         # this file has no exclamation mark that begins no comment
         shutil.copy(os.path.join(TREE, 'examples', 'fig1', 'fig1.nml'), folder)
         inside = sum('!' in line and not line.startswith('!') for line in text_of(os.path.join(folder, 'fig1.nml')).splitlines())
