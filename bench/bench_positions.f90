@@ -1,17 +1,17 @@
 !> Time per position of driven mechanisms, against the closed form of the four-bar linkage in the same run.
 !>
 !> usage: bench_positions TREE full|quick
-!> Prints a line of names and a row for each mechanism: its name, microseconds a position for closing the chains
-!> alone and with velocities, accelerations and one point, and the ratios of both to the closed form.
+!> Prints a line of names and a row for each mechanism: its name, microseconds a position for positions
+!> only and for velocities and accelerations too, each with one point, and the ratios of both to the closed form.
 program bench_positions
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_error, only: error_type
   use mech9_clock, only: seconds
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block
-  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs
+  use mech9_needs, only: needs_of_results, leave_out
+  use mech9_tracking, only: tracker_type, start_tracking, advance
   use mech9_motion, only: point_motion
   use mech9_kinematic_run, only: assemble_start
   use mech9_closed_four_bar, only: four_bar_position, four_bar_motion
@@ -28,7 +28,7 @@ contains
     tree = argument(1)
     passes = merge(3, 15, argument(2) == 'quick')
     positions = merge(500, 10000, argument(2) == 'quick')
-    print '(a)', 'mechanism closing_us motion_us closing_ratio motion_ratio error'
+    print '(a)', 'mechanism position_us motion_us position_ratio motion_ratio error'
     call time_closed_form(passes, positions, closed)
     print '(a,2f12.5,2f10.2,a)', 'closed_form', closed, 1.0, 1.0, ' 0'
     call time_mechanism('four_bar', tree//'/bench/data/four_bar.nml', passes, positions, closed)
@@ -82,8 +82,9 @@ contains
     mechanism%time%intervals = positions
     call assemble_start(mechanism, plan, start, err)
     call stop_at(err, name)
+    call leave_out(plan, needs_of_results(mechanism))
     do pass = 1, passes
-      call time_closing(mechanism, plan, start, each(1, pass))
+      call time_positions(mechanism, plan, start, each(1, pass))
       call time_motion(mechanism, plan, start, name == 'four_bar', each(2, pass), error)
     end do
     each = each/positions*1.0e6_wp
@@ -91,46 +92,28 @@ contains
       median(each(2, :))/closed(2), error
   end subroutine time_mechanism
 
-  !> Positions alone: extrapolated through the last three, then closed by Newton's method. The branch is not watched.
-  subroutine time_closing(mechanism, plan, start, time)
+  !> Positions of all coordinates and of the last point, the branch watched.
+  subroutine time_positions(mechanism, plan, start, time)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start
     real(wp), intent(out) :: time   !< [s]
-    type(block_work_type) :: work(size(plan%blocks))
-    type(state_type) :: state
-    type(newton_outcome_type) :: outcome
+    type(tracker_type) :: tracker
     type(error_type), allocatable :: err
-    real(wp), dimension(plan%n_coordinates) :: first, second, third
-    real(wp) :: begin
-    integer :: b, i
+    real(wp) :: begin, positions(3, mechanism%time%intervals)
+    integer :: i
 
-    do b = 1, size(work)
-      work(b) = new_block_work(plan%blocks(b))
-    end do
-    state = start
-    first = start%q
-    second = first
-    third = first
-    begin = seconds()
-    outcome%converged = .true.
-    positions: do i = 1, mechanism%time%intervals
-      state%q = 3.0_wp*(first - second) + third
-      state%t = mechanism%time%time(i)
-      call set_inputs(mechanism, state%t, state%q, state%dq, state%ddq, err)
-      if (allocated(err)) exit
-      do b = 1, size(plan%blocks)
-        call close_block(plan, plan%blocks(b), state, work(b), outcome, err)
-        if (allocated(err) .or. .not. outcome%converged) exit positions
-      end do
-      third = second
-      second = first
-      first = state%q
-    end do positions
-    time = seconds() - begin
-    if (.not. (allocated(err) .or. outcome%converged)) call raise(err, exit_singular, 'a position was not closed')
+    call start_tracking(mechanism, plan, start, mechanism%time%start, tracker, err, with_accelerations=.false.)
     call stop_at(err, mechanism%title)
-  end subroutine time_closing
+    begin = seconds()
+    do i = 1, mechanism%time%intervals
+      call advance(mechanism, plan, tracker, mechanism%time%time(i), err)
+      if (allocated(err)) exit
+      call point_motion(plan, tracker%state, mechanism%points(size(mechanism%points)), positions(:, i))
+    end do
+    time = seconds() - begin
+    call stop_at(err, mechanism%title)
+  end subroutine time_positions
 
   !> Positions, velocities, accelerations of all coordinates and of the last point, the branch watched.
   subroutine time_motion(mechanism, plan, start, compare, time, error)

@@ -10,7 +10,7 @@ machine() {
 # name, median times and ratios of each mechanism
 position_table() {
   cat <<'EOT'
-| mechanism | links, coordinates | chains closed [µs] | ratio | with velocities, accelerations and a point [µs] | ratio |
+| mechanism | links, coordinates | positions [µs] | ratio | with velocities, accelerations and a point [µs] | ratio |
 | --- | --- | --- | --- | --- | --- |
 EOT
   awk '
@@ -80,8 +80,8 @@ Times are medians on one core. Other machines have other times: what carries ove
 
 Driven mechanisms over one cycle. The four-bar linkage (0.40, 0.15, 0.35, 0.30 m) is also written by hand in closed form, for this
 one mechanism only (\`bench/closed_four_bar.f90\`); ratios are to that. The six-bar is the same four-bar with two
-links more. *Chains closed* is Newton's method alone, from positions extrapolated; the other column is what \`mech9k\` computes of a
-position besides writing it, the branch watched.
+links more. Both columns are what \`mech9k\` computes of a position besides writing it, the branch watched: with \`&output
+derivatives=0\`, and with all derivatives.
 
 $(position_table)
 

@@ -9,11 +9,11 @@ module mech9_past_rates
   public :: past_rates_type, new_past_rates, forget_rates, take_rates
 
   !> Positions before the last one that are kept.
-  integer, parameter :: most = 4
+  integer, parameter :: most = 3
   !> Distances are the same within this part of the shortest.
   real(wp), parameter :: same = 1.0e-11_wp
   !> Of t, t^2, ... in the rates: t^2/2, t^3/3, ... in the coordinates, the first of these the acceleration.
-  real(wp), parameter :: per_power(most) = [1.0_wp, 1.0_wp/3.0_wp, 0.25_wp, 0.2_wp]
+  real(wp), parameter :: per_power(most) = [1.0_wp, 1.0_wp/3.0_wp, 0.25_wp]
 
   type :: past_rates_type
     integer :: count = 0                      !< rates that are kept
@@ -41,7 +41,7 @@ contains
   end subroutine forget_rates
 
   !> Take the rates at time t, and give the polynomial of the coordinates about it: q + dq h + ddq h^2/2 + higher(:, 1)
-  !> h^3 + higher(:, 2) h^4 + higher(:, 3) h^5. Without a past, what stands in `ddq` and `higher` is left.
+  !> h^3 + higher(:, 2) h^4, and no term of h^5. Without a past, what stands in `ddq` and `higher` is left.
   pure subroutine take_rates(past, t, dq, ddq, higher)
     type(past_rates_type), intent(inout) :: past
     real(wp), intent(in) :: t
@@ -112,7 +112,7 @@ contains
       ddq(k) = c(1)
       higher(k, 1) = c(2)
       higher(k, 2) = c(3)
-      higher(k, 3) = c(4)
+      higher(k, 3) = 0.0_wp
     end do
   end subroutine combine
 end module mech9_past_rates

@@ -11,7 +11,7 @@ module mech9_planar_chain
   use mech9_planar_closure, only: move_to_base, stem_difference
   implicit none
   private
-  public :: planar_chain_type, new_planar_chain, chain_jacobian, chain_motion
+  public :: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
 
   type :: planar_chain_type
     logical :: used = .false.
@@ -67,6 +67,21 @@ contains
               1.0_wp/planar%length, size(planar%steps), planar%steps, motion%pose, motion%slide, jacobian)
   end subroutine chain_jacobian
 
+  !> Rates of the three coordinates and velocities of the frames, from those of the given coordinates and of the
+  !> blocks before.
+  pure subroutine chain_rates(planar, chain, inverse, dq, motion)
+    type(planar_plan_type), intent(in) :: planar
+    type(planar_chain_type), intent(in) :: chain
+    real(wp), intent(in) :: inverse(3, 3)                  !< of the Jacobian
+    real(wp), intent(inout), contiguous :: dq(:)           !< (M)
+    type(planar_motion_type), intent(inout) :: motion
+    real(wp) :: swing(2)
+
+    call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
+              chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+              dq, motion%velocity, swing)
+  end subroutine chain_rates
+
   !> Rates and accelerations of the three coordinates, velocities and accelerations of the frames, from those of the
   !> given coordinates and of the blocks before.
   pure subroutine chain_motion(planar, chain, inverse, dq, ddq, motion)
@@ -76,9 +91,14 @@ contains
     real(wp), intent(inout), contiguous :: dq(:), ddq(:)   !< (M)
     type(planar_motion_type), intent(inout) :: motion
 
+    real(wp) :: swing(2)
+
     call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
               chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-              dq, ddq, motion%velocity, motion%acceleration)
+              dq, motion%velocity, swing)
+    call accelerate(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
+                    chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+                    dq, swing, motion%velocity, ddq, motion%acceleration)
   end subroutine chain_motion
 
   ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
@@ -108,19 +128,33 @@ contains
   end subroutine fill
 
   pure subroutine move(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
-                       dq, ddq, v, a)
+                       dq, v, swing)
     type(planar_chain_type), intent(in) :: chain
     type(planar_closure_type), intent(in) :: closure
     integer, intent(in) :: first, last, n_given, given(n_given), m
     real(wp), intent(in) :: signs(first:last), per_length, inverse(3, 3), f(4, 0:m), slide(2, m)
     type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(inout) :: dq(m), ddq(m), v(3, 0:m), a(3, 0:m)
-    real(wp) :: opening(3), swing(2)
+    real(wp), intent(inout) :: dq(m), v(3, 0:m)
+    real(wp), intent(out) :: swing(2)               !< as the loop would open if it only kept the velocities
+    real(wp) :: opening(3)
 
     call stem_difference(m, chain%stems, f(3:4, closure%closing), f, v, opening(1), opening(2), opening(3))
     call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, dq, opening)
     call close_rates(chain, closure, per_length, inverse, m, f, opening, dq)
     call find_velocities(first, last, signs, m, steps, f, slide, dq, v, swing)
+  end subroutine move
+
+  pure subroutine accelerate(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
+                             dq, swing, v, ddq, a)
+    type(planar_chain_type), intent(in) :: chain
+    type(planar_closure_type), intent(in) :: closure
+    integer, intent(in) :: first, last, n_given, given(n_given), m
+    real(wp), intent(in) :: signs(first:last), per_length, inverse(3, 3), f(4, 0:m), slide(2, m)
+    type(planar_step_type), intent(in) :: steps(m)
+    real(wp), intent(in) :: dq(m), swing(2), v(3, 0:m)
+    real(wp), intent(inout) :: ddq(m), a(3, 0:m)
+    real(wp) :: opening(3)
+
     call stem_difference(m, chain%stems, f(3:4, closure%closing), f, a, opening(1), opening(2), opening(3))
     call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, ddq, opening)
     ! what the target carries along swings about it
@@ -128,7 +162,7 @@ contains
     opening(3) = opening(3) + swing(2) + v(1, closure%target)**2*(f(4, closure%closing) - f(4, closure%target))
     call close_rates(chain, closure, per_length, inverse, m, f, opening, ddq)
     call find_accelerations(m, steps, first, chain%last_moved, dq, ddq, f, slide, v, a)
-  end subroutine move
+  end subroutine accelerate
 
   !> Add by how much the given coordinates' rates open the chain at a place: an angle and a way.
   pure subroutine add_given(n, given, first, last, signs, place, m, steps, f, slide, rates, opening)

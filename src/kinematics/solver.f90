@@ -8,7 +8,7 @@ module mech9_solver
   use mech9_state, only: state_type, velocity_known, acceleration_known
   use mech9_composition, only: place_frames, nudge_frames
   use mech9_closure, only: closure_errors, closure_jacobian, closure_rates
-  use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_motion
+  use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
   use mech9_motion, only: spread_velocities, spread_accelerations
   implicit none
   private
@@ -185,8 +185,13 @@ contains
     type(block_work_type), intent(inout) :: work
     real(wp), intent(out), optional :: remainder   !< what no rates of the unknowns can make up for
 
-    if (present(remainder)) remainder = 0.0_wp
     work%count%rates = work%count%rates + 1
+    if (work%chain%used .and. work%equations%by_cofactors .and. .not. present(remainder)) then
+      call chain_rates(plan%planar, work%chain, work%equations%inverse, state%dq, state%planar)
+      work%count%frames_moved = work%count%frames_moved + steps_of(block)
+      return
+    end if
+    if (present(remainder)) remainder = 0.0_wp
     call clear_at(size(block%unknowns), block%coordinates, state%dq)
     if (block%equations == 0) then
       call spread_velocities(plan, block%first_step, block%last_step, state)
