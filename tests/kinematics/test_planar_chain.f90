@@ -8,7 +8,7 @@ program test_planar_chain
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates, solve_accelerations, solve_motion
-  use mech9_sample_mechanisms, only: fig1
+  use mech9_sample_mechanisms, only: fig1, new_mechanism, add_revolute, add_prismatic, frame
   use mech9_planar_mechanisms, only: four_bar_type, random_crank, slider_crank, watt_six_bar
   use mech9_testing, only: tester_type
   implicit none
@@ -25,6 +25,8 @@ program test_planar_chain
     bar = random_crank(random, 0.3_wp)
     call watt_six_bar(bar, [0.4_wp, 0.3_wp], [2.0_wp, 0.5_wp], [2.0_wp, 1.8_wp], random%symmetric(), 1, 1, mechanism)
     call check_same_motion(mechanism, 2, 'a six-bar')
+    call swinging_guide(0.3_wp, 0.7_wp, 3.0_wp*random%symmetric(), mechanism)
+    call check_same_motion(mechanism, 1, 'a slide on a link that turns')
   end do
   call fig1(5, mechanism)
   call check_same_motion(mechanism, 2, 'Fig. 1')
@@ -33,6 +35,25 @@ program test_planar_chain
   call test%finish()
 
 contains
+
+  !> A block on the crank's pin slides along a guide that swings about a fixed pin.
+  subroutine swinging_guide(crank, ground, angle, mechanism)
+    real(wp), intent(in) :: crank, ground        !< lengths [m]
+    real(wp), intent(in) :: angle                !< of the crank [rad]
+    type(mechanism_type), intent(out) :: mechanism
+    real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
+    integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 4, 3, 1, 4], [2, 4])
+    real(wp) :: way(2), guide
+
+    call new_mechanism(4, links, [1], mechanism)
+    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(mechanism, 2, 2, 3, frame(crank*x, z), frame(origin, z))
+    call add_prismatic(mechanism, 3, 4, 3, frame(origin, x), frame(origin, x))
+    call add_revolute(mechanism, 4, 1, 4, frame(ground*x, z), frame(origin, z))
+    way = crank*[cos(angle), sin(angle)] - [ground, 0.0_wp]
+    guide = atan2(way(2), way(1))
+    mechanism%initial_position = [angle, guide - angle, norm2(way), guide]
+  end subroutine swinging_guide
 
   !> Rates and accelerations of coordinates and frames, at random ones of the independent coordinates.
   subroutine check_same_motion(mechanism, chains, name)

@@ -19,6 +19,7 @@ program test_least_squares
   call known_conditioning(test)
   call conditioning_within_bounds(test)
   call several_right_sides(test)
+  call fewer_columns(test)
   call test%finish()
 
 contains
@@ -318,4 +319,37 @@ contains
       end do
     end do
   end subroutine several_right_sides
+
+  !> A tolerance above the least pivot leaves columns out, also of three equations in three unknowns: a row of zeros more,
+  !> which takes them to another method, changes nothing.
+  subroutine fewer_columns(test)
+    type(tester_type), intent(inout) :: test
+    type(least_squares_type) :: three, more
+    type(random_type) :: random
+    real(wp) :: b(3), right(3), longer(4), x(3), y(3), tolerance, left, left_of_more
+    integer :: trial, left_out
+
+    call three%create(3, 3)
+    call more%create(4, 3)
+    left_out = 0
+    do trial = 1, 100
+      three%a = random_matrix(random, 3, 3)
+      more%a(:3, :) = three%a
+      more%a(4, :) = 0.0_wp
+      b = reshape(random_matrix(random, 3, 1), [3])
+      call three%factorize()
+      call more%factorize()
+      tolerance = 0.5_wp*(1.0_wp + more%conditioning())
+      right = b
+      call three%solve(right, x, left, tolerance)
+      longer(:3) = b
+      longer(4) = 0.0_wp
+      call more%solve(longer, y, left_of_more, tolerance)
+      if (more%rank(tolerance) < 3) left_out = left_out + 1
+      ! pivots that are used are at least half of the largest: some tens of roundings
+      call test%near(maxval(abs(x - y)), 0.0_wp, 1.0e-13_wp*max(1.0_wp, maxval(abs(y))), 'fewer columns')
+      call test%near(left, left_of_more, 1.0e-13_wp, 'what remains')
+    end do
+    call test%is_true(left_out == 100, 'columns are left out each time')
+  end subroutine fewer_columns
 end program test_least_squares
