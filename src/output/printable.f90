@@ -40,7 +40,7 @@ contains
     if (name == '') name = '_'
   end function column_name
 
-  !> Letters of the text when some stand as escapes. Before the function whose length it is.
+  !> Letters of the text when some stand as escapes.
   pure integer function escaped_length(text, letters, escapes) result(length)
     character(len=*), intent(in) :: text, letters, escapes(:)
     integer :: i, k
@@ -57,9 +57,10 @@ contains
     character(len=*), intent(in) :: text
     character(len=*), intent(in) :: letters      !< those
     character(len=*), intent(in) :: escapes(:)   !< for each of them, padded with blanks
-    character(len=escaped_length(text, letters, escapes)) :: safe
+    character(len=:), allocatable :: safe
     integer :: i, k, n, length
 
+    allocate (character(len=escaped_length(text, letters, escapes)) :: safe)
     n = 0
     do i = 1, len(text)
       k = index(letters, text(i:i))
