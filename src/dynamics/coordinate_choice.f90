@@ -97,7 +97,8 @@ contains
       err%code = exit_singular
       return
     end if
-    k = maxloc(abs(new_state%q - state%q)/new_plan%unit_of, dim=1)
+    ! chains that nobody followed so far close where they can
+    k = maxloc(abs(new_state%q - state%q)/new_plan%unit_of, dim=1, mask=needs%coordinates)
     if (abs(new_state%q(k) - state%q(k)) > 1.0e-6_wp*new_plan%unit_of(k)) then
       call raise(err, exit_singular, 'with other independent coordinates the chains close on another branch: '// &
                  'coordinate '//to_text(k)//' would jump')

@@ -4,7 +4,7 @@ module mech9_needs
   use mech9_plan, only: plan_type, block_type
   implicit none
   private
-  public :: needs_type, needs_of_results, add_forces, needed_blocks, leave_out
+  public :: needs_type, needs_of_results, add_forces, needed_blocks, leave_out, stay_with
 
   !> What is asked for.
   type :: needs_type
@@ -93,6 +93,19 @@ contains
       end associate
     end do
   end subroutine leave_out
+
+  !> What a plan follows is asked for from now on, whatever coordinates become independent: were a chain left out
+  !> for a while, its position would not be known when another plan needs it.
+  pure subroutine stay_with(plan, needs)
+    type(plan_type), intent(in) :: plan
+    type(needs_type), intent(inout) :: needs
+    integer :: b
+
+    needs%coordinates(plan%independent) = .true.
+    do b = 1, size(plan%blocks)
+      needs%coordinates(plan%blocks(b)%coordinates) = .true.
+    end do
+  end subroutine stay_with
 
   !> The frames of some links.
   pure subroutine mark_links(plan, links, frames)

@@ -10,7 +10,7 @@ module mech9_dynamic_run
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_solver, only: work_count_type, work_of
-  use mech9_needs, only: needs_of_results, add_forces, leave_out
+  use mech9_needs, only: needs_of_results, add_forces, leave_out, stay_with
   use mech9_conditioning, only: conditioning_type
   use mech9_tracking, only: largest_closure
   use mech9_energy, only: kinetic_energy, potential_energy
@@ -129,6 +129,7 @@ contains
     call add_forces(mechanism, run%needs)
     used = plan
     call leave_out(used, run%needs)
+    call stay_with(used, run%needs)
     allocate (run%system)
     call set_motion_system(mechanism, used, start, run%system, err)
     if (allocated(err)) then
