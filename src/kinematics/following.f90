@@ -1,5 +1,5 @@
 !> Following a driven motion through regular positions, step by step, on one branch. Uses kinds, error,
-!> mechanism, plan, state, solver, past_rates, watch.
+!> mechanism, plan, state, departure, solver, watch.
 !>
 !> Each block is predicted by the polynomial through the last two positions with their rates and
 !> accelerations, corrected by Newton's method, and judged. A step is accepted if the block's Jacobian
@@ -14,11 +14,11 @@ module mech9_following
   use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
     solve_rates, solve_accelerations, solve_motion
-  use mech9_past_rates, only: past_rates_type, new_past_rates, forget_rates, take_rates
+  use mech9_departure, only: departure_type, new_departure, begin_at, depart_from, predict
   use mech9_watch, only: watch_type, new_watch, watch_step, keep, nearness, is_near
   implicit none
   private
-  public :: follower_type, departure_type, new_follower, settle, step_towards, set_inputs, go_back, add_accelerations
+  public :: follower_type, new_follower, settle, step_towards, set_inputs, go_back, add_accelerations
 
   !> A driven coordinate moves no farther in a step than this [rad, lengths of the mechanism], ...
   real(wp), parameter :: longest_drive = 0.25_wp
@@ -33,10 +33,6 @@ module mech9_following
   real(wp), parameter :: trusted_contraction = 0.25_wp
   !> ... unless that is small anyway, against the least pivot.
   real(wp), parameter :: small_correction = 1.0e-4_wp
-  !> A prediction uses the polynomial through two positions up to this many times their distance.
-  real(wp), parameter :: longest_prediction = 3.0_wp
-  !> The highest term of the polynomial is nothing but round-off below this.
-  real(wp), parameter :: only_round_off = 64.0_wp*epsilon(1.0_wp)
   !> Steps below this part of the time are given up.
   real(wp), parameter :: least_step = 1.0e-14_wp
   !> A step creeps that goes less than this part of what remains, and moves nothing farther than ...
@@ -45,14 +41,6 @@ module mech9_following
   real(wp), parameter :: creeping_move = 1.0e-3_wp
   !> So many creeping steps towards one time are given up.
   integer, parameter :: most_creeping = 10000
-
-  !> Where a step starts from.
-  type :: departure_type
-    real(wp) :: t = 0.0_wp
-    real(wp), allocatable :: q(:), dq(:), ddq(:)
-    real(wp) :: before = 0.0_wp                 !< distance of the position accepted before it [s]
-    real(wp), allocatable :: higher(:, :)       !< (M,3) factors of h^3, h^4, h^5 of the prediction
-  end type departure_type
 
   !> What follows the branch: state, departure and scratch, and counts for the report.
   type :: follower_type
@@ -64,7 +52,6 @@ module mech9_following
     integer, allocatable :: drives(:)             !< those that move closed chains
     integer :: last_block = huge(1)               !< the blocks after this one are left as they are
     logical :: with_accelerations = .true.        !< at every position, not only near singular ones
-    type(past_rates_type) :: past                 !< without accelerations predictions are made from it
     real(wp) :: reach = huge(1.0_wp)              !< a step that will probably be accepted [s]
     real(wp) :: goal = 0.0_wp                     !< time towards which it went last [s]
     integer :: creeping = 0                       !< steps towards it that went nearly nowhere
@@ -100,9 +87,7 @@ contains
 
     follower%state = assembled
     m = plan%n_coordinates
-    allocate (follower%departure%q(m), follower%departure%dq(m), follower%departure%ddq(m), source=0.0_wp)
-    follower%past = new_past_rates(m)
-    allocate (follower%departure%higher(m, 3), source=0.0_wp)
+    follower%departure = new_departure(m)
     allocate (follower%work(size(plan%blocks)), follower%watches(size(plan%blocks)))
     do b = 1, size(plan%blocks)
       follower%work(b) = new_block_work(plan%blocks(b), plan)
@@ -146,16 +131,8 @@ contains
     type(follower_type), intent(inout) :: follower
 
     follower%state%known = acceleration_known
-    associate (here => follower%state, last => follower%departure)
-      last%t = here%t
-      last%q = here%q
-      last%dq = here%dq
-      last%ddq = here%ddq
-      last%before = 0.0_wp
-      last%higher = 0.0_wp
-    end associate
+    call begin_at(follower%state, follower%departure)
     call keep(follower%work, follower%watches)
-    call forget_rates(follower%past)
   end subroutine settle
 
   !> One accepted step towards time t, as far as it can be trusted. `stuck` tells that even the shortest one
@@ -292,36 +269,6 @@ contains
     end do
   end subroutine try_step
 
-  !> Polynomial prediction of a block's dependent coordinates.
-  pure subroutine predict(block, departure, state)
-    type(block_type), intent(in) :: block
-    type(departure_type), intent(in) :: departure
-    type(state_type), intent(inout) :: state
-    real(wp) :: h, near
-
-    h = state%t - departure%t
-    ! far beyond two positions that are close together their round-off would be all there is
-    near = 0.0_wp
-    if (abs(h) <= longest_prediction*departure%before) near = h
-    call follow_polynomial(size(block%coordinates), block%coordinates, size(state%q), h, near, departure%q, departure%dq, &
-                           departure%ddq, departure%higher, state%q)
-  end subroutine predict
-
-  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
-
-  !> The polynomial of some coordinates at time h, its higher terms at time `near`.
-  pure subroutine follow_polynomial(n, coordinates, m, h, near, q, dq, ddq, higher, q_then)
-    integer, intent(in) :: n, coordinates(n), m
-    real(wp), intent(in) :: h, near, q(m), dq(m), ddq(m), higher(m, 3)
-    real(wp), intent(inout) :: q_then(m)
-    integer :: i, k
-
-    do i = 1, n
-      k = coordinates(i)
-      q_then(k) = q(k) + h*(dq(k) + h*(0.5_wp*ddq(k) + near*(higher(k, 1) + near*(higher(k, 2) + near*higher(k, 3)))))
-    end do
-  end subroutine follow_polynomial
-
   !> Judge a block's prediction against its correction, and its movement against its rates.
   pure subroutine judge(block, per_unit, departure, state, newton, pivot, worst)
     type(block_type), intent(in) :: block
@@ -342,6 +289,8 @@ contains
     worst = max(worst, move/longest_move, bend/(trusted_bend*max(move, trusted_correction*pivot)))
   end subroutine judge
 
+  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+
   !> Largest difference of some coordinates, in their units.
   pure real(wp) function largest_change(n, coordinates, m, per_unit, now, before) result(largest)
     integer, intent(in) :: n, coordinates(n), m
@@ -360,61 +309,12 @@ contains
     type(plan_type), intent(in) :: plan
     type(follower_type), intent(inout) :: follower
     logical, intent(in) :: complete             !< its accelerations are known
-    real(wp) :: h
 
     follower%steps = follower%steps + 1
     follower%state%known = merge(acceleration_known, velocity_known, complete)
-    associate (here => follower%state, last => follower%departure)
-      h = here%t - last%t
-      if (complete) then
-        call forget_rates(follower%past)
-        call extrapolate(size(here%q), h, plan%unit_of, here%q, here%dq, here%ddq, last%q, last%dq, last%ddq, last%higher)
-      else
-        call take_rates(follower%past, here%t, here%dq, last%ddq, last%higher)
-        last%q = here%q
-        last%dq = here%dq
-      end if
-      last%t = here%t
-      last%before = abs(h)
-    end associate
+    call depart_from(follower%state, plan%unit_of, complete, follower%departure)
     call keep(follower%work, follower%watches)
   end subroutine accept
-
-  !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
-  !> order. The later position takes the place of the earlier one.
-  pure subroutine extrapolate(m, h, unit_of, q, dq, ddq, last_q, last_dq, last_ddq, higher)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: h
-    real(wp), dimension(m), intent(in) :: unit_of, q, dq, ddq
-    real(wp), dimension(m), intent(inout) :: last_q, last_dq, last_ddq
-    real(wp), intent(out) :: higher(m, 3)
-    real(wp) :: d0, d1, d2, x, y, z, per_h, per_cube
-    logical :: is_noise
-    integer :: k
-
-    per_h = 1.0_wp/h
-    per_cube = per_h**3
-    do k = 1, m
-      ! the terms at h
-      d0 = last_q(k) - (q(k) - h*(dq(k) - 0.5_wp*h*ddq(k)))
-      d1 = h*(last_dq(k) - dq(k) + h*ddq(k))
-      d2 = h**2*(last_ddq(k) - ddq(k))
-      x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
-      z = x + d1 + 4.0_wp*d0
-      y = d0 + x + z
-      ! without the positions, where their round-off is all there is to the last term
-      is_noise = abs(z) <= only_round_off*max(unit_of(k), abs(q(k)))
-      x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_noise)
-      y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_noise)
-      z = merge(0.0_wp, z, is_noise)
-      higher(k, 1) = x*per_cube
-      higher(k, 2) = y*per_cube*per_h
-      higher(k, 3) = z*per_cube*per_h**2
-      last_q(k) = q(k)
-      last_dq(k) = dq(k)
-      last_ddq(k) = ddq(k)
-    end do
-  end subroutine extrapolate
 
   !> The accelerations at the place of departure, where the follower is, if it goes without them.
   subroutine add_accelerations(plan, follower)
