@@ -13,7 +13,7 @@ module mech9_following
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
-    solve_rates, solve_accelerations, solve_motion
+    solve_rates, solve_motion
   use mech9_departure, only: departure_type, new_departure, begin_at, depart_from, predict
   use mech9_watch, only: watch_type, new_watch, watch_step, keep, nearness, is_near
   implicit none
@@ -260,7 +260,7 @@ contains
         if (complete) then
           call solve_motion(plan, block, follower%state, work)
         else
-          call solve_rates(plan, block, follower%state, work)
+          call solve_rates(plan, block, follower%state, work, no_more=.true.)
         end if
         call judge(block, follower%per_unit, follower%departure, follower%state, newton, follower%watches(b)%trial_pivot, &
                    worst)
@@ -324,7 +324,7 @@ contains
 
     if (follower%state%known == acceleration_known) return
     do b = 1, min(size(plan%blocks), follower%last_block)
-      call solve_accelerations(plan, plan%blocks(b), follower%state, follower%work(b))
+      call solve_motion(plan, plan%blocks(b), follower%state, follower%work(b))
     end do
     follower%state%known = acceleration_known
     follower%departure%ddq = follower%state%ddq

@@ -81,7 +81,7 @@ contains
       blocks(n) = plan%blocks(b)
     end do
     call move_alloc(blocks, plan%blocks)
-    call mark_links(plan, needs%links, frames)
+    call mark_links(plan, needs%links .and. needs%derivatives > 0, frames)
     do b = size(plan%blocks), 1, -1
       associate (block => plan%blocks(b))
         block%last_moved = block%last_step

@@ -67,19 +67,20 @@ contains
               1.0_wp/planar%length, size(planar%steps), planar%steps, motion%pose, motion%slide, jacobian)
   end subroutine chain_jacobian
 
-  !> Rates of the three coordinates and velocities of the frames, from those of the given coordinates and of the
-  !> blocks before.
-  pure subroutine chain_rates(planar, chain, inverse, dq, motion)
+  !> Rates of the three coordinates and velocities of the frames up to that of step `last`, from those of the given
+  !> coordinates and of the blocks before.
+  pure subroutine chain_rates(planar, chain, inverse, last, dq, motion)
     type(planar_plan_type), intent(in) :: planar
     type(planar_chain_type), intent(in) :: chain
     real(wp), intent(in) :: inverse(3, 3)                  !< of the Jacobian
+    integer, intent(in) :: last
     real(wp), intent(inout), contiguous :: dq(:)           !< (M)
     type(planar_motion_type), intent(inout) :: motion
     real(wp) :: swing(2)
 
     call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
               chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-              dq, motion%velocity, swing)
+              last, dq, motion%velocity, swing)
   end subroutine chain_rates
 
   !> Rates and accelerations of the three coordinates, velocities and accelerations of the frames, from those of the
@@ -95,7 +96,7 @@ contains
 
     call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
               chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-              dq, motion%velocity, swing)
+              chain%last_step, dq, motion%velocity, swing)
     call accelerate(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
                     chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
                     dq, swing, motion%velocity, ddq, motion%acceleration)
@@ -128,10 +129,10 @@ contains
   end subroutine fill
 
   pure subroutine move(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
-                       dq, v, swing)
+                       last_moved, dq, v, swing)
     type(planar_chain_type), intent(in) :: chain
     type(planar_closure_type), intent(in) :: closure
-    integer, intent(in) :: first, last, n_given, given(n_given), m
+    integer, intent(in) :: first, last, n_given, given(n_given), m, last_moved
     real(wp), intent(in) :: signs(first:last), per_length, inverse(3, 3), f(4, 0:m), slide(2, m)
     type(planar_step_type), intent(in) :: steps(m)
     real(wp), intent(inout) :: dq(m), v(3, 0:m)
@@ -141,7 +142,7 @@ contains
     call stem_difference(m, chain%stems, f(3:4, closure%closing), f, v, opening(1), opening(2), opening(3))
     call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, dq, opening)
     call close_rates(chain, closure, per_length, inverse, m, f, opening, dq)
-    call find_velocities(first, last, signs, m, steps, f, slide, dq, v, swing)
+    call find_velocities(first, last_moved, signs, m, steps, f, slide, dq, v, swing)
   end subroutine move
 
   pure subroutine accelerate(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &

@@ -178,17 +178,21 @@ contains
 
   !> Rates of the block's dependent coordinates, J_d dq_d = -J_i dq_i, and velocities of its frames.
   !> The Jacobian must be factorized at this position.
-  subroutine solve_rates(plan, block, state, work, remainder)
+  subroutine solve_rates(plan, block, state, work, remainder, no_more)
     type(plan_type), intent(in) :: plan
     type(block_type), intent(in) :: block
     type(state_type), intent(inout) :: state
     type(block_work_type), intent(inout) :: work
     real(wp), intent(out), optional :: remainder   !< what no rates of the unknowns can make up for
+    logical, intent(in), optional :: no_more       !< accelerations are not asked for: velocities only as `last_moved` wants
+    integer :: last
 
     work%count%rates = work%count%rates + 1
     if (work%chain%used .and. work%equations%by_cofactors .and. .not. present(remainder)) then
-      call chain_rates(plan%planar, work%chain, work%equations%inverse, state%dq, state%planar)
-      work%count%frames_moved = work%count%frames_moved + steps_of(block)
+      last = block%last_step
+      if (present(no_more)) last = merge(work%chain%last_moved, last, no_more)
+      call chain_rates(plan%planar, work%chain, work%equations%inverse, last, state%dq, state%planar)
+      work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
       return
     end if
     if (present(remainder)) remainder = 0.0_wp
