@@ -1,5 +1,6 @@
 !> A block of closed chains in planar arithmetic: which steps its closures hold, listed once, and the loops over
-!> these lists that an evaluation of the motion runs through. Uses kinds, plan, planar_plan.
+!> these lists that an evaluation of the motion runs through. Uses kinds, plan, planar_plan,
+!> planar_lagrange.
 !>
 !> What a closure lacks is the sum of what the steps of its loop give to it, each seen from the loop's base. Those
 !> of the block's unknowns make up the Jacobian. The independent ones and the frames of earlier blocks, from
@@ -8,6 +9,7 @@ module mech9_planar_block
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type
   use mech9_planar_plan, only: planar_step_type
+  use mech9_planar_lagrange, only: carry_columns
   implicit none
   private
   public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, move_frames
@@ -192,7 +194,7 @@ contains
     real(wp), intent(in) :: f(4, 0:m), slide(2, m)
     real(wp), intent(inout) :: columns(3, n_b), v(3, 0:m), a(3, 0:m)
     real(wp) :: x, y, w, alpha, rate, coriolis
-    integer :: s, p, e, d
+    integer :: s, p
 
     do s = first, last
       p = steps(s)%parent
@@ -214,19 +216,8 @@ contains
         a(2, s) = a(2, s) - coriolis*slide(2, s)
         a(3, s) = a(3, s) + coriolis*slide(1, s)
       end if
-      if (.not. carries(s)) cycle
-      do e = entries(s), entries(s + 1) - 1
-        columns(1, e) = b(e)*steps(s)%turn
-        columns(2, e) = 0.0_wp
-        columns(3, e) = 0.0_wp
-        if (.not. steps(s)%turns) columns(2:3, e) = b(e)*slide(:, s)
-        d = parent_entry(e)
-        if (d == 0) cycle
-        w = columns(1, d)
-        columns(1, e) = columns(1, e) + w
-        columns(2, e) = columns(2, e) + columns(2, d) - w*y
-        columns(3, e) = columns(3, e) + columns(3, d) + w*x
-      end do
+      if (carries(s)) &
+        call carry_columns(n_b, entries(s), entries(s + 1) - 1, parent_entry, steps(s), slide(:, s), x, y, b, columns)
     end do
   end subroutine move_frames
 end module mech9_planar_block

@@ -12,7 +12,7 @@ module mech9_planar_lagrange
   use mech9_planar_motion, only: planar_motion_type, to_plane
   implicit none
   private
-  public :: planar_body_type, planar_body, spread_columns, add_inertia, planar_wrench, add_link_force, &
+  public :: planar_body_type, planar_body, spread_columns, carry_columns, add_inertia, planar_wrench, add_link_force, &
     planar_kinetic_energy
 
   !> A link with mass, in its frame in the plane.
@@ -50,27 +50,42 @@ contains
     real(wp), intent(in) :: b(n)                  !< rate of each step's coordinate
     real(wp), intent(in) :: f(4, 0:m), slide(2, m)
     real(wp), intent(inout) :: columns(3, n)
-    real(wp) :: x, y, w
-    integer :: s, e, p
+    real(wp) :: x, y
+    integer :: s
 
     do s = first, last
       if (.not. (all_frames .or. carries(s))) cycle
       x = f(3, s) - f(3, steps(s)%parent)
       y = f(4, s) - f(4, steps(s)%parent)
-      do e = entries(s), entries(s + 1) - 1
-        columns(1, e) = b(e)*steps(s)%turn
-        columns(2, e) = 0.0_wp
-        columns(3, e) = 0.0_wp
-        if (.not. steps(s)%turns) columns(2:3, e) = b(e)*slide(:, s)
-        p = parent_entry(e)
-        if (p == 0) cycle
-        w = columns(1, p)
-        columns(1, e) = columns(1, e) + w
-        columns(2, e) = columns(2, e) + columns(2, p) - w*y
-        columns(3, e) = columns(3, e) + columns(3, p) + w*x
-      end do
+      call carry_columns(n, entries(s), entries(s + 1) - 1, parent_entry, steps(s), slide(:, s), x, y, b, columns)
     end do
   end subroutine spread_columns
+
+  !> The columns of one frame: those of the frame it departs from, carried along, and what its own step brings.
+  pure subroutine carry_columns(n, first, last, parent_entry, step, slide, x, y, b, columns)
+    integer, intent(in) :: n, first, last         !< entries, those of the frame
+    integer, intent(in) :: parent_entry(n)
+    type(planar_step_type), intent(in) :: step
+    real(wp), intent(in) :: slide(2)
+    real(wp), intent(in) :: x, y                  !< from the frame it departs from to this one
+    real(wp), intent(in) :: b(n)
+    real(wp), intent(inout) :: columns(3, n)
+    real(wp) :: w
+    integer :: e, p
+
+    do e = first, last
+      columns(1, e) = b(e)*step%turn
+      columns(2, e) = 0.0_wp
+      columns(3, e) = 0.0_wp
+      if (.not. step%turns) columns(2:3, e) = b(e)*slide
+      p = parent_entry(e)
+      if (p == 0) cycle
+      w = columns(1, p)
+      columns(1, e) = columns(1, e) + w
+      columns(2, e) = columns(2, e) + columns(2, p) - w*y
+      columns(3, e) = columns(3, e) + columns(3, p) + w*x
+    end do
+  end subroutine carry_columns
 
   !> Add the bodies' coefficients of motion, velocity terms, and weights.
   pure subroutine add_inertia(n_bodies, bodies, m, n_entries, entries, numbers, columns, f, v, a, gravity, n, &
