@@ -144,9 +144,12 @@ contains
                          'rotations A of the links: X = A X'' + U', '1', &
                          ['/time     ', '/link     ', '/axis     ', '/link_axis'])
     call self%series%add('vertex', [(columns%count + 12*n + i, i=1, 3*vertices)], [3, vertices], &
-                         'vertices of the drawn links in the fixed frame', 'm', ['/time        ', '/shape/vertex', '/axis        '])
+                         'vertices of the drawn links in the fixed frame', 'm', &
+                         ['/time         ', '/vertex_number', '/axis         '])
   end subroutine add_poses
 
+  !> Scales of the poses, and how vertices and lines belong to links. A scale stands in the group of what it scales,
+  !> or above: readers that follow the rules of netCDF look for it nowhere else.
   subroutine add_pose_scales(file, poses, has_axes)
     type(hdf5_file_type), intent(inout) :: file
     type(poses_type), intent(in) :: poses
@@ -158,12 +161,18 @@ contains
     call put_axes(file, 'link_axis', 'axis of the link')
     call file%put('link', [(i, i=1, poses%n_links)], 'number of the link; 1 is the frame')
     call file%make_scale('link')
-    call file%put('shape/vertex', [(i, i=0, size(poses%vertex_link) - 1)], 'number of the vertex, from 0')
-    call file%make_scale('shape/vertex')
+    call file%put('vertex_number', [(i, i=0, size(poses%vertex_link) - 1)], 'number of the vertex, from 0')
+    call file%make_scale('vertex_number')
     call file%put('shape/vertex_link', poses%vertex_link, 'link that the vertex belongs to')
-    call file%attach_scales('shape/vertex_link', ['/shape/vertex'])
+    call file%attach_scales('shape/vertex_link', ['/vertex_number'])
+    call file%put('shape/line_number', [(i, i=0, size(line_link) - 1)], 'number of the line, from 0')
+    call file%make_scale('shape/line_number')
+    call file%put('shape/line_end', [1, 2], 'end of the line')
+    call file%make_scale('shape/line_end')
     call file%put('shape/line', poses%lines - 1, 'the two vertices that a line joins')
+    call file%attach_scales('shape/line', ['/shape/line_number', '/shape/line_end   '])
     call file%put('shape/line_link', line_link, 'link that the line belongs to')
+    call file%attach_scales('shape/line_link', ['/shape/line_number'])
   end subroutine add_pose_scales
 
   subroutine put_axes(file, name, long_name)

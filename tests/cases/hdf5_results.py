@@ -171,6 +171,33 @@ def test_parts(session):
                     checks.near(table[f'q{k}'], whole[f'q{k}'], 1e-12, f'{why}: q{k} is that of the whole run')
 
 
+def scales_elsewhere(file):
+    """Dimensions whose scale is missing, or stands neither in the group of its data set nor in one above it. By the rules
+    of netCDF, which xarray and ncdump keep, such a dimension does not exist."""
+    found = []
+
+    def look(name, item):
+        if not isinstance(item, h5py.Dataset) or is_scale(item):
+            return
+        for number, dim in enumerate(item.dims):
+            scales = [scale.name for scale in dim.values()]
+            if len(scales) != 1 or not item.name.startswith(scales[0][:scales[0].rindex('/') + 1]):
+                found.append(f'{name}, dimension {number}: {scales}')
+
+    file.visititems(look)
+    return found
+
+
+def test_scales(session):
+    """Every data set of every group has its scales where readers of netCDF look for them."""
+    checks = session.checks
+    for program, data in ((session.mech9k, FIG1), (session.mech9d, DYNAMIC_FIG1)):
+        path = session.both(program, data, '--set', 'output.poses=.true.')[1]
+        with h5py.File(path, 'r') as file:
+            checks.equal(scales_elsewhere(file), [], f'{os.path.basename(program)}: scales where netCDF looks for them')
+            check_form(checks, file, f'{os.path.basename(program)} with poses')
+
+
 def test_poses_of_all(session):
     """Poses are those of all links, whatever coordinates are recorded."""
     data = session.path('no_points.nml')
@@ -257,7 +284,13 @@ def test_readers(session):
             same(checks, data['position'].sel(point='P', axis='y').values, table['P.y'], 'xarray: a point by its name')
             same(checks, data['q'].coords['time'].values, table['t'], 'xarray: time belongs to it')
             checks.equal(data['closure'].attrs['units'], 'm', 'xarray: units')
-        for group in ('structure', 'diagnostics', 'provenance'):
+        table, path = session.both(session.mech9d, DYNAMIC_FIG1, '--set', 'output.poses=.true.')
+        with xarray.open_dataset(path, engine='h5netcdf') as data:
+            same(checks, data['q'].sel(coordinate=5).values, table['q5'], 'xarray: a file with poses')
+            checks.equal(data['vertex'].dims, ('time', 'vertex_number', 'axis'), 'xarray: the dimensions of the vertices')
+        with h5py.File(path, 'r') as file:
+            groups = [name for name, item in file.items() if isinstance(item, h5py.Group)]
+        for group in groups:
             with xarray.open_dataset(path, engine='h5netcdf', group=group) as data:
                 checks.true(len(data.variables) > 0, f'xarray: the group {group}')
     except ImportError as missing:
@@ -322,6 +355,7 @@ def main():
         test_fig1(session, version)
         test_units(session)
         test_parts(session)
+        test_scales(session)
         test_poses_of_all(session)
         test_dynamics(session)
         test_dead_point(session)
