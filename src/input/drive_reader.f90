@@ -3,7 +3,7 @@
 module mech9_drive_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: to_text, starts_with
+  use mech9_text, only: string_type, to_text, starts_with
   use mech9_spline, only: build_spline
   use mech9_structure, only: structure_type
   use mech9_pair, only: pair_slot_type
@@ -13,13 +13,13 @@ module mech9_drive_reader
   use mech9_table_drive, only: table_drive_type
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_source, only: span_type
-  use mech9_document, only: document_type, group_type
+  use mech9_document, only: document_type, group_type, item_type
   use mech9_lookup, only: groups_named, has_unsound, get_integer, get_integers, get_real, get_reals, get_text, span_of
   use mech9_table_file, only: read_table_file
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_drives, unit_of_coordinate
+  public :: read_drives, files_of_drives, unit_of_coordinate
 
 contains
 
@@ -166,6 +166,43 @@ contains
       allocate (slot%drive, source=drive)
     end if
   end subroutine read_table_drive
+
+  !> The files that drives are read from, in a document that may be unchecked yet.
+  pure subroutine files_of_drives(document, paths)
+    type(document_type), intent(in) :: document
+    type(string_type), allocatable, intent(out) :: paths(:)
+    integer :: i, n
+
+    n = 0
+    if (allocated(document%groups)) n = size(document%groups)
+    allocate (paths(n))
+    n = 0
+    do i = 1, size(paths)
+      associate (group => document%groups(i))
+        if (group%name /= 'drive' .or. .not. allocated(group%items)) cycle
+        call take_file(document%source%name, group%items, paths, n)
+      end associate
+    end do
+    paths = paths(:n)
+  end subroutine files_of_drives
+
+  !> The file that a drive names; where it does so more than once, the last name counts.
+  pure subroutine take_file(data_file, items, paths, n)
+    character(len=*), intent(in) :: data_file              !< its path
+    type(item_type), intent(in) :: items(:)                !< of the drive
+    type(string_type), intent(inout) :: paths(:)
+    integer, intent(inout) :: n                            !< paths so far
+    integer :: i
+
+    do i = size(items), 1, -1
+      if (items(i)%name /= 'file' .or. .not. allocated(items(i)%values)) cycle
+      if (size(items(i)%values) /= 1) cycle
+      if (.not. allocated(items(i)%values(1)%text)) cycle
+      n = n + 1
+      paths(n)%text = beside(data_file, items(i)%values(1)%text)
+      return
+    end do
+  end subroutine take_file
 
   !> How much of the data file's path leads to where a name starts.
   pure integer function start_length(data_file, name)

@@ -3,19 +3,19 @@
 module mech9_plot
   use, intrinsic :: iso_fortran_env, only: output_unit
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, add_place, exit_usage, exit_file
+  use mech9_error, only: error_type, raise, add_place, exit_file
   use mech9_text, only: string_type, to_text
   use mech9_path, only: folder_of, name_of, ending_of, with_ending
   use mech9_text_file, only: save_text
   use mech9_result_sink, only: result_sink_type
   use mech9_gnuplot, only: run_gnuplot, gnuplot_package
   use mech9_terminal_size, only: find_terminal_size
-  use mech9_plot_request, only: plot_request_type, read_plot_request
+  use mech9_plot_request, only: plot_request_type, read_plot_request, target_of_plot
   use mech9_plot_data, only: plot_data_type, new_plot_data
   use mech9_plot_script, only: picture_script, terminal_script
   implicit none
   private
-  public :: plot_type, plot_columns, default_picture
+  public :: plot_type, plot_columns, picture_of_plot, script_of_plot
 
   character(len=*), parameter :: script_ending = 'gp'
 
@@ -56,11 +56,6 @@ contains
     self%title = title
     self%picture = picture
     if (self%request%target /= '') self%picture = self%request%target
-    if (self%picture == table .or. with_ending(self%picture, script_ending) == table) then
-      call raise(err, exit_usage, '--plot: the picture '//self%picture//" or its script would overwrite the table '"// &
-                 table//"'; give one of them another name")
-      return
-    end if
     self%table = table
     self%said = ''
     self%data = new_plot_data(names, units, self%request%curves, expected)
@@ -125,7 +120,7 @@ contains
     character(len=:), allocatable :: script_path, script, source, folder
     logical :: found
 
-    script_path = with_ending(self%picture, script_ending)
+    script_path = script_of_plot(self%picture)
     folder = folder_of(self%picture)
     source = ''
     if (can_be_read(self%table) .and. folder_of(self%table) == folder) source = name_of(self%table)
@@ -154,14 +149,17 @@ contains
     can_be_read = table /= '' .and. table /= '-' .and. ending_of(table) /= 'csv'
   end function can_be_read
 
-  !> The file of plot number i where no name is given: beside the table, or else in this folder with the name of
-  !> the data file.
-  pure function default_picture(table, data_file, i) result(picture)
-    character(len=*), intent(in) :: table       !< empty or '-': no file
+  !> The file of the picture that a plot makes. Where no name is given it stands beside the table, or else in this
+  !> folder with the name of the data file.
+  pure subroutine picture_of_plot(text, table, data_file, i, picture)
+    character(len=*), intent(in) :: text                     !< the argument of --plot
+    character(len=*), intent(in) :: table                    !< file with the whole results; empty or '-': none
     character(len=*), intent(in) :: data_file
-    integer, intent(in) :: i
-    character(len=:), allocatable :: picture
+    integer, intent(in) :: i                                 !< number of the plot in the run
+    character(len=:), allocatable, intent(out) :: picture    !< '-': it is drawn in the terminal
 
+    call target_of_plot(text, picture)
+    if (picture /= '') return
     if (table /= '' .and. table /= '-') then
       picture = with_ending(table, '')
     else
@@ -169,7 +167,15 @@ contains
     end if
     if (i > 1) picture = picture//'-'//to_text(i)
     picture = picture//'.svg'
-  end function default_picture
+  end subroutine picture_of_plot
+
+  !> The file of the script that draws a picture; it stands beside the picture.
+  pure function script_of_plot(picture) result(script)
+    character(len=*), intent(in) :: picture
+    character(len=:), allocatable :: script
+
+    script = with_ending(picture, script_ending)
+  end function script_of_plot
 
   !> Plot rows that are in memory.
   subroutine plot_columns(text, title, names, units, rows, picture, said, err)

@@ -11,7 +11,7 @@ module mech9_plot_request
   use mech9_path, only: ending_of
   implicit none
   private
-  public :: plot_request_type, curve_type, read_plot_request, is_picture
+  public :: plot_request_type, curve_type, read_plot_request, target_of_plot, is_picture
 
   !> One curve: two columns.
   type :: curve_type
@@ -61,6 +61,18 @@ contains
       at = at + 1
     end do
   end subroutine read_plot_request
+
+  !> Where a plot is to be drawn: the file of a picture, '-' for the terminal, or empty where nothing is said.
+  pure subroutine target_of_plot(text, target)
+    character(len=*), intent(in) :: text                    !< the argument of --plot
+    character(len=:), allocatable, intent(out) :: target
+    type(plot_request_type) :: request
+    integer :: at
+
+    call take_target(text, request, at)
+    target = request%target
+    if (request%in_terminal) target = '-'
+  end subroutine target_of_plot
 
   !> Whether a file of this name can be a picture that gnuplot makes.
   pure logical function is_picture(path)

@@ -15,7 +15,7 @@ module mech9_structure_graph
   use mech9_child_process, only: child_outcome_type, run_child
   implicit none
   private
-  public :: save_structure_graph
+  public :: save_structure_graph, text_of_graph
 
   character, parameter :: line_end = achar(10)
   !> Colours that people with any kind of colour vision tell apart, in turn for the blocks.
@@ -40,12 +40,7 @@ contains
     character(len=:), allocatable :: text, text_path
 
     text = structure_graph(mechanism, plan)
-    select case (ending_of(path))
-    case ('svg', 'png', 'pdf')
-      text_path = with_ending(path, 'dot')
-    case default
-      text_path = path
-    end select
+    text_path = text_of_graph(path)
     said = 'graph: '//path
     drawn = .true.
     call save_text(text_path, text, err)
@@ -53,6 +48,19 @@ contains
     call draw(path, text, text_path, drawn, said, err)
     call add_place(err, 'no picture of the structure')
   end subroutine save_structure_graph
+
+  !> The file of a graph's text: the one that is asked for, or one beside the picture that is.
+  pure function text_of_graph(path) result(text_path)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: text_path
+
+    select case (ending_of(path))
+    case ('svg', 'png', 'pdf')
+      text_path = with_ending(path, 'dot')
+    case default
+      text_path = path
+    end select
+  end function text_of_graph
 
   !> Let dot draw.
   subroutine draw(path, text, text_path, drawn, said, err)

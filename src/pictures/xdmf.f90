@@ -1,11 +1,12 @@
 !> A description in XDMF of the moving links in an HDF5 file, for ParaView and its like.
-!> Uses error, text, mechanism, poses, result_sink, page, xml_text.
+!> Uses error, text, path, mechanism, poses, result_sink, page, xml_text.
 !>
 !> Each output is a grid of lines between vertices; the numbers stay in the HDF5 file, which must stand beside.
 module mech9_xdmf
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
+  use mech9_path, only: name_of, with_ending
   use mech9_mechanism, only: mechanism_type
   use mech9_settings, only: time_grid_type
   use mech9_poses, only: poses_type
@@ -14,7 +15,7 @@ module mech9_xdmf
   use mech9_xml_text, only: xml_text
   implicit none
   private
-  public :: xdmf_type, new_xdmf
+  public :: xdmf_type, new_xdmf, xdmf_path
 
   !> Outputs that are shown at most; of more, every so-manieth is.
   integer, parameter :: most_steps = 2000
@@ -43,19 +44,23 @@ contains
     type(mechanism_type), intent(in) :: mechanism
     type(poses_type), intent(in) :: poses
     type(xdmf_type) :: sink
-    integer :: folder, dot
 
-    folder = index(hdf5_path, '/', back=.true.)
-    sink%data_name = hdf5_path(folder + 1:)
-    dot = index(hdf5_path, '.', back=.true.)
-    if (dot <= folder + 1) dot = len(hdf5_path) + 1
-    sink%path = hdf5_path(:dot - 1)//'.xdmf'
+    sink%data_name = name_of(hdf5_path)
+    sink%path = xdmf_path(hdf5_path)
     sink%title = mechanism%title
     sink%grid = mechanism%time
     sink%n_vertices = size(poses%vertex_link)
     sink%n_lines = size(poses%lines, 2)
     sink%is_open = .true.
   end function new_xdmf
+
+  !> The file of the description; it stands beside the HDF5 file.
+  pure function xdmf_path(hdf5_path) result(path)
+    character(len=*), intent(in) :: hdf5_path
+    character(len=:), allocatable :: path
+
+    path = with_ending(hdf5_path, 'xdmf')
+  end function xdmf_path
 
   subroutine write_rows(self, rows, err)
     class(xdmf_type), intent(inout) :: self

@@ -1,5 +1,5 @@
 !> Pictures of the mechanism itself that a run is asked for: a sketch, a moving picture.
-!> Uses error, path, mechanism, plan, state, the pictures floor, command_line.
+!> Uses error, path, mechanism, plan, state, the pictures floor, command_line, written_files.
 module mech9_picture_requests
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data
@@ -20,6 +20,7 @@ module mech9_picture_requests
   use mech9_svg_film, only: save_svg_film
   use mech9_gif_film, only: save_gif_film
   use mech9_command_line, only: command_line_type
+  use mech9_written_files, only: result_paths_type, find_result_paths
   implicit none
   private
   public :: picture_requests_type, read_picture_requests
@@ -49,11 +50,11 @@ contains
     character(len=*), intent(in) :: program_name
     type(picture_requests_type), intent(out) :: requests
     type(error_type), allocatable, intent(out) :: err
+    type(result_paths_type) :: paths
 
-    requests%sketch = mechanism%output%sketch
-    if (options%has('sketch')) requests%sketch = options%argument('sketch')
-    requests%animation = mechanism%output%animation
-    if (options%has('animate')) requests%animation = options%argument('animate')
+    call find_result_paths(options, mechanism%output, paths)
+    requests%sketch = paths%sketch
+    requests%animation = paths%animation
     requests%with_masses = program_name == 'mech9d'
     if (requests%sketch /= '' .and. kind_of(requests%sketch) /= 'svg') then
       call raise(err, merge(exit_usage, exit_data, options%has('sketch')), "'"//requests%sketch// &

@@ -1,5 +1,6 @@
 !> All that a run writes its rows to, opened in one place from the options and the data file.
-!> Uses error, text, mechanism, the sinks of the output and pictures floors, command_line, hdf5_record, version.
+!> Uses error, text, mechanism, the sinks of the output and pictures floors, command_line, written_files,
+!> hdf5_record, version.
 module mech9_results
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -8,11 +9,12 @@ module mech9_results
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
   use mech9_table, only: table_type
-  use mech9_plot, only: plot_type, default_picture
+  use mech9_plot, only: plot_type, picture_of_plot
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
   use mech9_xdmf, only: new_xdmf
   use mech9_command_line, only: command_line_type
+  use mech9_written_files, only: result_paths_type, find_result_paths
   use mech9_hdf5_record, only: write_provenance, write_structure
   use mech9_version, only: version
   implicit none
@@ -38,27 +40,7 @@ module mech9_results
 
 contains
 
-  !> Where a kind of results goes: the command line comes before the data file; empty if nowhere.
-  pure function path_of(options, option, in_data_file) result(path)
-    type(command_line_type), intent(in) :: options
-    character(len=*), intent(in) :: option         !< without the dashes
-    character(len=*), intent(in) :: in_data_file   !< the path there
-    character(len=:), allocatable :: path
-
-    path = in_data_file
-    if (options%has(option)) path = options%argument(option)
-    if (options%has('no-write')) path = ''
-  end function path_of
-
-  !> Whether pictures are asked for, or nothing.
-  pure logical function needs_no_table(options)
-    type(command_line_type), intent(in) :: options
-
-    needs_no_table = options%has('plot') .or. options%has('sketch') .or. options%has('animate') .or. options%has('no-write')
-  end function needs_no_table
-
-  !> Open everything that is asked for; if no result is, the table goes to standard output. After an error
-  !> nothing is open.
+  !> Open everything that is asked for. After an error nothing is open.
   subroutine open_results(self, options, mechanism, data_text, program_name, columns, err)
     class(results_type), intent(out) :: self
     type(command_line_type), intent(in) :: options
@@ -67,15 +49,16 @@ contains
     character(len=*), intent(in) :: program_name
     type(columns_type), intent(in) :: columns        !< of the rows to come
     type(error_type), allocatable, intent(out) :: err
+    type(result_paths_type) :: paths
     type(error_type), allocatable :: at_close
     type(sink_slot_type), allocatable :: plots(:)
     integer :: i
 
     allocate (self%sinks(0))
     self%n_columns = columns%count
-    self%table_path = path_of(options, 'table', mechanism%output%table)
-    self%hdf5_path = path_of(options, 'hdf5', mechanism%output%hdf5)
-    if (self%table_path == '' .and. self%hdf5_path == '' .and. .not. needs_no_table(options)) self%table_path = '-'
+    call find_result_paths(options, mechanism%output, paths)
+    self%table_path = paths%table
+    self%hdf5_path = paths%hdf5
     ! a wrong name in a plot is found before a file is touched
     call self%open_plots(options, mechanism, columns, plots, err)
     if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(mechanism, program_name, columns, err)
@@ -100,16 +83,17 @@ contains
     type(error_type), allocatable, intent(out) :: err
     type(string_type), allocatable :: requests(:)
     type(plot_type), allocatable :: plot
+    character(len=:), allocatable :: picture
     class(result_sink_type), allocatable :: sink
     integer :: i
 
     allocate (plots(0))
     call options%arguments('plot', requests)
     do i = 1, size(requests)
+      call picture_of_plot(requests(i)%text, self%table_path, options%file, i, picture)
       allocate (plot)
       call plot%open(requests(i)%text, mechanism%title, columns%names(:columns%count), &
-                     columns%units(:columns%count), mechanism%time%intervals + 1, &
-                     default_picture(self%table_path, options%file, i), self%table_path, err)
+                     columns%units(:columns%count), mechanism%time%intervals + 1, picture, self%table_path, err)
       if (allocated(err)) then
         if (leaves_out(mechanism)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
         return

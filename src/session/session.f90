@@ -13,6 +13,7 @@ module mech9_session
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
   use mech9_setting, only: apply_setting
+  use mech9_drive_reader, only: files_of_drives
   use mech9_reader, only: read_structure_only, read_mechanism
   use mech9_data_help, only: write_data_help
   use mech9_structure, only: structure_type
@@ -87,7 +88,7 @@ contains
     type(structure_type) :: structure
     type(structural_vectors_type) :: vectors
     type(mechanism_type) :: mechanism
-    type(string_type), allocatable :: settings(:)
+    type(string_type), allocatable :: settings(:), inputs(:)
     type(error_type), allocatable :: err
     logical :: legible, reported
     integer :: i
@@ -96,16 +97,17 @@ contains
     call catch_size_limit()
     if (.not. answers_only(options)) call catch_interrupts()
     call read_document(path, document, diagnostics)
-    call refuse_overwriting(options, diagnostics%sources, err)
+    call options%arguments('set', settings)
+    do i = 1, size(settings)
+      call apply_setting(document, settings(i)%text, diagnostics)
+    end do
+    call list_inputs(path, document, inputs)
+    call refuse_overwriting(options, inputs, err)
     if (allocated(err)) then
       write (error_unit, '(3a)') task%program_name, ': ', err%message
       code = err%code
       return
     end if
-    call options%arguments('set', settings)
-    do i = 1, size(settings)
-      call apply_setting(document, settings(i)%text, diagnostics)
-    end do
     reported = .false.
     if (options%has('structure')) then
       if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, mechanism)
@@ -116,7 +118,7 @@ contains
       call read_mechanism(document, task%needs_drives, mechanism, diagnostics)
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, mechanism)
-        call refuse_overwriting(options, diagnostics%sources, err, mechanism%output)
+        call refuse_overwriting(options, inputs, err, mechanism%output)
         reported = allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
         if (.not. allocated(err)) call task%work(options, mechanism, diagnostics, reported, kept)
@@ -131,6 +133,22 @@ contains
     call choice%report(error_unit)
     call diagnostics%report(error_unit)
   end subroutine run_file
+
+  !> The files that are read: the data file, and those of drives.
+  pure subroutine list_inputs(path, document, inputs)
+    character(len=*), intent(in) :: path                         !< of the data file
+    type(document_type), intent(in) :: document                  !< what stands in it
+    type(string_type), allocatable, intent(out) :: inputs(:)     !< paths
+    type(string_type), allocatable :: of_drives(:)
+    integer :: i
+
+    call files_of_drives(document, of_drives)
+    allocate (inputs(1 + size(of_drives)))
+    inputs(1)%text = path
+    do i = 1, size(of_drives)
+      inputs(1 + i)%text = of_drives(i)%text
+    end do
+  end subroutine list_inputs
 
   !> The report where no run wrote one. A failure of that is one more error; the first one decides the code.
   subroutine report_briefly(task, options, mechanism, choice, diagnostics, code)

@@ -220,7 +220,7 @@ def test_refusals(folder):
     checks.equal(os.listdir(folder), [], 'nothing is written then')
     for table, plot in (('a.gp', 'q1'), ('a.svg', 'a.svg:q1'), ('b/a.gp', 'b/a.png:q1')):
         done = run(mech9k, FIG1, '--table', table, '--plot', plot, folder=folder)
-        checks.true(done.returncode == 2 and 'overwrite the table' in done.stderr, f'{plot} over {table}', done.stderr)
+        checks.true(done.returncode == 2 and 'cannot both be' in done.stderr, f'{plot} over {table}', done.stderr)
     checks.equal(os.listdir(folder), [], 'nor then')
     done = run(mech9k, FIG1, '--no-write', '--plot', 'q1', folder=folder)
     checks.equal(done.returncode, 2, 'a plot that is not to be written')
