@@ -31,7 +31,7 @@ contains
     real(wp), intent(in) :: angle_unit                      !< radians in one unit of angle of the file
     real(wp), intent(in) :: start                           !< time of the first result [s]
     real(wp), intent(in) :: parameters(:)                   !< for the user's procedures
-    logical, intent(in) :: needed                           !< every independent coordinate must have one
+    logical, intent(in) :: needed                           !< every independent coordinate must have one; else none may
     type(drive_slot_type), allocatable, intent(out) :: drives(:)
     type(diagnostics_type), intent(inout) :: diagnostics
     integer, allocatable :: numbers(:)
@@ -52,7 +52,11 @@ contains
         n = n + 1
       end associate
     end do
-    if (needed .and. .not. has_unsound(document, 'drive')) call check_complete(document, structure, diagnostics)
+    if (.not. needed) then
+      call refuse_all(document, structure, diagnostics)
+    else if (.not. has_unsound(document, 'drive')) then
+      call check_complete(document, structure, diagnostics)
+    end if
   end subroutine read_drives
 
   !> What a number of a group about a coordinate is multiplied with to become rad or m.
@@ -85,6 +89,26 @@ contains
                            'driven; drive an independent one (see cq)')
     end if
   end subroutine check_coordinate
+
+  !> Report the drives of independent coordinates where the motion follows from forces: to leave them out without a
+  !> word would give another motion than the one that is asked for.
+  pure subroutine refuse_all(document, structure, diagnostics)
+    type(document_type), intent(in) :: document
+    type(structure_type), intent(in) :: structure           !< without coordinates where it is not known
+    type(diagnostics_type), intent(inout) :: diagnostics
+    integer, allocatable :: numbers(:)
+    integer :: i, k
+
+    numbers = groups_named(document, 'drive')
+    do i = 1, size(numbers)
+      k = get_integer(document%groups(numbers(i)), 'coordinate')
+      if (k < 1 .or. k > structure%n_coordinates) cycle
+      if (.not. structure%independent(k)) cycle
+      call diagnostics%add(document%groups(numbers(i))%span, 'in dynamics the independent coordinate '//to_text(k)// &
+                           ' moves as the forces make it and cannot be driven; take this &drive away and give &initial '// &
+                           'coordinate='//to_text(k)//', position=..., velocity=... /, or let mech9k compute the driven motion')
+    end do
+  end subroutine refuse_all
 
   !> Report independent coordinates without a drive.
   pure subroutine check_complete(document, structure, diagnostics)
