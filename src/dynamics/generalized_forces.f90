@@ -5,6 +5,7 @@ module mech9_generalized_forces
   use mech9_error, only: error_type
   use mech9_rotation, only: cross
   use mech9_mechanism, only: mechanism_type
+  use mech9_call_fault, only: call_fault_type
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -26,15 +27,18 @@ contains
     type(state_type), intent(in) :: state
     type(lagrange_work_type), intent(inout) :: work
     type(error_type), allocatable, intent(out) :: err
+    type(call_fault_type), target :: fault
     integer :: i
 
     if (size(dynamics%acting) == 0) return
     call show_state(plan, dynamics, state, work%view)
     call work%sum%clear()
+    work%view%fault => fault
     do i = 1, size(dynamics%acting)
       call mechanism%loads(dynamics%acting(i))%load%apply(work%view, work%sum, err)
-      if (allocated(err)) return
+      if (allocated(err)) exit
     end do
+    work%view%fault => null()
   end subroutine collect_loads
 
   !> Q_p (25) of what the loads exert.

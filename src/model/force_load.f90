@@ -45,8 +45,8 @@ contains
     type(error_type), allocatable, intent(out) :: err
 
     if (self%turns_with_link) then
-      call sum%add_force(state, self%link, self%position, state%turned(self%link, self%force))
-      call sum%add_torque(self%link, state%turned(self%link, self%torque))
+      call sum%add_force(state, self%link, self%position, state%links(self%link)%fixed_components(self%force))
+      call sum%add_torque(self%link, state%links(self%link)%fixed_components(self%torque))
     else
       if (any(abs(self%force) > 0.0_wp)) call sum%add_force(state, self%link, self%position, self%force)
       call sum%add_torque(self%link, self%torque)

@@ -1,8 +1,9 @@
 !> What loads collect: forces and torques on links, generalized forces on coordinates.
-!> Uses kinds, rotation, motion_view.
+!> Uses kinds, rotation, call_fault, motion_view.
 module mech9_force_sum
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, cross
+  use mech9_call_fault, only: call_fault_type
   use mech9_motion_view, only: motion_view_type
   implicit none
   private
@@ -15,24 +16,28 @@ module mech9_force_sum
     real(wp), allocatable :: generalized(:)    !< (M) [N m or N]
     logical :: any_generalized = .false.       !< since the last `clear`
     logical :: unanswered = .false.            !< no user's procedure is linked
+    type(call_fault_type) :: fault             !< the first call with a number that does not exist, since the last `clear`
   contains
     procedure :: clear
     procedure :: add_force
     procedure :: add_torque
     procedure :: add_generalized
+    procedure, private :: has_link
   end type force_sum_type
 
 contains
 
   !> Nothing yet, for a mechanism with so many links and coordinates.
   pure function new_force_sum(n_links, n_coordinates) result(sum)
-    integer, intent(in) :: n_links, n_coordinates
+    integer, intent(in) :: n_links         !< N
+    integer, intent(in) :: n_coordinates   !< M
     type(force_sum_type) :: sum
 
     allocate (sum%force(3, n_links), sum%torque(3, n_links), source=0.0_wp)
     allocate (sum%generalized(n_coordinates), source=0.0_wp)
   end function new_force_sum
 
+  !> Nothing again.
   pure subroutine clear(self)
     class(force_sum_type), intent(inout) :: self
 
@@ -40,12 +45,13 @@ contains
     call make_zero(size(self%torque), self%torque)
     if (self%any_generalized) call make_zero(size(self%generalized), self%generalized)
     self%any_generalized = .false.
+    self%fault%found = .false.
   end subroutine clear
 
   ! Of known shape: no strides.
   pure subroutine make_zero(n, numbers)
-    integer, intent(in) :: n
-    real(wp), intent(out) :: numbers(n)
+    integer, intent(in) :: n               !< how many
+    real(wp), intent(out) :: numbers(n)    !< all zero afterwards
     integer :: i
 
     do i = 1, n
@@ -53,37 +59,58 @@ contains
     end do
   end subroutine make_zero
 
-  !> A force at a point of a link.
+  !> A force at a point of a link. A number that no link has is noted in `fault`, and nothing is added.
   pure subroutine add_force(self, state, link, point, force)
     class(force_sum_type), intent(inout) :: self
-    type(motion_view_type), intent(in) :: state
-    integer, intent(in) :: link
-    real(wp), intent(in) :: point(3)      !< in the link's system [m]
-    real(wp), intent(in) :: force(3)      !< fixed axes [N]
+    type(motion_view_type), intent(in) :: state   !< in which the force acts
+    integer, intent(in) :: link                   !< its number
+    real(wp), intent(in) :: point(3)              !< in the link's system [m]
+    real(wp), intent(in) :: force(3)              !< fixed axes [N]
     real(wp) :: arm(3)
+    logical :: exists
 
+    call self%has_link(link, 'loads%add_force', exists)
+    if (.not. exists) return
     arm = turn(state%links(link)%r, point)
     self%force(:, link) = self%force(:, link) + force
     self%torque(:, link) = self%torque(:, link) + cross(arm, force)
   end subroutine add_force
 
-  !> A torque on a link.
+  !> A torque on a link. A number that no link has is noted in `fault`, and nothing is added.
   pure subroutine add_torque(self, link, torque)
     class(force_sum_type), intent(inout) :: self
-    integer, intent(in) :: link
+    integer, intent(in) :: link           !< its number
     real(wp), intent(in) :: torque(3)     !< fixed axes [N m]
+    logical :: exists
 
-    self%torque(:, link) = self%torque(:, link) + torque
+    call self%has_link(link, 'loads%add_torque', exists)
+    if (exists) self%torque(:, link) = self%torque(:, link) + torque
   end subroutine add_torque
 
   !> A generalized force on a coordinate: a torque about the axis of a revolute pair, a force along
-  !> that of a prismatic one; it acts on the moving link and back on the reference link.
+  !> that of a prismatic one; it acts on the moving link and back on the reference link. A number that no
+  !> coordinate has is noted in `fault`, and nothing is added.
   pure subroutine add_generalized(self, coordinate, value)
     class(force_sum_type), intent(inout) :: self
-    integer, intent(in) :: coordinate
+    integer, intent(in) :: coordinate     !< its number
     real(wp), intent(in) :: value         !< [N m, N]
 
+    if (coordinate < 1 .or. coordinate > size(self%generalized)) then
+      call self%fault%note('loads%add_generalized', 'coordinate', coordinate, size(self%generalized))
+      return
+    end if
     self%generalized(coordinate) = self%generalized(coordinate) + value
     self%any_generalized = .true.
   end subroutine add_generalized
+
+  !> Whether a link exists. If not, the call is noted.
+  pure subroutine has_link(self, link, procedure, exists)
+    class(force_sum_type), intent(inout) :: self
+    integer, intent(in) :: link                  !< its number
+    character(len=*), intent(in) :: procedure    !< that was given the number
+    logical, intent(out) :: exists               !< there is a link of this number
+
+    exists = link >= 1 .and. link <= size(self%force, 2)
+    if (.not. exists) call self%fault%note(procedure, 'link', link, size(self%force, 2))
+  end subroutine has_link
 end module mech9_force_sum

@@ -1,7 +1,8 @@
-!> The motion of links and coordinates as loads see it. Uses kinds, rotation.
+!> The motion of links and coordinates as loads see it. Uses kinds, rotation, call_fault.
 module mech9_motion_view
   use mech9_kinds, only: wp
   use mech9_rotation, only: identity, turn, cross
+  use mech9_call_fault, only: call_fault_type
   implicit none
   private
   public :: motion_view_type, link_motion_type
@@ -12,50 +13,97 @@ module mech9_motion_view
     real(wp) :: p(3) = 0.0_wp           !< the link's origin [m]
     real(wp) :: omega(3) = 0.0_wp       !< angular velocity, fixed axes [rad/s]
     real(wp) :: v(3) = 0.0_wp           !< velocity of the origin [m/s]
+  contains
+    procedure :: point_position
+    procedure :: point_velocity
+    procedure :: fixed_components
   end type link_motion_type
 
-  !> All that a load may depend on.
+  !> All that a load may depend on. Its procedures are for users: they check the number of the link.
   type :: motion_view_type
     real(wp) :: t = 0.0_wp                               !< [s]
     type(link_motion_type), allocatable :: links(:)      !< (N); only those that a load asked for are kept
     real(wp), allocatable :: q(:)                        !< (M) coordinates [rad, m]
     real(wp), allocatable :: dq(:)                       !< (M) their rates
+    !> Where wrong numbers of links are noted while loads are collected: `state` cannot be changed by its readers.
+    type(call_fault_type), pointer :: fault => null()
   contains
     procedure :: position
     procedure :: velocity
     procedure :: turned
+    procedure, private :: has_link
   end type motion_view_type
 
 contains
 
-  !> Where a point of a link is, in the system of link 1 [m].
-  pure function position(self, link, point)
+  !> Where a point of the link is, in the system of link 1 [m].
+  pure function point_position(self, point)
+    class(link_motion_type), intent(in) :: self
+    real(wp), intent(in) :: point(3)      !< in the link's system [m]
+    real(wp) :: point_position(3)
+
+    point_position = self%p + turn(self%r, point)
+  end function point_position
+
+  !> Velocity of a point of the link, fixed axes [m/s].
+  pure function point_velocity(self, point)
+    class(link_motion_type), intent(in) :: self
+    real(wp), intent(in) :: point(3)      !< in the link's system [m]
+    real(wp) :: point_velocity(3)
+
+    point_velocity = self%v + cross(self%omega, turn(self%r, point))
+  end function point_velocity
+
+  !> A vector given in the axes of the link, in fixed axes.
+  pure function fixed_components(self, vector)
+    class(link_motion_type), intent(in) :: self
+    real(wp), intent(in) :: vector(3)     !< in the link's axes, of any unit
+    real(wp) :: fixed_components(3)
+
+    fixed_components = turn(self%r, vector)
+  end function fixed_components
+
+  !> Where a point of a link is, in the system of link 1 [m]; zero where there is no such link, which is noted.
+  function position(self, link, point)
     class(motion_view_type), intent(in) :: self
-    integer, intent(in) :: link
+    integer, intent(in) :: link           !< its number
     real(wp), intent(in) :: point(3)      !< in the link's system [m]
     real(wp) :: position(3)
 
-    position = self%links(link)%p + turn(self%links(link)%r, point)
+    position = 0.0_wp
+    if (self%has_link(link, 'state%position')) position = self%links(link)%point_position(point)
   end function position
 
-  !> Velocity of a point of a link [m/s].
-  pure function velocity(self, link, point)
+  !> Velocity of a point of a link, fixed axes [m/s]; zero where there is no such link, which is noted.
+  function velocity(self, link, point)
     class(motion_view_type), intent(in) :: self
-    integer, intent(in) :: link
+    integer, intent(in) :: link           !< its number
     real(wp), intent(in) :: point(3)      !< in the link's system [m]
-    real(wp) :: velocity(3), arm(3)
+    real(wp) :: velocity(3)
 
-    arm = turn(self%links(link)%r, point)
-    velocity = self%links(link)%v + cross(self%links(link)%omega, arm)
+    velocity = 0.0_wp
+    if (self%has_link(link, 'state%velocity')) velocity = self%links(link)%point_velocity(point)
   end function velocity
 
-  !> A vector given in the axes of a link, in fixed axes.
-  pure function turned(self, link, vector)
+  !> A vector given in the axes of a link, in fixed axes; zero where there is no such link, which is noted.
+  function turned(self, link, vector)
     class(motion_view_type), intent(in) :: self
-    integer, intent(in) :: link
-    real(wp), intent(in) :: vector(3)
+    integer, intent(in) :: link           !< its number
+    real(wp), intent(in) :: vector(3)     !< in the link's axes, of any unit
     real(wp) :: turned(3)
 
-    turned = turn(self%links(link)%r, vector)
+    turned = 0.0_wp
+    if (self%has_link(link, 'state%turned')) turned = self%links(link)%fixed_components(vector)
   end function turned
+
+  !> Whether a link exists. If not, the call is noted where faults are kept.
+  logical function has_link(self, link, procedure)
+    class(motion_view_type), intent(in) :: self
+    integer, intent(in) :: link                  !< its number
+    character(len=*), intent(in) :: procedure    !< that asks for it
+
+    has_link = link >= 1 .and. link <= size(self%links)
+    if (has_link .or. .not. associated(self%fault)) return
+    call self%fault%note(procedure, 'link', link, size(self%links))
+  end function has_link
 end module mech9_motion_view

@@ -46,7 +46,8 @@ contains
     type(motion_view_type), intent(in) :: state
     real(wp) :: span(3)
 
-    span = state%position(self%links(2), self%positions(:, 2)) - state%position(self%links(1), self%positions(:, 1))
+    span = state%links(self%links(2))%point_position(self%positions(:, 2)) &
+           - state%links(self%links(1))%point_position(self%positions(:, 1))
   end function span
 
   subroutine apply(self, state, sum, err)
@@ -57,7 +58,8 @@ contains
     real(wp) :: d(3), rate(3), pull(3), length
 
     d = self%span(state)
-    rate = state%velocity(self%links(2), self%positions(:, 2)) - state%velocity(self%links(1), self%positions(:, 1))
+    rate = state%links(self%links(2))%point_velocity(self%positions(:, 2)) &
+           - state%links(self%links(1))%point_velocity(self%positions(:, 1))
     length = norm2(d)
     if (length > 0.0_wp) then
       pull = (self%stiffness*(length - self%free_length) + self%damping*dot_product(d, rate)/length)/length*d

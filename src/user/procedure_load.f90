@@ -4,6 +4,7 @@ module mech9_procedure_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_integrator
   use mech9_text, only: to_text
+  use mech9_call_fault, only: call_fault_type
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type
   use mech9_load, only: load_type
@@ -46,6 +47,9 @@ contains
     type(error_type), allocatable, intent(out) :: err
 
     call user_force(state%t, state, self%parameters, sum)
+    if (associated(state%fault)) call must_exist(self, state%fault, err)
+    if (.not. allocated(err)) call must_exist(self, sum%fault, err)
+    if (allocated(err)) return
     if (sum%unanswered) then
       call raise(err, exit_data, 'a load asks for a user procedure, but none is linked; '// &
                  'see docs/user-procedures.md for how to write user_force and link it', self%place)
@@ -56,6 +60,18 @@ contains
       call raise(err, exit_integrator, 'the user procedure for forces gives numbers that are not finite at t = '// &
                  to_text(state%t, 12)//' s', self%place)
   end subroutine apply
+
+  !> Fails where the procedure gave a number that no link or coordinate has.
+  pure subroutine must_exist(self, fault, err)
+    class(procedure_load_type), intent(in) :: self
+    type(call_fault_type), intent(in) :: fault                !< what was noted during the call
+    type(error_type), allocatable, intent(inout) :: err
+
+    if (.not. fault%found) return
+    call raise(err, exit_data, 'user_force calls '//trim(fault%procedure)//' with '//trim(fault%counted)//' '// &
+               to_text(fault%number)//', but the '//trim(fault%counted)//'s of this mechanism are 1 to '// &
+               to_text(fault%greatest)//'; correct the number in the procedure', self%place)
+  end subroutine must_exist
 
   !> None is known: its work counts as put in.
   pure real(wp) function potential(self, state)

@@ -51,6 +51,23 @@ expect 8 'there is no folder' "$link" -o "$folder/nowhere/none" "$samples/tramme
 expect 1 'the compiler no-such-compiler is not here' \
   env MECH9_FC=no-such-compiler "$link" -o "$folder/none" "$samples/trammel/trammel.f90"
 
+# --debug: subscripts in the user's code are checked, which a call of a procedure of ours need not be told
+sed 's/parameters(1), 0.0_wp, 0.0_wp/parameters(1)*state%dq(nint(parameters(2))), 0.0_wp, 0.0_wp/' \
+  "$samples/templates/user_force.f90" >"$folder/beyond.f90"
+expect 0 'with your user_force)' "$link" --debug -o "$folder/beyond" "$folder/beyond.f90"
+cat >"$folder/beyond.nml" <<'END'
+&mechanism links=2, coordinates=1 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&initial coordinate=1, position=0.0, velocity=0.0 /
+&body link=2, mass=1.0 /
+&load kind='user' /
+&user parameters=1.0, 1 /
+&time start=0.0, end=1.0, intervals=10 /
+END
+expect 0 '' "$folder/beyond_d" --no-write "$folder/beyond.nml"
+expect 2 "'state%dq' above upper bound" "$folder/beyond_d" --no-write "$folder/beyond.nml" --set user.parameters=1,9
+
 # the compiler holds the user's argument list against the hook's
 sed 's/type(taylor), intent(in) :: q/real(wp), intent(in) :: q/' "$samples/trammel/trammel.f90" >"$folder/wrong.f90"
 expect 1 'does not compile' "$link" -o "$folder/none" "$folder/wrong.f90"
