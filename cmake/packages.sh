@@ -2,11 +2,13 @@
 #   . cmake/packages.sh && need_packages build pictures tests
 # Does nothing, quickly and without network, when all are there.
 
-# The lists: what a build needs, what draws the pictures, and what the tests need besides. libc6-dev is only a
-# recommendation of gcc, so that a minimal system can have a compiler that cannot link.
+# The lists: what a build needs, what draws the pictures, what the tests need besides, and the browser that shows them
+# pages, without which those are not tested. libc6-dev is only a recommendation of gcc, so that a minimal system can have
+# a compiler that cannot link.
 packages_build="gfortran libc6-dev cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev libhdf5-dev"
 packages_pictures="gnuplot-nox graphviz"
 packages_tests="python3 python3-numpy python3-h5py python3-xarray python3-h5netcdf python3-pandas hdf5-tools groff-base"
+packages_browser="chromium"
 
 # The packages among the arguments that are not installed.
 missing_packages() {
@@ -24,7 +26,7 @@ as_root() {
   if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
-# Install what is missing of the named lists (build, pictures, tests).
+# Install what is missing of the named lists (build, pictures, tests, browser).
 need_packages() {
   local list wanted="" missing
   for list in "$@"; do
@@ -32,6 +34,7 @@ need_packages() {
       build) wanted="$wanted $packages_build" ;;
       pictures) wanted="$wanted $packages_pictures" ;;
       tests) wanted="$wanted $packages_tests" ;;
+      browser) wanted="$wanted $packages_browser" ;;
       *) echo "need_packages: no list named $list" >&2; return 1 ;;
     esac
   done

@@ -10,7 +10,7 @@ module mech9_html_film
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, label, in_thread
   use mech9_svg_picture, only: put_picture
-  use mech9_film_script, only: put_script
+  use mech9_film_script, only: put_style, put_script
   use mech9_page, only: page_type
   use mech9_xml_text, only: xml_text, decimal
   implicit none
@@ -38,11 +38,9 @@ contains
     call page%line('<html lang="en"><head><meta charset="utf-8"/>')
     call page%line('<meta name="viewport" content="width=device-width, initial-scale=1"/>')
     call page%line('<title>'//xml_text(title)//'</title>')
-    call page%line('<style>body{margin:12px;font:14px "DejaVu Sans",Verdana,sans-serif;background:#fff;color:#222}')
-    call page%line('figure{margin:0 auto;max-width:900px}svg.mech9{width:100%;height:auto;max-height:85vh;cursor:grab;'// &
-                   'touch-action:none;user-select:none}')
-    call page%line('nav{display:flex;gap:10px;align-items:center;flex-wrap:wrap}nav input[type=range]{flex:1;min-width:160px}')
-    call page%line('.bare .name,.bare .number,.bare .coordinate,.bare .input{display:none}</style></head><body><figure>')
+    call page%line('<style>')
+    call put_style(page)
+    call page%line('</style></head><body><figure>')
     call put_picture(title, scene, film, projection, 1, .true., page)
     call page%line('<nav><button id="play" type="button">Play</button>')
     call page%line('<input id="frame" type="range" min="0" value="0" step="1" aria-label="time"/>')
