@@ -12,6 +12,7 @@ contains
     type(tester_type) :: tester
 
     call test_codes(tester)
+    call test_no_start(tester)
     call test_words(tester)
     call test_much_input(tester)
     call test_dropped_output(tester)
@@ -56,6 +57,27 @@ contains
     call tester%no_error(err, 'a program that is not there is no error')
     call tester%is_true(.not. outcome%found, 'it is not found, and no shell reads its name')
   end subroutine test_codes
+
+  !> A file that is there and cannot be started is an error with its name and why; a program that ends with 127 itself,
+  !> as one does that misses a library, was started.
+  subroutine test_no_start(tester)
+    type(tester_type), intent(inout) :: tester
+    type(child_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    type(string_type) :: words(1)
+    integer :: unit
+
+    call run_shell('echo no library >&2; exit 127', '', '', outcome, err)
+    call tester%no_error(err, 'a program that ends with 127')
+    call tester%is_true(outcome%found .and. outcome%code == 127, 'it was found')
+    words(1)%text = './not_executable'
+    open (newunit=unit, file=words(1)%text, status='replace')
+    call run_child(words, '', outcome, err)
+    close (unit, status='delete')
+    call tester%is_true(allocated(err), 'a file that may not be executed')
+    if (allocated(err)) call tester%is_true(index(err%message, 'cannot start ./not_executable: Permission denied') > 0, &
+                                            'why it cannot be started: '//err%message)
+  end subroutine test_no_start
 
   !> A word arrives as it is, whatever a shell would make of it.
   subroutine test_words(tester)
