@@ -10,7 +10,7 @@ module mech9_gnuplot
   use mech9_child_process, only: child_outcome_type, run_child
   implicit none
   private
-  public :: quoted, quoted_path, run_gnuplot, gnuplot_package
+  public :: quoted, quoted_lines, quoted_path, run_gnuplot, gnuplot_package
 
   !> What installs it, for messages.
   character(len=*), parameter :: gnuplot_package = 'gnuplot (Debian: apt-get install gnuplot-nox)'
@@ -21,14 +21,43 @@ module mech9_gnuplot
 
 contains
 
-  !> Any text as a string of gnuplot. Between single quotes nothing has a meaning but the single quote;
-  !> control characters, which could end the line, become blanks.
+  !> Any text as a string of gnuplot. Between single quotes nothing has a meaning but the single quote: a text that
+  !> holds one stands between double quotes, and what means something there is written as octal numbers. (gnuplot also
+  !> takes two single quotes for one, but not at the beginning of a string, nor four of them.) Control characters, which
+  !> could end the line, become blanks.
   pure function quoted(text) result(string)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text      !< any bytes
     character(len=:), allocatable :: string
 
-    string = ''''//with_escapes(printable(text), '''', [''''''])//''''
+    if (index(text, '''') == 0) then
+      string = ''''//printable(text)//''''
+    else
+      string = '"'//escaped(text)//'"'
+    end if
   end function quoted
+
+  !> Several lines as one string of gnuplot.
+  pure function quoted_lines(lines) result(string)
+    type(string_type), intent(in) :: lines(:)    !< of any bytes, one at least
+    character(len=:), allocatable :: string
+    integer :: i
+
+    string = quoted(lines(1)%text)
+    if (size(lines) == 1) return
+    string = escaped(lines(1)%text)
+    do i = 2, size(lines)
+      string = string//'\n'//escaped(lines(i)%text)
+    end do
+    string = '"'//string//'"'
+  end function quoted_lines
+
+  !> Any text as it stands between double quotes.
+  pure function escaped(text) result(safe)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: safe
+
+    safe = with_escapes(printable(text), '"\`', ['\042', '\134', '\140'])
+  end function escaped
 
   !> The name of a file as a string of gnuplot. A path that begins with a folder is only ever a file: `<`,
   !> `|`, `$`, `+` or `-` at the beginning mean other things. Bytes that cannot stand in a line are written

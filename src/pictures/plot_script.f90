@@ -1,12 +1,13 @@
-!> The script by which gnuplot draws a plot. Uses kinds, text, path, number_format, printable, gnuplot, plot_request,
-!> plot_data, plot_panels.
+!> The script by which gnuplot draws a plot. Uses kinds, text, path, number_format, printable, gnuplot, title_lines,
+!> plot_request, plot_data, plot_panels.
 module mech9_plot_script
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_path, only: ending_of
   use mech9_number_format, only: number_format_type, number_width
   use mech9_printable, only: printable, column_name
-  use mech9_gnuplot, only: quoted, quoted_path
+  use mech9_gnuplot, only: quoted, quoted_lines, quoted_path
+  use mech9_title_lines, only: title_lines
   use mech9_plot_request, only: curve_type
   use mech9_plot_data, only: plot_data_type
   use mech9_plot_panels, only: panels_of, axis_label, over_time
@@ -24,6 +25,8 @@ module mech9_plot_script
   integer, parameter :: few_rows = 30
   !> Shorter side of a panel with equal scales against the longer one, at least.
   real(wp), parameter :: flattest = 0.2_wp
+  !> A space without width, in UTF-8.
+  character(len=*), parameter :: thin_space = char(226)//char(128)//char(139)
 
 contains
 
@@ -36,9 +39,11 @@ contains
     character(len=*), intent(in) :: script           !< name of the script's own file
     character(len=*), intent(in) :: table            !< file with the results; empty: the script holds the data
     character(len=:), allocatable :: text, source
+    type(string_type), allocatable :: lines(:)
     integer :: panels(size(curves)), i
 
     panels = panels_of(curves, data%names, data%units)
+    lines = drawn_title(title, picture, curves, panels, data)
     source = data_block
     text = '# gnuplot '//printable(script)//' draws '//printable(picture)//line_end// &
            'set encoding utf8'//line_end// &
@@ -50,9 +55,9 @@ contains
       source = quoted_path(table)
     end if
     if (maxval(panels) == 1) then
-      text = text//'set title '//quoted(title)//line_end
+      text = text//'set title '//quoted_lines(lines)//line_end
     else
-      text = text//stack(title, curves, panels, data)
+      text = text//stack(lines, curves, panels, data)
     end if
     do i = 1, maxval(panels)
       text = text//panel(pack(curves, panels == i), data, source, stacked=maxval(panels) > 1, last=i == maxval(panels))
@@ -81,6 +86,29 @@ contains
     end do
   end function terminal_script
 
+  !> The title in lines that fit above the plot. gnuplot leaves `]]>` as it is in an SVG, where it must not stand: a
+  !> space without width comes between.
+  pure function drawn_title(title, picture, curves, panels, data) result(lines)
+    character(len=*), intent(in) :: title, picture
+    type(curve_type), intent(in) :: curves(:)
+    integer, intent(in) :: panels(:)
+    type(plot_data_type), intent(in) :: data
+    type(string_type), allocatable :: lines(:)
+    integer, parameter :: letter = 10, most = 3
+    integer :: width, height, i, at
+
+    call find_size(curves, panels, data, width, height)
+    lines = title_lines(title, width/letter, most)
+    if (ending_of(picture) /= 'svg') return
+    do i = 1, size(lines)
+      do
+        at = index(lines(i)%text, ']]>')
+        if (at == 0) exit
+        lines(i)%text = lines(i)%text(:at + 1)//thin_space//lines(i)%text(at + 2:)
+      end do
+    end do
+  end function drawn_title
+
   !> The terminal of gnuplot for the ending of a picture, in its size.
   pure function terminal_of(picture, curves, panels, data) result(text)
     character(len=*), intent(in) :: picture
@@ -90,13 +118,7 @@ contains
     character(len=:), allocatable :: text
     integer :: width, height
 
-    width = 960
-    height = 540
-    if (maxval(panels) > 1) then
-      height = 120 + 230*maxval(panels)
-    else if (equal_scales(curves, data)) then
-      call true_shape(curves, data, width, height)
-    end if
+    call find_size(curves, panels, data, width, height)
     select case (ending_of(picture))
     case ('png')
       text = 'set terminal pngcairo noenhanced font ''Sans,12'' size '//to_text(width)//','//to_text(height)
@@ -108,6 +130,22 @@ contains
              to_text(height)
     end select
   end function terminal_of
+
+  !> The size of a picture.
+  pure subroutine find_size(curves, panels, data, width, height)
+    type(curve_type), intent(in) :: curves(:)
+    integer, intent(in) :: panels(:)        !< of the curves
+    type(plot_data_type), intent(in) :: data
+    integer, intent(out) :: width, height   !< [pixels]
+
+    width = 960
+    height = 540
+    if (maxval(panels) > 1) then
+      height = 120 + 230*maxval(panels)
+    else if (equal_scales(curves, data)) then
+      call true_shape(curves, data, width, height)
+    end if
+  end subroutine find_size
 
   !> The size of a picture with equal scales, around an area of the shape of its ranges.
   pure subroutine true_shape(curves, data, width, height)
@@ -177,8 +215,8 @@ contains
   end function inline_data
 
   !> Panels above each other, their axes of one length whatever their labels are.
-  pure function stack(title, curves, panels, data) result(text)
-    character(len=*), intent(in) :: title
+  pure function stack(lines, curves, panels, data) result(text)
+    type(string_type), intent(in) :: lines(:)   !< of the title
     type(curve_type), intent(in) :: curves(:)
     integer, intent(in) :: panels(:)
     type(plot_data_type), intent(in) :: data
@@ -193,8 +231,8 @@ contains
       left = max(left, 6 + letters_needed(data%extent(own%y)))
       if (size(own) > 1) right = max(right, 6 + longest_name(own, data))
     end do
-    text = 'set multiplot layout '//to_text(maxval(panels))//',1 title '//quoted(title)//' margins char '// &
-           to_text(left)//',char '//to_text(right)//',char 4,char 3 spacing char '// &
+    text = 'set multiplot layout '//to_text(maxval(panels))//',1 title '//quoted_lines(lines)//' margins char '// &
+           to_text(left)//',char '//to_text(right)//',char 4,char '//to_text(2 + size(lines))//' spacing char '// &
            merge('2', '5', all(over_time(curves)))//line_end
   end function stack
 

@@ -1,20 +1,24 @@
 !> A frame of a film as a picture in SVG, alone or as the part of a page that a script moves.
-!> Uses kinds, error, text, film, projection, scene, drawing, picture_style, page, xml_text.
+!> Uses kinds, error, text, film, projection, scene, drawing, picture_style, page, title_lines, xml_text.
 module mech9_svg_picture
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, colour_of, style_sheet, mark_svg
   use mech9_page, only: page_type
+  use mech9_title_lines, only: title_lines
   use mech9_xml_text, only: xml_text, decimal
   implicit none
   private
   public :: save_sketch, put_picture, put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of, &
             clock_text
+
+  !> Width of a letter of a title, and of small letters [px].
+  real(wp), parameter :: title_letter = 9.0_wp, small_letter = 6.8_wp
 
 contains
 
@@ -177,7 +181,7 @@ contains
     real(wp) :: bar, foot
 
     foot = projection%height - 14.0_wp
-    call page%line('<text class="title" x="14" y="24">'//xml_text(title)//'</text>')
+    call put_title(title, projection, page)
     bar = round_length(90.0_wp/projection%scale)
     call page%line('<g id="scale"><path stroke="#222" stroke-width="1.5" d="M'//decimal(projection%width - 90.0_wp - &
                    projection%scale*bar)//' '//decimal(foot - 5.0_wp)//'v5h'//decimal(projection%scale*bar)//'v-5"/>'// &
@@ -187,6 +191,25 @@ contains
     if (moves) call page%line('<text class="small" id="time" x="90" y="'//decimal(foot + 2.0_wp)//'">'// &
                               clock_text(time)//'</text>')
   end subroutine put_surroundings
+
+  !> The title: in one line if it fits, else smaller in up to three.
+  subroutine put_title(title, projection, page)
+    character(len=*), intent(in) :: title        !< any text
+    type(projection_type), intent(in) :: projection
+    type(page_type), intent(inout) :: page
+    type(string_type), allocatable :: lines(:)
+    integer :: i
+
+    lines = title_lines(title, nint((projection%width - 28.0_wp)/title_letter), 2)
+    if (size(lines) == 1) then
+      call page%line('<text class="title" x="14" y="24">'//xml_text(lines(1)%text)//'</text>')
+      return
+    end if
+    lines = title_lines(title, nint((projection%width - 28.0_wp)/small_letter), 3)
+    do i = 1, size(lines)
+      call page%line('<text class="small" x="14" y="'//to_text(6 + 14*i)//'">'//xml_text(lines(i)%text)//'</text>')
+    end do
+  end subroutine put_title
 
   !> A time as it stands below a picture.
   pure function clock_text(time) result(text)

@@ -174,6 +174,43 @@ def test_hostile(folder):
     checks.true('harm' not in found, 'nothing was carried out', found)
 
 
+def titled(title, folder, *options):
+    setting = "mechanism.title='" + title.replace("'", "''") + "'"
+    return run(mech9k, FIG1, '--quiet', '--set', 'time.intervals=3', '--set', setting, *options, folder=folder)
+
+
+def test_titles(folder):
+    """Titles are drawn as they are, whatever they mean to gnuplot and to XML, in one panel and above several."""
+    for title in ("'", "''", "'''", "it''s", "'quoted'", "'; system 'touch harm' #", '"\'"', '\\', "'\\", "'`touch harm`",
+                  "'$(touch harm)", "'\\n", ']]>', "a]]>b]]>]]>'", '<script>alert(1)</script>', '@x', "'@x", 'a_{b}^2 {', '}',
+                  '^', '_', '\U0001f642 é', '<![CDATA[', '-->', '&amp;', '%s', '#', "'#", '!touch harm'):
+        done = titled(title, folder, '--plot', 'one.svg:q1', '--plot', 'two.svg:q1,P.x', '--plot', 'one.png:q1')
+        if not checks.equal(done.returncode, 0, f'the title {title!r}'):
+            print(done.stderr)
+            continue
+        for name in ('one', 'two'):
+            # a space without width keeps `]]>` apart
+            found = [words.replace('\u200b', '') for words in texts_of(os.path.join(folder, name + '.svg'))]
+            checks.true(title in found, f'the picture says {title!r}', found)
+    checks.true('harm' not in os.listdir(folder), 'nothing was carried out')
+
+
+def test_long_title(folder):
+    """A title with no room in one line is drawn in three at most, each within the picture."""
+    for title, whole in (('a crank drives two rockers by one coupler, ' * 3, True), ('x' * 2000, False)):
+        titled(title, folder, '--plot', 'one.svg:q1', '--plot', 'two.svg:q1,P.x', '--plot', 'shape.svg:P.x:P.y')
+        for name in ('one', 'two', 'shape'):
+            found = [words for words in texts_of(os.path.join(folder, name + '.svg')) if words and words in title.strip()
+                     or words.endswith('…')]
+            found = [words for words in found if len(words) > 20]
+            checks.true(2 <= len(found) <= 3, f'{name}: a long title in lines', found)
+            checks.true(max(map(len, found)) <= 96, f'{name}: none is longer than the picture', found)
+            if whole and name != 'shape':
+                checks.equal(' '.join(found), title.strip(), f'{name}: all of it')
+            if not whole:
+                checks.true(found[-1].endswith('…'), f'{name}: it is seen that there is more', found[-1])
+
+
 def test_terminal(folder):
     done = run(mech9k, FIG1, '--quiet', '--plot', 'term:q3,P.x', folder=folder)
     lines = done.stdout.splitlines()
@@ -242,14 +279,24 @@ def test_without_gnuplot(folder):
                     'no gnuplot: told to who wants quiet, too', done.stderr)
         done = run(mech9k, FIG1, '--quiet', '--plot', 'term:q1', folder=folder)
         checks.true(done.returncode == 8 and 'gnuplot' in done.stderr, 'no gnuplot for the terminal', done.stderr)
-        # one that fails, and one that is ended
-        for script, words in (('echo cannot draw >&2; exit 3', 'cannot draw'), ('kill -9 $$', 'ended with 137')):
+        # one that fails, one that is ended, one that misses a library; one without an interpreter, and one that is no
+        # program: they are there, and why they do not start is told
+        shell = shutil.which('sh', path=path)
+        for script, interpreter, mode, words in (
+                ('echo cannot draw >&2; exit 3', shell, stat.S_IRWXU, 'cannot draw'),
+                ('kill -9 $$', shell, stat.S_IRWXU, 'ended with 137'),
+                ('echo no library libgd.so >&2; exit 127', shell, stat.S_IRWXU, 'ended with 127: no library libgd.so'),
+                ('', os.path.join(empty, 'none'), stat.S_IRWXU, 'empty/gnuplot: No such file or directory; install'),
+                ('', shell, stat.S_IRUSR, 'empty/gnuplot: Permission denied; install')):
             fake = os.path.join(empty, 'gnuplot')
+            if os.path.exists(fake):
+                os.remove(fake)
             with open(fake, 'w', encoding='utf-8') as file:
-                file.write(f'#!{shutil.which("sh", path=path)}\n{script}\n')
-            os.chmod(fake, stat.S_IRWXU)
+                file.write(f'#!{interpreter}\n{script}\n')
+            os.chmod(fake, mode)
             done = run(mech9k, FIG1, '--table', 'b.dat', '--plot', 'q1', folder=folder)
             checks.true(done.returncode == 8 and words in done.stderr, f'gnuplot fails: {script}', done.stderr)
+            checks.true('is not here' not in done.stderr, f'it is not said that gnuplot is not here: {words}', done.stderr)
             checks.equal(len(read_table(read(os.path.join(folder, 'b.dat')))['t']), 101, 'the table is whole')
     finally:
         os.environ['PATH'] = path
@@ -260,7 +307,8 @@ def test_without_gnuplot(folder):
 
 tests = [test_refusals, test_without_gnuplot]
 if shutil.which('gnuplot'):
-    tests += [test_beside_table, test_without_table, test_dynamics, test_no_place, test_hostile, test_terminal]
+    tests += [test_beside_table, test_without_table, test_dynamics, test_no_place, test_hostile, test_titles, test_long_title,
+              test_terminal]
 else:
     print('gnuplot is not here: only what is said without it is checked')
 for test in tests:

@@ -1,0 +1,66 @@
+!> Titles in lines: nothing of them is lost but what has no room, whatever bytes they hold.
+program test_title_lines
+  use mech9_text, only: string_type
+  use mech9_title_lines, only: title_lines, letters_of
+  use mech9_testing, only: tester_type
+  implicit none
+  character(len=*), parameter :: more = char(226)//char(128)//char(166)
+  !> A letter of four bytes, a face.
+  character(len=*), parameter :: face = char(240)//char(159)//char(153)//char(130)
+  type(tester_type) :: test
+
+  call short_titles(test)
+  call long_titles(test)
+  call other_letters(test)
+  call test%finish()
+
+contains
+
+  subroutine short_titles(test)
+    type(tester_type), intent(inout) :: test
+
+    call expect(test, 'Fig. 1', 20, 2, ['Fig. 1'])
+    call expect(test, '', 20, 2, [' '])
+    call expect(test, 'just as long', 12, 1, ['just as long'])
+    call expect(test, '  a'//char(9)//'b  ', 12, 1, ['a b'])
+  end subroutine short_titles
+
+  subroutine long_titles(test)
+    type(tester_type), intent(inout) :: test
+    type(string_type), allocatable :: lines(:)
+    integer :: i
+
+    call expect(test, 'a crank and a rocker', 11, 2, ['a crank and', 'a rocker   '])
+    call expect(test, 'a crank and a rocker', 12, 2, ['a crank and', 'a rocker   '])
+    call expect(test, 'birdsinthetallgrass', 8, 3, ['birdsint', 'hetallgr', 'ass     '])
+    call expect(test, 'a crank and a rocker', 8, 2, [character(len=10) :: 'a crank', 'and a r'//more])
+    lines = title_lines(repeat('x', 2000), 60, 3)
+    call test%is_true(size(lines) == 3, 'two thousand letters in three lines')
+    call test%is_true(all([(letters_of(lines(i)%text) <= 61, i=1, 3)]), 'none of them is longer than its room')
+  end subroutine long_titles
+
+  !> Characters stay whole, and wide ones count twice.
+  subroutine other_letters(test)
+    type(tester_type), intent(inout) :: test
+
+    call expect(test, repeat(face, 4), 4, 2, [repeat(face, 2), repeat(face, 2)])
+    call expect(test, repeat(face, 2), 2, 2, [face, face])
+    call expect(test, char(255)//'a', 4, 1, ['?a'])
+    call expect(test, 'WWWW', 3, 2, ['WW', 'WW'])
+  end subroutine other_letters
+
+  subroutine expect(test, title, room, most, expected)
+    type(tester_type), intent(inout) :: test
+    character(len=*), intent(in) :: title, expected(:)
+    integer, intent(in) :: room, most
+    type(string_type), allocatable :: lines(:)
+    integer :: i
+
+    lines = title_lines(title, room, most)
+    call test%is_true(size(lines) == size(expected), 'number of lines of '//title)
+    if (size(lines) /= size(expected)) return
+    do i = 1, size(lines)
+      call test%is_true(lines(i)%text == trim(expected(i)), 'line of '//title//': '//lines(i)%text)
+    end do
+  end subroutine expect
+end program test_title_lines
