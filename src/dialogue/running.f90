@@ -3,7 +3,7 @@
 module mech9_running
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
-  use mech9_system, only: catch_interrupts
+  use mech9_system, only: catch_interrupts, asked_to_end
   use mech9_kept_rows, only: kept_rows_type
   use mech9_task, only: task_type
   use mech9_session, only: run_file
@@ -31,7 +31,8 @@ contains
     changed = .false.
     do
       call run_file(task, options, path, code, kept)
-      ! what interrupted the run does not end the conversation
+      if (asked_to_end()) exit
+      ! Ctrl-C ended the run only, not the conversation
       call catch_interrupts()
       conversation%state = going
       do

@@ -20,6 +20,9 @@ module mech9_child_process
   end type child_outcome_type
 
   integer(c_int), parameter :: standard_input = 0, standard_output = 1, standard_error = 2
+  !> The setting of prctl that lets a child end with its parent, and by which signal.
+  integer(c_int), parameter :: end_with_parent = 1
+  integer(c_long), parameter :: signal_terminate = 15
   !> What the child ends with where the program cannot be started, as shells do. Others end with it too, such as the
   !> loader that misses a library: why it could not be started is told in a file of its own.
   integer(c_int), parameter :: not_started = 127
@@ -39,6 +42,13 @@ module mech9_child_process
       type(c_ptr), value :: file
       type(c_ptr), intent(in) :: words(*)
     end function c_execvp
+
+    ! settings of this process: here the signal that it gets when its parent ends
+    integer(c_int) function c_prctl(option, signal, none, nothing, no_more) bind(c, name='prctl')
+      import :: c_int, c_long
+      integer(c_int), value :: option
+      integer(c_long), value :: signal, none, nothing, no_more
+    end function c_prctl
 
     subroutine c_exit_at_once(code) bind(c, name='_exit')
       import :: c_int
@@ -182,6 +192,7 @@ contains
     if (present(folder)) place = folder//c_null_char
     process = c_fork()
     if (process /= 0) return
+    status = c_prctl(end_with_parent, signal_terminate, 0_c_long, 0_c_long, 0_c_long)
     status = min(c_dup2(from, standard_input), c_dup2(to, standard_error), c_dup2(drop, standard_output), c_chdir(place))
     if (status >= 0) status = c_execvp(list(1), list)
     written = c_pwrite(failure, transfer(error_number(), [c_null_char]), c_sizeof(status), 0_c_long)

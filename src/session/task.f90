@@ -1,6 +1,6 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
 !> Uses command_line, mechanism, result_units, plan, needs, state, mobility_report, assemblies_text, structure_text,
-!> plan_text, structure_graph, diagnostics, kept_rows, film, picture_requests, results, recording.
+!> plan_text, structure_graph, diagnostics, kept_rows, film, picture_requests, results, recording, system.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -21,6 +21,7 @@ module mech9_task
   use mech9_structure_graph, only: save_structure_graph
   use mech9_structure_text, only: print_structure, print_mobility, print_mobility_report
   use mech9_plan_text, only: print_plan
+  use mech9_system, only: asked_to_end
   implicit none
   private
   public :: task_type, answers_only, print_check, begin_run, end_run
@@ -157,6 +158,8 @@ contains
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     call results%print_words(error_unit, options%has('quiet'))
+    ! pictures take longer than a program may take that is asked to end
+    if (asked_to_end()) return
     if (allocated(run%film)) call draw(options, pictures, mechanism, run%film, diagnostics)
   end subroutine end_run
 

@@ -2,27 +2,30 @@
 !> Ctrl-C, notice that standard output is lost. Uses error, system_error.
 module mech9_system
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_intptr_t, c_ptr, c_null_ptr, c_funptr, c_funloc, c_null_funptr
   use mech9_error, only: error_type, raise, exit_file
   use mech9_system_error, only: error_number, clear_error_number, reason
   implicit none
   private
   public :: exit_program, is_terminal, standard_input, standard_output, standard_error
-  public :: catch_interrupts, catch_size_limit, leave_quit_alone, interrupted, hung_up, flush_output
+  public :: catch_interrupts, catch_size_limit, leave_quit_alone, interrupted, asked_to_end, hung_up, flush_output
 
   !> The three standard files, for `is_terminal`.
   integer, parameter :: standard_input = 0, standard_output = 1, standard_error = 2
 
   ! Numbers of POSIX systems.
   integer(c_int), parameter :: signal_file_size = 25, signal_hang_up = 1, signal_interrupt = 2, signal_quit = 3, &
-                               signal_broken_pipe = 13, signal_terminate = 15
+                               signal_broken_pipe = 13, signal_alarm = 14, signal_terminate = 15
+  !> The timer of setitimer that counts real time, and how long a signal may go unnoticed [us].
+  integer(c_int), parameter :: real_timer = 0
+  integer(c_long), parameter :: patience = 800000
   !> SIG_DFL and SIG_IGN as addresses.
   integer(c_intptr_t), parameter :: default_action = 0, ignore_action = 1
 
-  !> The number of the signal that came, 0 before; set by the signal handler, read by `interrupted`. A signal
-  !> handler is given nothing but the number of the signal, so that it can only reach a module variable: this
-  !> is the one exception of the project to its rule that no module variable changes. An interrupt means the
-  !> whole process, hence every mechanism running in it.
+  !> The number of the signal that came, 0 before; set by the signal handler, read by `interrupted`, which makes it
+  !> negative when it is noticed. A signal handler is given nothing but the number of the signal, so that it can only
+  !> reach a module variable: this is the one exception of the project to its rule that no module variable changes. An
+  !> interrupt means the whole process, hence every mechanism running in it.
   integer(c_int), volatile, bind(c, name='mech9_interrupt_flag') :: interrupt_flag = 0
 
   interface
@@ -46,6 +49,19 @@ module mech9_system
       integer(c_int), value :: number
       type(c_funptr), value :: action
     end function c_signal
+
+    integer(c_int) function c_raise(number) bind(c, name='raise')
+      import :: c_int
+      integer(c_int), value :: number
+    end function c_raise
+
+    ! two times of seconds and microseconds: between two alarms, until the first one
+    integer(c_int) function c_setitimer(timer, times, previous) bind(c, name='setitimer')
+      import :: c_int, c_long, c_ptr
+      integer(c_int), value :: timer
+      integer(c_long), intent(in) :: times(4)
+      type(c_ptr), value :: previous
+    end function c_setitimer
   end interface
 
 contains
@@ -82,14 +98,17 @@ contains
   end function is_terminal
 
   !> From now on the first Ctrl-C, request to terminate or closing of the terminal only sets what
-  !> `interrupted` tells, so that a loop can end in order; a second one ends the program at once. A reader
+  !> `interrupted` tells, so that a loop can end in order; a second one ends the program at once, and so does the first
+  !> one where nobody takes notice of it within a second: a step that does not end, a pipe that nobody reads. A reader
   !> that goes away (`mech9k ... | head`) becomes an error of writing instead of the death of the program, as
   !> in `catch_size_limit`. Called again, it forgets what was caught: a session that outlives an
   !> interrupted run is ready for the next.
   subroutine catch_interrupts()
     type(c_funptr) :: previous
 
+    call set_alarm(0_c_long)
     interrupt_flag = 0
+    previous = c_signal(signal_alarm, c_funloc(end_at_once))
     call catch(signal_interrupt)
     call catch(signal_terminate)
     call catch(signal_hang_up)
@@ -127,22 +146,57 @@ contains
     ! callers may then move the call out of the loop that polls it. Through a C function, of which the
     ! compiler knows nothing, it is what it should be.
     interrupted = c_abs(interrupt_flag) /= 0
+    if (interrupted) call take_notice()
   end function interrupted
+
+  !> Whether the whole program is to end, soon, and not only what it is doing: it was not Ctrl-C.
+  logical function asked_to_end()
+    asked_to_end = any(c_abs(interrupt_flag) == [signal_terminate, signal_hang_up])
+  end function asked_to_end
 
   !> Whether it was the terminal that went away, so that nobody is there to be asked.
   logical function hung_up()
     hung_up = c_abs(interrupt_flag) == signal_hang_up
   end function hung_up
 
-  !> The signal handler. It may do very little: note the signal, and give the next one its default
-  !> action, which is to end the program.
+  !> The signal is noticed. After Ctrl-C there is time for an end in order, pictures included: who does not want to wait
+  !> presses it again. Other signals leave time to write what was computed.
+  subroutine take_notice()
+    if (interrupt_flag <= 0) return
+    interrupt_flag = -interrupt_flag
+    call set_alarm(merge(patience, 0_c_long, asked_to_end()))
+  end subroutine take_notice
+
+  !> The handler of signals. It may do very little: note the signal, give the next one its default
+  !> action, which is to end the program, and see to it that the program ends in any case.
   subroutine note_signal(number) bind(c)
     integer(c_int), value :: number
     type(c_funptr) :: previous
 
     interrupt_flag = number
     previous = c_signal(number, action(default_action))
+    call set_alarm(patience)
   end subroutine note_signal
+
+  !> The handler of the alarm: end the program by the signal that nobody took notice of.
+  subroutine end_at_once(number) bind(c)
+    integer(c_int), value :: number     !< of the alarm itself
+    integer(c_int) :: cause, status
+    type(c_funptr) :: previous
+
+    cause = abs(interrupt_flag)
+    if (cause == 0) cause = number
+    previous = c_signal(cause, action(default_action))
+    status = c_raise(cause)
+  end subroutine end_at_once
+
+  !> An alarm after a time; none for 0.
+  subroutine set_alarm(microseconds)
+    integer(c_long), intent(in) :: microseconds
+    integer(c_int) :: status
+
+    status = c_setitimer(real_timer, [0_c_long, 0_c_long, 0_c_long, microseconds], c_null_ptr)
+  end subroutine set_alarm
 
   type(c_funptr) function action(address)
     integer(c_intptr_t), intent(in) :: address

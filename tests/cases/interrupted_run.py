@@ -1,7 +1,8 @@
 """A run that is asked to end (Ctrl-C, kill, the terminal closed) keeps what was computed and says so; an answer
-just ends. Ctrl-\\ ends a run as it ends any program.
+just ends. Ctrl-\\ ends a run as it ends any program. What takes no notice of the request, a step that does not end or a
+pipe that nobody reads, is ended within a second.
 
-usage: interrupted_run.py MECH9K MECH9D
+usage: interrupted_run.py MECH9K MECH9D FAILING_FORCE_D     the last: mech9d with user_forces/failing_force.f90
 """
 import json
 import os
@@ -39,18 +40,75 @@ def interrupted(words, folder, number, ready, seconds=0.3):
     """Run, wait until `ready` and a little longer, send the signal; what the ended process said, and its code."""
     process = subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                preexec_fn=default_actions)
+    return ended(process, number, ready, seconds)[:3]
+
+
+def ended(process, number, ready, seconds=0.3):
+    """The code of a process that a signal is sent to, what it said, and how long it went on after the signal [s]."""
     patience = time.monotonic() + 30.0
     while not ready() and process.poll() is None and time.monotonic() < patience:
         time.sleep(0.02)
     time.sleep(seconds)
     process.send_signal(number)
+    start = time.monotonic()
     try:
         said, errors = process.communicate(timeout=30)
     except subprocess.TimeoutExpired:
         process.kill()
         process.communicate()
-        return None, '', ''
-    return process.returncode, said, errors
+        return None, '', '', 30.0
+    return process.returncode, said, errors, time.monotonic() - start
+
+
+# A mass under the force of a user's procedure that does not come back after 0.5 s.
+ENDLESS = """
+&mechanism links=2, coordinates=1 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&initial coordinate=1, position=0.0, velocity=0.0 /
+&body link=2, mass=1.0 /
+&load kind='user' /
+&user parameters = 2.0, 0.5 /
+&time start=0.0, end=1.0, intervals=100 /
+"""
+
+
+def check_stuck(checks, words, folder, number, why):
+    """A run that takes no notice ends by the signal itself. A second is allowed, and another one for a busy machine."""
+    process = subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               preexec_fn=default_actions)
+    code, _, errors, seconds = ended(process, number, lambda: True, 0.5)
+    checks.equal(code, -number, f'{why}, {signal.Signals(number).name}: ended by the signal')
+    checks.true(seconds < 2.0, f'{why}, {signal.Signals(number).name}: within a second', seconds)
+    checks.true('acktrace' not in errors, f'{why}: without a backtrace', errors)
+
+
+def check_pipes(checks, program, endless, folder):
+    """A named pipe is waited for until somebody reads, or the run is asked to end; a step that does not end is ended."""
+    pipe, data = os.path.join(folder, 'pipe'), os.path.join(folder, 'endless.nml')
+    os.mkfifo(pipe)
+    with open(data, 'w', encoding='utf-8') as file:
+        file.write(ENDLESS)
+    for number in SIGNALS:
+        check_stuck(checks, [program, FIG1, '--table', pipe], folder, number, 'a pipe without a reader')
+        check_stuck(checks, [endless, data, '--table', 'stuck.dat'], folder, number, 'a force that does not come back')
+    check_stuck(checks, [program, pipe], folder, signal.SIGTERM, 'a pipe without a writer')
+    process = subprocess.Popen([program, FIG1, '--quiet', '--table', pipe], stderr=subprocess.PIPE, text=True)
+    time.sleep(0.3)
+    with open(pipe, encoding='utf-8') as file:
+        through = file.read()
+    checks.equal((process.wait(timeout=30), process.stderr.read()), (0, ''), 'a reader that comes later: done')
+    process.stderr.close()
+    checks.true(len(read_table(through)['t']) > 10, 'a reader that comes later gets the table')
+    # one that does not go on reading: the run stops in the middle of its rows
+    process = subprocess.Popen([program, FIG1, '--set', 'time.intervals=' + MANY, '--table', '-'], stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL, preexec_fn=default_actions)
+    time.sleep(0.5)
+    start = time.monotonic()
+    process.send_signal(signal.SIGTERM)
+    checks.equal(process.wait(timeout=30), -signal.SIGTERM, 'a reader that does not read on: ended by the signal')
+    checks.true(time.monotonic() - start < 2.0, 'a reader that does not read on: within a second')
+    process.stdout.close()
 
 
 def check_rows(checks, program, data, settings, folder, number):
@@ -78,7 +136,7 @@ def check_rows(checks, program, data, settings, folder, number):
 
 
 def main():
-    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
+    mech9k, mech9d, endless = map(os.path.abspath, sys.argv[1:4])
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
         for number in SIGNALS:
@@ -100,6 +158,8 @@ def main():
         code, _, errors = interrupted([mech9k, PLATFORM, '--branches', '--starts', MANY], folder, signal.SIGINT,
                                       lambda: True, 0.5)
         checks.equal((code, errors), (-signal.SIGINT, ''), '--branches ends at once')
+    with tempfile.TemporaryDirectory() as folder:
+        check_pipes(checks, mech9k, endless, folder)
     checks.finish()
 
 
