@@ -184,7 +184,7 @@ def test_titles(folder):
     for title in ("'", "''", "'''", "it''s", "'quoted'", "'; system 'touch harm' #", '"\'"', '\\', "'\\", "'`touch harm`",
                   "'$(touch harm)", "'\\n", ']]>', "a]]>b]]>]]>'", '<script>alert(1)</script>', '@x', "'@x", 'a_{b}^2 {', '}',
                   '^', '_', '\U0001f642 é', '<![CDATA[', '-->', '&amp;', '%s', '#', "'#", '!touch harm'):
-        done = titled(title, folder, '--plot', 'one.svg:q1', '--plot', 'two.svg:q1,P.x', '--plot', 'one.png:q1')
+        done = titled(title, folder, '--plot', 'one.svg:q1', '--plot', 'two.svg:q1,P.x', '--plot', 'three.png:q1')
         if not checks.equal(done.returncode, 0, f'the title {title!r}'):
             print(done.stderr)
             continue
