@@ -1,4 +1,4 @@
-!> A film as an animated GIF, drawn by gnuplot. Uses kinds, error, film, projection, scene, drawing,
+!> A film as an animated GIF, drawn by gnuplot. Uses kinds, error, text, film, film_clock, projection, scene, drawing,
 !> picture_style, svg_film, gnuplot, page, xml_text.
 !>
 !> gnuplot is given polygons only: lines are drawn forth and back, bands and plates as their outlines.
@@ -7,6 +7,7 @@ module mech9_gif_film
   use mech9_error, only: error_type, raise, add_place, exit_file
   use mech9_text, only: to_text
   use mech9_film, only: film_type
+  use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label, in_pin, in_cross, in_cam, &
                          as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
@@ -14,7 +15,7 @@ module mech9_gif_film
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, colour_of, ink, edge
   use mech9_svg_film, only: duration_of
-  use mech9_svg_picture, only: clock_text
+  use mech9_svg_picture, only: scale_length, axis_length, beyond_axis, shortest_axis
   use mech9_gnuplot, only: quoted, quoted_path, run_gnuplot, gnuplot_package
   use mech9_page, only: page_type
   use mech9_xml_text, only: decimal
@@ -56,7 +57,7 @@ contains
     type(script_type) :: script
     character(len=:), allocatable :: size
     logical :: found
-    integer :: stride, frames, i, delay
+    integer :: stride, frames, i, delay, decimals
 
     stride = (film%n_frames + most_frames - 1)/most_frames
     frames = (film%n_frames + stride - 1)/stride
@@ -68,8 +69,9 @@ contains
     call script%page%line('set output '//quoted_path(path))
     call script%page%line('unset border; unset tics; unset key; set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0')
     call script%page%line('set xrange [0:'//decimal(projection%width)//']; set yrange ['//decimal(projection%height)//':0]')
+    decimals = clock_decimals(film)
     do i = 1, frames
-      call put_frame(title, scene, film, projection, 1 + (i - 1)*stride, script)
+      call put_frame(title, scene, film, projection, 1 + (i - 1)*stride, decimals, script)
     end do
     call script%page%line('unset output')
     call run_gnuplot(script%page%text(), found, err, picture=path)
@@ -79,12 +81,13 @@ contains
     call add_place(err, 'no moving picture '//path)
   end subroutine save_gif_film
 
-  subroutine put_frame(title, scene, film, projection, frame, script)
+  subroutine put_frame(title, scene, film, projection, frame, decimals, script)
     character(len=*), intent(in) :: title
     type(scene_type), intent(in) :: scene
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
     integer, intent(in) :: frame
+    integer, intent(in) :: decimals                !< of the clock
     type(script_type), intent(inout) :: script
     type(drawing_type) :: drawing
     integer, allocatable :: order(:)
@@ -95,7 +98,9 @@ contains
     script%objects = 0
     call script%page%line('unset object; unset label')
     call put_text(title, [14.0_wp, 20.0_wp], 'left', ink, script)
-    call put_text(clock_text(film%times(frame)), [14.0_wp, projection%height - 16.0_wp], 'left', ink, script)
+    call put_text(clock_text(film%times(frame), decimals), [90.0_wp, projection%height - 16.0_wp], 'left', ink, script)
+    call put_scale(projection, script)
+    call put_axes(projection, script)
     do i = 1, size(order)
       associate (item => scene%items(order(i)))
         select case (item%shape)
@@ -110,6 +115,36 @@ contains
     end do
     call script%page%line('plot NaN notitle')
   end subroutine put_frame
+
+  !> The bar that tells how long things are.
+  subroutine put_scale(projection, script)
+    type(projection_type), intent(in) :: projection
+    type(script_type), intent(inout) :: script
+    real(wp) :: right, left, foot
+
+    right = projection%width - 90.0_wp
+    left = right - projection%scale*scale_length(projection)
+    foot = projection%height - 14.0_wp
+    call script%polyline(reshape([left, foot - 5.0_wp, left, foot, right, foot, right, foot - 5.0_wp], [2, 4]), ink, 1.5_wp)
+    call put_text(to_text(scale_length(projection), 3)//' m', [right + 8.0_wp, foot - 2.0_wp], 'left', ink, script)
+  end subroutine put_scale
+
+  !> The axes of link 1, but one that points to the viewer.
+  subroutine put_axes(projection, script)
+    type(projection_type), intent(in) :: projection
+    type(script_type), intent(inout) :: script
+    character, parameter :: names(3) = ['x', 'y', 'z']
+    real(wp) :: foot(2), tip(2)
+    integer :: i
+
+    foot = [38.0_wp, projection%height - 36.0_wp]
+    do i = 1, 3
+      tip = axis_length*[projection%view%right(i), -projection%view%up(i)]
+      if (norm2(tip) < shortest_axis) cycle
+      call script%polyline(reshape([foot, foot + tip], [2, 2]), ink, 1.2_wp)
+      call put_text(names(i), foot + beyond_axis*tip, 'center', ink, script)
+    end do
+  end subroutine put_axes
 
   !> A polygon; an empty colour fills nothing.
   subroutine polygon(self, corners, fill, line, width)

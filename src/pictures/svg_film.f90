@@ -1,9 +1,11 @@
 !> A film as one SVG that moves by itself, without a script, so that it also plays where a page shows it as a
-!> picture. Uses kinds, error, film, projection, scene, drawing, picture_style, svg_picture, page, xml_text.
+!> picture. Uses kinds, error, text, film, film_clock, projection, scene, drawing, picture_style, svg_picture, page, xml_text.
 module mech9_svg_film
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_text, only: to_text
   use mech9_film, only: film_type
+  use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, mark, label
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
@@ -51,10 +53,35 @@ contains
       end associate
     end do
     call page%line('</g>')
-    call put_surroundings(title, film%times(1), .false., projection, .false., page)
+    call put_surroundings(title, projection, .false., page)
+    if (film%n_frames > 1) call put_clock(film, projection%height - 12.0_wp, page)
     call page%line('</svg>')
     call page%save(path, err)
   end subroutine save_svg_film
+
+  !> The clock: the times of all frames stand below each other on a strip that is moved behind a window.
+  subroutine put_clock(film, foot, page)
+    type(film_type), intent(in) :: film
+    real(wp), intent(in) :: foot                   !< where the time stands on the page [px]
+    type(page_type), intent(inout) :: page
+    integer, parameter :: line = 20                ! height of a line [px]
+    integer :: i, decimals
+
+    decimals = clock_decimals(film)
+    call page%put('<svg id="time" x="90" y="'//decimal(foot - 14.0_wp)//'" width="160" height="'//to_text(line)// &
+                  '" overflow="hidden"><g transform="translate(0 0)">'// &
+                  '<animateTransform attributeName="transform" type="translate"'//timing(duration_of(film)))
+    do i = 1, film%n_frames
+      if (i > 1) call page%put(';')
+      call page%put('0 '//to_text(-line*(i - 1)))
+    end do
+    call page%line('"/>')
+    do i = 1, film%n_frames
+      call page%line('<text class="small" x="0" y="'//to_text(line*(i - 1) + 14)//'">'// &
+                     clock_text(film%times(i), decimals)//'</text>')
+    end do
+    call page%line('</g></svg>')
+  end subroutine put_clock
 
   !> How long a film plays: as long as it takes, or less or more where nobody could watch it [s].
   pure real(wp) function duration_of(film) result(duration)

@@ -1,10 +1,11 @@
 !> A frame of a film as a picture in SVG, alone or as the part of a page that a script moves.
-!> Uses kinds, error, text, film, projection, scene, drawing, picture_style, page, title_lines, xml_text.
+!> Uses kinds, error, text, film, film_clock, projection, scene, drawing, picture_style, page, title_lines, xml_text.
 module mech9_svg_picture
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text
   use mech9_film, only: film_type
+  use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
@@ -15,7 +16,12 @@ module mech9_svg_picture
   implicit none
   private
   public :: save_sketch, put_picture, put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of, &
-            clock_text
+            scale_length
+
+  !> Of the axes in the corner [px], and where their names stand beyond their tips.
+  real(wp), parameter, public :: axis_length = 26.0_wp, beyond_axis = 1.36_wp
+  !> Axes seen shorter than this point to the viewer [px].
+  real(wp), parameter, public :: shortest_axis = 2.0_wp
 
   !> Width of a letter of a title, and of small letters [px].
   real(wp), parameter :: title_letter = 9.0_wp, small_letter = 6.8_wp
@@ -59,7 +65,10 @@ contains
       call put_item(scene%items(order(i)), order(i), drawing, projection%symbol, page)
     end do
     call page%line('</g>')
-    call put_surroundings(title, film%times(frame), film%n_frames > 1, projection, all_axes, page)
+    call put_surroundings(title, projection, all_axes, page)
+    if (film%n_frames > 1) &
+      call page%line('<text class="small" id="time" x="90" y="'//decimal(projection%height - 12.0_wp)//'">'// &
+                     clock_text(film%times(frame), clock_decimals(film))//'</text>')
     call page%line('</svg>')
   end subroutine put_picture
 
@@ -170,11 +179,9 @@ contains
     path = path(:used)
   end function path_of
 
-  !> Title, time, scale and the directions of the axes.
-  subroutine put_surroundings(title, time, moves, projection, all_axes, page)
+  !> Title, scale and the directions of the axes.
+  subroutine put_surroundings(title, projection, all_axes, page)
     character(len=*), intent(in) :: title
-    real(wp), intent(in) :: time                 !< [s]
-    logical, intent(in) :: moves                 !< there is more than one time
     type(projection_type), intent(in) :: projection
     logical, intent(in) :: all_axes
     type(page_type), intent(inout) :: page
@@ -182,14 +189,12 @@ contains
 
     foot = projection%height - 14.0_wp
     call put_title(title, projection, page)
-    bar = round_length(90.0_wp/projection%scale)
+    bar = scale_length(projection)
     call page%line('<g id="scale"><path stroke="#222" stroke-width="1.5" d="M'//decimal(projection%width - 90.0_wp - &
                    projection%scale*bar)//' '//decimal(foot - 5.0_wp)//'v5h'//decimal(projection%scale*bar)//'v-5"/>'// &
                    '<text class="small" x="'//decimal(projection%width - 82.0_wp)//'" y="'//decimal(foot + 2.0_wp)//'">'// &
                    to_text(bar, 3)//' m</text></g>')
     call put_axes(projection, all_axes, page)
-    if (moves) call page%line('<text class="small" id="time" x="90" y="'//decimal(foot + 2.0_wp)//'">'// &
-                              clock_text(time)//'</text>')
   end subroutine put_surroundings
 
   !> The title: in one line if it fits, else smaller in up to three.
@@ -211,13 +216,12 @@ contains
     end do
   end subroutine put_title
 
-  !> A time as it stands below a picture.
-  pure function clock_text(time) result(text)
-    real(wp), intent(in) :: time                 !< [s]
-    character(len=:), allocatable :: text
+  !> The length that the bar of a picture's scale stands for [m].
+  pure real(wp) function scale_length(projection)
+    type(projection_type), intent(in) :: projection
 
-    text = 't = '//to_text(time, 4)//' s'
-  end function clock_text
+    scale_length = round_length(90.0_wp/projection%scale)
+  end function scale_length
 
   !> The largest of 1, 2, 5, 10, ... that is not longer.
   pure real(wp) function round_length(length)
@@ -239,17 +243,16 @@ contains
     logical, intent(in) :: all_axes
     type(page_type), intent(inout) :: page
     character, parameter :: names(3) = ['x', 'y', 'z']
-    real(wp), parameter :: length = 26.0_wp
     real(wp) :: tip(2)
     integer :: i
 
     call page%line('<g id="axes" transform="translate(38 '//decimal(projection%height - 36.0_wp)//')">')
     do i = 1, 3
-      tip = length*[projection%view%right(i), -projection%view%up(i)]
-      if (norm2(tip) < 2.0_wp .and. .not. all_axes) cycle
+      tip = axis_length*[projection%view%right(i), -projection%view%up(i)]
+      if (norm2(tip) < shortest_axis .and. .not. all_axes) cycle
       call page%line('<path stroke="#222" stroke-width="1.2" d="M0 0L'//decimal(tip(1))//' '//decimal(tip(2))//'"/>'// &
-                     '<text class="small" text-anchor="middle" dominant-baseline="central" x="'//decimal(1.36_wp*tip(1))// &
-                     '" y="'//decimal(1.36_wp*tip(2))//'">'//names(i)//'</text>')
+                     '<text class="small" text-anchor="middle" dominant-baseline="central" x="'//decimal(beyond_axis*tip(1))// &
+                     '" y="'//decimal(beyond_axis*tip(2))//'">'//names(i)//'</text>')
     end do
     call page%line('</g>')
   end subroutine put_axes

@@ -262,6 +262,20 @@ def check_page(checks, programs, folder, program, name, points):
     checks.true(worst < 6e-5, f'{name}: points are where the table has them', f'{worst:.1e} of the size away')
 
 
+def check_clock_strip(checks, svg, times):
+    """The clock of a picture without a script: for each frame, the text that is in the window shows its time."""
+    window = svg.find(f"{SVG}svg[@id='time']")
+    strip = window.find(SVG + 'g')
+    shifts = [float(value.split()[1]) for value in strip.find(SVG + 'animateTransform').get('values').split(';')]
+    height = float(window.get('height'))
+    shown = []
+    for shift in shifts:
+        seen_texts = [text.text for text in strip.findall(SVG + 'text') if 0 < float(text.get('y')) + shift < height]
+        shown.append(float(re.fullmatch(r't = (\S+) s', seen_texts[0]).group(1)) if len(seen_texts) == 1 else math.nan)
+    # as many decimals as tell the frames apart, and less than a third of the time between two is lost
+    checks.true(len(shown) == len(times) and np.abs(np.array(shown) - times).max() < 0.34 * np.diff(times).min(), 'its clock shows each time', shown)
+
+
 def check_moving_svg(checks, programs, folder):
     path, table = os.path.join(folder, 'film.svg'), os.path.join(folder, 'moving.dat')
     run(f'{programs}/mech9k', example('slider_crank'), '--table', table, '--quiet', '--animate', path,
@@ -276,11 +290,14 @@ def check_moving_svg(checks, programs, folder):
     for group in svg.iter(SVG + 'g'):
         for one in group.findall(SVG + 'animateTransform'):
             checks.equal(group.get('transform'), f"translate({one.get('values').split(';')[0]})", 'a place of its own: the first')
+    checks.equal([len(list(svg.find(f"{SVG}g[@id='{name}']"))) for name in ('scale', 'axes')], [2, 4],
+                 'a bar with its length, two axes with their names')
     for path in svg.iter(SVG + 'path'):
         for one in path.findall(SVG + 'animate'):
             checks.equal(path.get('d'), one.get('values').split(';')[0], 'a form of its own: the first')
     with open(table, encoding='utf-8') as file:
         rows = read_table(file.read())
+    check_clock_strip(checks, svg, rows['t'])
     for point in 'BM':
         label, = [group for group in svg.iter(SVG + 'g') if group.findtext(SVG + 'text') == point]
         values = label.find(SVG + 'animateTransform').get('values').split(';')
@@ -320,6 +337,12 @@ def gif_frames(data):
     return frames
 
 
+def polygons_of(script):
+    """The corners of what gnuplot is told to draw."""
+    return [np.array([[float(word) for word in corner.split(',')] for corner in line.split(' to ')])
+            for line in re.findall(r'polygon from (\S+(?: to \S+)*)', script)]
+
+
 def check_gif_script(checks, words, folder):
     """What gnuplot is told: the frames of the whole run, one after the other, each with its own picture."""
     place = os.path.join(folder, 'told')
@@ -335,6 +358,14 @@ def check_gif_script(checks, words, folder):
     times = [float(re.search(r"set label 't = (\S+) s'", frame).group(1)) for frame in frames]
     # a clock of four digits
     checks.near(times, np.arange(21) / 20, 1e-4, 'its frames follow one another')
+    # the bar of the scale: its length on the page against that of the crank, which is 1 m long
+    for frame in frames[:2]:
+        length = float(re.search(r"set label '(\S+) m'", frame).group(1))
+        bars = [corners for corners in polygons_of(frame) if len(corners) == 8 and np.ptp(corners[:, 1]) == 5.0]
+        pins = [np.array([float(x), float(y)]) for x, y in re.findall(r'circle at (\S+),(\S+) size 5 ', frame)]
+        pixels = np.ptp(bars[0][:, 0]) / length
+        checks.true(any(abs(np.hypot(*(a - b)) - pixels) < PX for a in pins for b in pins), 'its scale is that of the crank', pixels)
+        checks.true(all(f"set label '{axis}' at" in frame for axis in 'xy') and "set label 'z'" not in frame, 'it has its two axes')
     checks.equal(len({re.sub(r"'t = .*? s'", '', frame) for frame in frames}), 21, 'and no two are alike')
 
 
