@@ -1,6 +1,6 @@
 !> What was typed at a question, held against its row of the grammar as the reader of data files does.
 !> Uses text, grammar, source, document, parser, item_merge, item_check, diagnostics, printable,
-!> draft_source.
+!> draft_source, short_answers.
 module mech9_answer
   use mech9_text, only: lower, to_text
   use mech9_source, only: source_type, span_type, source_from_text
@@ -12,6 +12,7 @@ module mech9_answer
   use mech9_diagnostics, only: diagnostics_type, printable
   use mech9_printable, only: with_escapes
   use mech9_draft_source, only: values_text
+  use mech9_short_answers, only: full_form
   implicit none
   private
   public :: read_answer, yes_or_no
@@ -22,7 +23,7 @@ module mech9_answer
 contains
 
   !> Values as a data file writes them, or, if that cannot be, why not: one message or several, a line each.
-  !> Texts need no quotes, and a switch may be answered by yes or no.
+  !> Texts need no quotes, a switch may be answered by yes or no, and short forms are written in full.
   pure subroutine read_answer(row, line, text, problem)
     type(item_row_type), intent(in) :: row
     character(len=*), intent(in) :: line                     !< without blanks around it
@@ -40,8 +41,8 @@ contains
       problem = 'there is a control character in it; type it again'
       return
     end if
-    written = line
-    if (row%type == 'text' .and. scan(line, '''"') /= 1) written = quoted(line)
+    written = full_form(row, line)
+    if (row%type == 'text' .and. scan(line, '''"') /= 1) written = quoted(written)
     if (row%type == 'logical') written = switch_text(line)
     call read_values(row, written, text, problem)
   end subroutine read_answer
