@@ -1,5 +1,5 @@
 !> One question: put in words, its answer heard, held against the checks of the data file, and kept. Uses text,
-!> grammar, topics, answer, draft, draft_check, questions, question_words, conversation.
+!> grammar, topics, answer, short_answers, draft, draft_check, questions, question_words, question_help, conversation.
 module mech9_asking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_text, only: string_type, to_text, lower, nearest_name
@@ -8,17 +8,21 @@ module mech9_asking
   use mech9_paragraph, only: print_paragraph
   use mech9_topics, only: topics
   use mech9_answer, only: read_answer, yes_or_no
+  use mech9_short_answers, only: word_meant
   use mech9_draft, only: draft_type, integer_of
   use mech9_draft_check, only: problem_with
   use mech9_outline, only: ways, drop_empty_guesses
   use mech9_interview, only: most_parts
   use mech9_questions, only: question_type, entry_name, is_seldom, label_of, ask_item, ask_seldom, ask_way
-  use mech9_question_words, only: default_type, default_of, prompt_of, heading_of, gist_of, help_of, words_for, &
-                                  seldom_names
+  use mech9_question_words, only: default_type, default_of, prompt_of, heading_of, words_for, seldom_names
+  use mech9_question_help, only: gist_of, help_of, refusal_of_enter
   use mech9_conversation, only: conversation_type, going
   implicit none
   private
   public :: ask, take_answer, announce_topic
+
+  !> Answers that begin no further group, as Enter does.
+  character(len=7), parameter :: no_more(3) = [character(len=7) :: 'none', 'no', 'no more']
 
 contains
 
@@ -29,7 +33,6 @@ contains
     type(default_type) :: default
     type(string_type), allocatable :: words(:)
     character(len=:), allocatable :: line, prompt
-    logical :: done
 
     question = conversation%interview%due()
     call announce_topic(conversation, question)
@@ -42,17 +45,52 @@ contains
       call conversation%say(help_of(question, conversation%interview%draft, conversation%interview%outline))
       return
     case ('back')
-      call conversation%interview%back(done)
-      conversation%heading = ''
-      if (.not. done) call conversation%say('This is the first question.')
+      call go_back(conversation)
+      return
+    case ('remove')
+      call leave_out(conversation)
       return
     end select
+    if (question%is_new .and. any(lower(line(:min(len(line), 8))) == no_more)) line = ''
     if (question%kind == ask_item .and. line == '') then
       call take_default(conversation, default)
     else
       call take_answer(conversation, line)
     end if
   end subroutine ask
+
+  !> The question before. A group whose first question is due, and that is not complete, is left out.
+  subroutine go_back(conversation)
+    class(conversation_type), intent(inout) :: conversation
+    logical :: done
+
+    if (conversation%interview%is_begun()) then
+      call leave_out(conversation)
+      return
+    end if
+    call conversation%interview%back(done)
+    conversation%heading = ''
+    if (.not. done) call conversation%say('This is the first question.')
+  end subroutine go_back
+
+  !> Take away the load, point or body that is spoken of.
+  subroutine leave_out(conversation)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=:), allocatable :: name
+    logical :: done
+
+    associate (interview => conversation%interview)
+      name = heading_of(interview%due(), interview%draft)
+      call interview%leave_out(done)
+    end associate
+    conversation%heading = ''
+    if (done) then
+      call conversation%keep()
+      call conversation%say(name//' is left out.')
+    else
+      call conversation%say('Nothing can be left out here; a body, a load or a point can, while it is asked about.')
+    end if
+  end subroutine leave_out
 
   !> Take an answer to the question that is due.
   subroutine take_answer(conversation, line)
@@ -128,7 +166,7 @@ contains
     if (default%noted) then
       call keep_answer(conversation, default%text)
     else if (default%shown == '') then
-      call conversation%say('This must be given; ? explains it.')
+      call conversation%say(refusal_of_enter(conversation%interview%due()))
     else
       call move_on(conversation)
     end if
@@ -267,10 +305,10 @@ contains
     character(len=*), intent(in) :: line
     character(len=:), allocatable :: way
 
-    way = lower(line(:min(len(line), 20)))
-    if (way == '') way = trim(conversation%interview%outline%way)
-    if (.not. any(ways == way)) then
-      way = nearest_name(way, ways)
+    way = word_meant(line(:min(len(line), 20)), ways)
+    if (line == '') way = trim(conversation%interview%outline%way)
+    if (way == '') then
+      way = nearest_name(line(:min(len(line), 20)), ways)
       if (way /= '') way = '; did you mean '//way//'?'
       call conversation%say('Answer pairs, matrix or vectors'//way)
       return

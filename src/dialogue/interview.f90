@@ -1,12 +1,13 @@
 !> A conversation without its words: the draft, the questions, which one is due, and where to go from it.
-!> Uses text, grammar, structure, draft, draft_check, outline, questions, question_words.
+!> Uses text, grammar, structure, draft, draft_check, topics, outline, questions, question_words.
 module mech9_interview
   use mech9_text, only: to_text
-  use mech9_grammar, only: group_table, item_table, find_item_rows
+  use mech9_grammar, only: group_table, item_table, find_item_rows, rows_of_group
   use mech9_structure, only: structure_type
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_draft, only: draft_type, plain_name
   use mech9_draft_check, only: fault_type, read_draft_structure
+  use mech9_topics, only: can_be_left_out
   use mech9_outline, only: outline_type, ways, new_outline, make_groups, drop_foreign
   use mech9_questions, only: question_type, make_questions, label_of, find_question, entry_name, &
                              is_seldom, ask_item, check_structure, check_start, check_all
@@ -36,6 +37,8 @@ module mech9_interview
     procedure :: refresh
     procedure :: step
     procedure :: back
+    procedure :: is_begun
+    procedure :: leave_out
     procedure :: correct
     procedure :: note
     procedure :: unnote
@@ -151,6 +154,47 @@ contains
       return
     end do
   end subroutine back
+
+  !> Whether the question that is due is the first of a group that can be left out and still lacks answers: such a
+  !> group was begun, perhaps by mistake.
+  pure logical function is_begun(self)
+    class(interview_type), intent(in) :: self
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    is_begun = .false.
+    associate (question => self%questions(self%at))
+      if (question%kind /= ask_item .or. question%is_new) return
+      if (.not. can_be_left_out(question%group_row)) return
+      rows = rows_of_group(group_table(question%group_row)%name)
+      if (question%row /= rows(1)) return
+      do i = self%at, size(self%questions)
+        if (self%questions(i)%group_row /= question%group_row .or. self%questions(i)%place /= question%place) return
+        is_begun = is_lacking(self%questions(i), self%draft, self%outline)
+        if (is_begun) return
+      end do
+    end associate
+  end function is_begun
+
+  !> Take away the load, point or body that the question that is due belongs to. Whether there is another in its
+  !> place is asked then.
+  pure subroutine leave_out(self, done)
+    class(interview_type), intent(inout) :: self
+    logical, intent(out) :: done                !< false: the question belongs to no group that can be left out
+    type(question_type) :: question
+    character(len=:), allocatable :: group
+    integer, allocatable :: rows(:)
+
+    question = self%due()
+    done = .false.
+    if (question%kind /= ask_item .or. question%is_new) return
+    done = can_be_left_out(question%group_row)
+    if (.not. done) return
+    group = trim(group_table(question%group_row)%name)
+    rows = rows_of_group(group)
+    call self%draft%remove(group, question%place)
+    call self%refresh(group//'('//to_text(question%place)//').'//trim(item_table(rows(1))%name))
+  end subroutine leave_out
 
   !> Ask for an entry of the draft, then return to the question that is due now. `found` is false where
   !> this program has no question about it.

@@ -150,7 +150,8 @@ contains
       if (k < 1 .or. k > size(outline%independent)) cycle
       if (outline%independent(k)) cycle
       if (name == 'drive') then
-        call note('drive '//to_text(k), dropped)
+        ! a drive of which nothing was entered yet goes without a word
+        if (size(draft%groups(i)%entries) > 1) call note('drive '//to_text(k), dropped)
         call draft%remove(name, place)
       else if (name == 'initial' .and. draft%has(name, place, 'velocity')) then
         call note('velocity '//to_text(k), dropped)

@@ -1,17 +1,18 @@
-!> Questions in words: headings, prompts, what Enter answers, and the help on each; all from the table of
+!> Questions in words: headings, prompts, what Enter answers, and what can be completed; all from the table of
 !> names. Uses text, grammar, data_help, draft, topics, outline, questions.
 module mech9_question_words
   use mech9_text, only: to_text, string_type
-  use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group, words_of
-  use mech9_data_help, only: values_text, default_text
+  use mech9_grammar, only: group_table, item_table, rows_of_group, words_of
+  use mech9_data_help, only: default_text
   use mech9_draft, only: draft_type, unquoted
-  use mech9_topics, only: groups_of_topic
+  use mech9_topics, only: groups_of_topic, can_be_left_out
   use mech9_outline, only: outline_type, kind_in
   use mech9_questions, only: question_type, entry_name, is_seldom, ask_item, ask_seldom, ask_way, &
                              ask_guesses
   implicit none
   private
-  public :: default_type, default_of, prompt_of, heading_of, gist_of, help_of, words_for, is_lacking, seldom_names
+  public :: default_type, default_of, prompt_of, heading_of, unit_here, coordinate_kind, angle_unit, words_for
+  public :: is_lacking, is_needed, seldom_names
 
   !> What Enter answers.
   type :: default_type
@@ -47,7 +48,7 @@ contains
       else if (is_needed(question, draft, outline)) then
         default%text = likely_value(question, draft)
       else if (row%needed) then
-        default%shown = 'none'         ! of a group that can be left out
+        default%shown = ''             ! of a group that a data file may leave out: here it must be said
       else if (index(row%default, '(') /= 1 .and. row%default /= '''''') then
         default%shown = unquoted(trim(row%default))
       else
@@ -68,25 +69,39 @@ contains
     if (text == '.false.') word = 'no'
   end function switch_word
 
-  !> A value for what must be given: that of the group before, the first of the words allowed, or zero at
-  !> the start; empty where nothing is likely.
+  !> A value for what must be given: the axis of the turning pair before, the first of the words allowed, or zero at the
+  !> start; empty where nothing is likely. A slide proposes neither its kind nor its axis for the pair after it.
   pure function likely_value(question, draft) result(text)
     type(question_type), intent(in) :: question
     type(draft_type), intent(in) :: draft
     character(len=:), allocatable :: text
-    character(len=:), allocatable :: group
 
     text = ''
-    group = trim(group_table(question%group_row)%name)
     associate (row => item_table(question%row))
-      if (group == 'initial') then
+      if (row%group == 'initial') then
         text = trim(row%default)
-      else if (group_table(question%group_row)%repeats .and. row%type /= 'integer') then
-        if (question%place > 1) text = draft%value(group, question%place - 1, trim(row%name))
-        if (text == '' .and. row%words /= '') text = ''''//row%words(:index(row%words, ' ') - 1)//''''
+      else if (row%group == 'pair' .and. row%name == 'axis') then
+        text = axis_before(question%place, draft)
+      else if (group_table(question%group_row)%repeats .and. row%words /= '') then
+        text = ''''//row%words(:index(row%words, ' ') - 1)//''''
       end if
     end associate
   end function likely_value
+
+  !> For a revolute pair the axis of the last revolute pair before it that has one; empty where there is none.
+  pure function axis_before(place, draft) result(text)
+    integer, intent(in) :: place                    !< of the pair among the pairs
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    if (kind_in(draft, draft%find('pair', place)) /= 'revolute') return
+    do i = place - 1, 1, -1
+      if (kind_in(draft, draft%find('pair', i)) == 'revolute') text = draft%value('pair', i, 'axis')
+      if (text /= '') return
+    end do
+  end function axis_before
 
   !> Whether a question about a name must be answered, and is not.
   pure logical function is_lacking(question, draft, outline)
@@ -188,29 +203,67 @@ contains
     text = text//': '
   end function prompt_of
 
-  !> The unit of a name in this data file: angles in rad or degrees, coordinates as their pair moves.
+  !> The unit of a name in this data file: angles in rad or degrees, coordinates as their pair moves, loads on
+  !> coordinates as these are.
   pure function unit_here(question, draft) result(unit)
     type(question_type), intent(in) :: question
     type(draft_type), intent(in) :: draft
     character(len=:), allocatable :: unit
-    character(len=:), allocatable :: angle, q
-    integer :: place
+    character(len=:), allocatable :: kind, q
 
-    angle = 'rad'
-    if (unquoted(draft%value('mechanism', 1, 'angle_unit')) == 'deg') angle = 'deg'
-    q = angle
-    place = draft%with_number('pair', 'coordinate', draft%number(trim(group_table(question%group_row)%name), &
-                                                                 question%place, 'coordinate'))
-    if (place > 0) then
-      if (kind_in(draft, draft%find('pair', place)) == 'prismatic') q = 'm'
-      if (kind_in(draft, draft%find('pair', place)) == 'user') q = ''
-    end if
     unit = trim(item_table(question%row)%unit)
-    call replace('angle', angle, unit)
+    kind = coordinate_kind(question, draft)
+    q = angle_unit(draft)
+    if (kind == 'prismatic') q = 'm'
+    if (kind == 'user') q = ''
+    if (item_table(question%row)%group == 'load' .and. item_table(question%row)%kinds == 'coordinate') &
+      unit = unit_of_load(unit, kind)
+    call replace('angle', angle_unit(draft), unit)
     if (q == '' .and. has_word(unit, 'q')) unit = ''
     call replace('q', q, unit)
     call replace('q', q, unit)
   end function unit_here
+
+  !> Of the units of a length and of an angle, "N or N m", the one that fits the kind of pair.
+  pure function unit_of_load(both, kind) result(unit)
+    character(len=*), intent(in) :: both         !< separated by a comma or `or`; a single unit stays as it is
+    character(len=*), intent(in) :: kind         !< of the pair; empty: unknown
+    character(len=:), allocatable :: unit
+    integer :: gap, next
+
+    unit = both
+    gap = index(both, ', ')
+    next = gap + 2
+    if (gap == 0) then
+      gap = index(both, ' or ')
+      next = gap + 4
+    end if
+    if (gap == 0) return
+    if (kind == 'prismatic') unit = both(:gap - 1)
+    if (kind == 'revolute' .or. kind == 'helical') unit = both(next:)
+  end function unit_of_load
+
+  !> The kind of the pair whose coordinate the group of a question names; empty where it names none.
+  pure function coordinate_kind(question, draft) result(kind)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: kind
+    integer :: place
+
+    kind = ''
+    place = draft%with_number('pair', 'coordinate', draft%number(trim(group_table(question%group_row)%name), &
+                                                                 question%place, 'coordinate'))
+    if (place > 0) kind = kind_in(draft, draft%find('pair', place))
+  end function coordinate_kind
+
+  !> The unit of angles in this data file.
+  pure function angle_unit(draft) result(unit)
+    type(draft_type), intent(in) :: draft
+    character(len=3) :: unit
+
+    unit = 'rad'
+    if (unquoted(draft%value('mechanism', 1, 'angle_unit')) == 'deg') unit = 'deg'
+  end function angle_unit
 
   !> Put a word in the place of another, once.
   pure subroutine replace(word, by, text)
@@ -242,81 +295,6 @@ contains
     end do
     at = 0
   end function word_place
-
-  !> One line on what a question means, with the words it takes.
-  pure function gist_of(question) result(text)
-    type(question_type), intent(in) :: question
-    character(len=:), allocatable :: text
-    integer :: colon
-
-    associate (row => item_table(question%row))
-      text = trim(row%name)//': '//trim(row%help)
-      if (row%words == '') return
-      colon = index(values_text(row), ': ')
-      text = text//' ('//trim(adjustl(tail(values_text(row), colon + 1)))//')'
-    end associate
-  end function gist_of
-
-  pure function tail(text, first) result(rest)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: first
-    character(len=:), allocatable :: rest
-
-    rest = text(first:)
-  end function tail
-
-  !> The answer to `?`.
-  pure function help_of(question, draft, outline) result(text)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    character(len=:), allocatable :: text, unit
-    character, parameter :: line_end = achar(10)
-
-    select case (question%kind)
-    case (ask_way)
-      text = 'pairs: for each coordinate the two links that its pair joins, as in "1 2";'//line_end// &
-             'matrix: the rows of the coincidence matrix C;'//line_end// &
-             'vectors: the second set, nrg, nws, rdw and nrw.'
-    case (ask_seldom)
-      text = 'These names have defaults that mostly serve: '//seldom_names(question, outline)//'. Answer yes to be asked '// &
-             'for all of them, or name those that you want to give, for example: '// &
-             first_word(seldom_names(question, outline))
-    case (ask_guesses)
-      text = 'The same links can be put together in several ways. Rough values of the dependent coordinates choose '// &
-             'one; without them the search starts from zeros. Answer yes to be asked for them.'
-    case default
-      associate (row => item_table(question%row))
-        unit = unit_here(question, draft)
-        if (unit /= '') unit = ' ('//unit//')'
-        text = 'if not given: '//default_text(row)
-        if (is_needed(question, draft, outline)) text = 'must be given'
-        text = gist_of(question)//line_end//'Values: '//values_text(row)//unit//'; '//text//'.'//line_end// &
-               'For example: '//example_of(row)
-      end associate
-    end select
-    text = text//line_end//'Enter takes what stands in brackets. Also: back (to the question before), list (what is '// &
-           'known), default (as if never answered), quit (what was typed is kept).'
-  end function help_of
-
-  !> The example of a row as it would be typed here: without quotes and without the name.
-  pure function example_of(row) result(text)
-    type(item_row_type), intent(in) :: row
-    character(len=:), allocatable :: text
-    integer :: equals
-
-    equals = index(row%example, '= ')
-    text = trim(row%example)
-    if (equals > 0) text = text(equals + 2:)
-    text = unquoted(text)
-  end function example_of
-
-  pure function first_word(list) result(word)
-    character(len=*), intent(in) :: list
-    character(len=:), allocatable :: word
-
-    word = list(:index(list//',', ',') - 1)
-  end function first_word
 
   !> The names of a group that are asked for only when told so: "zero, moving_point".
   pure function seldom_names(question, outline) result(text)
@@ -356,7 +334,9 @@ contains
       list = 'yes no '
     case default
       list = trim(item_table(question%row)%words)//' '
+      if (question%is_new) list = list//'none '
       if (item_table(question%row)%type == 'logical') list = 'yes no '
+      if (can_be_left_out(question%group_row) .and. .not. question%is_new) list = list//'remove '
     end select
     associate (all_words => words_of(list//'back list default quit'))
       allocate (words(size(all_words)))

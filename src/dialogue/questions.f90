@@ -7,7 +7,7 @@ module mech9_questions
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group, takes_kind, find_item_rows
   use mech9_draft, only: draft_type
-  use mech9_topics, only: topics, groups_of_topic, is_numbered
+  use mech9_topics, only: topics, groups_of_topic, is_numbered, can_be_left_out
   use mech9_outline, only: outline_type, kind_in
   implicit none
   private
@@ -82,7 +82,7 @@ contains
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)
       call ask_about_one(draft, outline, question_type(topic=topic, group_row=group_row, place=place), rows, questions, count)
     end do
-    if (group_table(group_row)%repeats .and. .not. is_numbered(group_row)) &
+    if (can_be_left_out(group_row)) &
       call append(questions, count, question_type(topic=topic, group_row=group_row, place=draft%count_of(group) + 1, &
                                                   row=rows(1), is_new=.true.))
     if (group == 'initial') call append(questions, count, question_type(kind=check_start, topic=topic))
@@ -137,6 +137,7 @@ contains
     name = trim(group_table(question%group_row)%name)
     associate (row => item_table(question%row))
       is_open = .false.
+      if (.not. is_used(outline, row)) return
       group = draft%find(name, question%place)
       kind = ''
       if (group > 0) kind = kind_in(draft, group)
@@ -156,7 +157,16 @@ contains
     type(item_row_type), intent(in) :: row
 
     is_seldom = row%seldom .or. (row%group == 'pair' .and. row%name == 'links' .and. outline%way /= 'pairs')
+    is_seldom = is_seldom .and. is_used(outline, row)
   end function is_seldom
+
+  !> Whether the program of the conversation uses a name.
+  pure logical function is_used(outline, row)
+    type(outline_type), intent(in) :: outline
+    type(item_row_type), intent(in) :: row
+
+    is_used = row%program == 'both' .or. row%program == outline%program_name
+  end function is_used
 
   !> Values at the start: of independent coordinates where they are integrated, guesses of dependent ones.
   pure logical function is_open_at_start(draft, outline, question) result(open)

@@ -26,9 +26,10 @@ contains
     integer, intent(out) :: code
     type(kept_rows_type) :: kept, earlier
     integer :: next
-    logical :: changed
+    logical :: changed, saved_again
 
     changed = .false.
+    saved_again = .false.
     do
       call run_file(task, options, path, code, kept)
       if (asked_to_end()) exit
@@ -44,16 +45,35 @@ contains
         if (next == over) exit
       end do
       if (next == over) exit
+      saved_again = saved_again .or. changed
       call keep_changes(conversation, path, changed)
       if (kept%count > 0) call hand_over(kept, earlier)
     end do
-    if (changed) then
-      call conversation%keep()
-      call conversation%say('The changes are kept in '//conversation%draft_path//'; '//conversation%program_name// &
-                            ' --resume '//conversation%draft_path//' goes on.')
-    end if
+    if (changed) call conversation%keep()
+    call tell_what_is_kept(conversation, path, changed, saved_again)
     conversation%state = finished
   end subroutine run_by_turns
+
+  !> The last words: in which file the answers are, where this was not told when the data file was saved.
+  subroutine tell_what_is_kept(conversation, path, changed, saved_again)
+    class(conversation_type), intent(in) :: conversation
+    character(len=*), intent(in) :: path         !< of the file that was run
+    logical, intent(in) :: changed               !< since the last run
+    logical, intent(in) :: saved_again           !< changes were written to the data file before a further run
+    character(len=:), allocatable :: draft, how
+
+    draft = conversation%draft_path
+    how = conversation%program_name//' --resume '//draft//' goes on'
+    if ((changed .or. path == draft) .and. conversation%cannot_keep) then
+      call conversation%say('What was changed since the last run, or never saved, could not be kept.')
+    else if (path == draft) then
+      call conversation%say('No data file is saved; what was typed is kept in '//draft//', and '//how//' and can save it.')
+    else if (changed) then
+      call conversation%say('The changes since the last run are kept in '//draft//'; '//how//'.')
+    else if (saved_again) then
+      call conversation%say('The changes are saved in '//path//'.')
+    end if
+  end subroutine tell_what_is_kept
 
   !> Write the file that is run, if something was changed.
   subroutine keep_changes(conversation, path, changed)

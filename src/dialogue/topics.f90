@@ -4,24 +4,28 @@ module mech9_topics
   use mech9_grammar, only: group_table, find_group_row, words_of
   implicit none
   private
-  public :: topic_type, topics, groups_of_topic, is_numbered
+  public :: topic_type, topics, groups_of_topic, is_numbered, can_be_left_out
 
   !> One topic.
   type :: topic_type
     character(len=24) :: title
     character(len=20) :: groups       !< their names; empty: those of no other topic
-    character(len=150) :: opening     !< what is said when it begins
+    character(len=370) :: opening     !< what is said when it begins
   end type topic_type
 
   type(topic_type), parameter :: topics(*) = [ &
     topic_type('The mechanism', 'mechanism', 'Link 1 is the frame; each pair between two links has one coordinate.'), &
     topic_type('Structure', 'structure', ''), &
-    topic_type('Pairs', 'pair', 'Directions and points are three numbers, x y z. They are those of the reference link, '// &
-               'and of both links where all link systems coincide at q = 0.'), &
+    topic_type('Pairs', 'pair', 'Directions and points are three numbers, x y z. The easiest way: choose one position of the '// &
+               'mechanism and give all points and directions in the frame, as they are in that position; all coordinates are '// &
+               'then 0 there. Where links have systems of their own, they are given in the reference link, and again in the '// &
+               'moving link as moving_point, moving_axis and moving_zero.'), &
     topic_type('Drives', 'drive', 'Each independent coordinate is a given function of time.'), &
     topic_type('The start', 'initial', ''), &
-    topic_type('Bodies', 'body gravity', 'Links without a body are massless.'), &
-    topic_type('Loads', 'load', 'Forces, torques, springs and dampers, on links and on coordinates.'), &
+    topic_type('Bodies', 'body', 'Links without a body are massless. A body begun by mistake is left out by remove.'), &
+    topic_type('Gravity', 'gravity', 'It acts on all bodies: 0, -9.81, 0 on Earth where y points up; none where it is left out.'), &
+    topic_type('Loads', 'load', 'Forces, torques, springs and dampers, on links and on coordinates. '// &
+               'A load begun by mistake is left out by remove.'), &
     topic_type('Points', 'point', 'Positions, velocities and accelerations of these points are recorded.'), &
     topic_type('Time', 'time', ''), &
     topic_type('Computation', 'solver', ''), &
@@ -61,4 +65,11 @@ contains
 
     is_numbered = group_table(group_row)%key == 'coordinate'
   end function is_numbered
+
+  !> Whether there can be any number of groups of a name, which the user begins one by one.
+  pure logical function can_be_left_out(group_row)
+    integer, intent(in) :: group_row
+
+    can_be_left_out = group_table(group_row)%repeats .and. .not. is_numbered(group_row)
+  end function can_be_left_out
 end module mech9_topics

@@ -35,6 +35,7 @@ module mech9_grammar
     character(len=120) :: help
     character(len=44) :: example   !< a value as it would be written
     logical :: seldom = .false.    !< the conversation asks for it only when told so
+    character(len=6) :: program = 'both'   !< as in the row of a group: the conversation of the other does not ask for it
   end type item_row_type
 
   integer, parameter :: unlimited = huge(1)
@@ -115,7 +116,7 @@ module mech9_grammar
     item_row_type('initial', 'position', 'real', 1, 1, 'q', optional, '0', '', '', '', &
                   'its value, or a guess of it', '0.2'), &
     item_row_type('initial', 'velocity', 'real', 1, 1, 'q/s', optional, '0', '', '', '', &
-                  'its rate (independent coordinates in mech9d)', '1.5'), &
+                  'its rate (independent coordinates in mech9d)', '1.5', program='mech9d'), &
     item_row_type('point', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
                   'heads the columns of the table; letters, digits and _', '''P'''), &
     item_row_type('point', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', 'the link it is part of', '3'), &
@@ -220,7 +221,7 @@ module mech9_grammar
     item_row_type('output', 'derivatives', 'integer', 1, 1, '', optional, '2', '>=0', '', '', &
                   'what is recorded: 0 positions, 1 velocities too, 2 accelerations too', '0', seldom=.true.), &
     item_row_type('output', 'energies', 'logical', 1, 1, '', optional, '.true.', '', '', '', &
-                  'mech9d records kinetic and potential energy and their sum', '.false.', seldom=.true.), &
+                  'mech9d records kinetic and potential energy and their sum', '.false.', seldom=.true., program='mech9d'), &
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]
 

@@ -174,12 +174,19 @@ def structure_and_start(talks):
     with tempfile.TemporaryDirectory() as folder:
         done = talks.pipe(talks.mech9k, mended, 'a link apart', INTERRUPTED, folder=folder)
         talks.checks.true('1 = 7 - 2 x 3 in a plane' in done.stderr, 'mobility by the count', done.stderr)
-    # two independent coordinates where one is right: corrected after the geometry
-    steps = [(p, '5 6' if p == 'cq: ' else a) for p, a in scripts.MECHANISM + scripts.BY_PAIRS + scripts.pairs(False)]
+    # two independent coordinates where one is right: refused with the structure, and corrected there
+    two = [(p, '5 6' if p == 'cq: ' else a) for p, a in scripts.MECHANISM + scripts.BY_PAIRS]
+    steps = two + [('2 are named, and by the count it should be 1', ''), ('cq [5, 6]', '1 2 3 4 5 6'),
+                   ('5 can be at most', ''), ('cq [1, 2, 3, 4, 5, 6]', '5'), ('Independent now: 1.', '')]
+    with tempfile.TemporaryDirectory() as folder:
+        done = talks.pipe(talks.mech9k, steps, 'too many independent coordinates', INTERRUPTED, folder=folder)
+        talks.checks.true('dropped' not in done.stderr, 'drives of which nothing was entered go without a word', done.stderr)
+    # insisted on, and corrected after the geometry
+    steps = two + [('Too many coordinates are independent', 'go')] + scripts.pairs(False)
     steps += [('Drive of coordinate 5', ''), ('coefficients', '0.5 6'), ('Drive of coordinate 6', ''),
               ('coefficients', '1.8'), ('guesses', ''), ('the mobility is 1', ''), ('cq [5, 6]', '5'), ('drive 6', 'P')]
     with tempfile.TemporaryDirectory() as folder:
-        done = talks.pipe(talks.mech9k, steps, 'too many independent coordinates', INTERRUPTED, folder=folder)
+        done = talks.pipe(talks.mech9k, steps, 'too many insisted on', INTERRUPTED, folder=folder)
         talks.checks.true('Put together at the start' in done.stderr, 'put together after the correction', done.stderr)
         talks.checks.true('drive coordinate=6' not in text_of(os.path.join(folder, 'fig_1.draft.nml')),
                           'the drive of a dependent coordinate is gone')
@@ -240,6 +247,97 @@ def edited_files(talks):
         talks.checks.true(text_of(os.path.join(folder, 'p.nml')) == text, 'it is as it was')
 
 
+def text_saved(talks, program, steps, why):
+    """The data file that a conversation saves as x.nml."""
+    with tempfile.TemporaryDirectory() as folder:
+        talks.pipe(program, [*steps, ('all is right', ''), ('[both]', 'save'), ('data file [', 'x.nml')], why, folder=folder)
+        path = os.path.join(folder, 'x.nml')
+        done = run(program, path, '--check', folder=folder)
+        talks.checks.equal(done.returncode, DONE, f'{why}: the data file is right')
+        return text_of(path) if os.path.exists(path) else ''
+
+
+def begun_by_mistake(talks):
+    """A body, a load, a point begun by mistake is left by going back or by `remove`; `none` begins none."""
+    steps = []
+    for prompt, answer in scripts.PENDULUM_TO_THE_END:
+        steps.append((prompt, {'body 2, link': '1', 'load 1, kind': 'force', 'point 2, name': 'Q'}.get(prompt, answer)))
+        if prompt == 'body 2, link':
+            steps += [('mass', 'back'), ('link [1]', 'back'), ('Body 2 is left out.', 'none')]
+        elif prompt == 'load 1, kind':
+            steps += [('link: ', '2'), ('position', 'remove'), ('Load 1 is left out.', 'spring'), ('links: ', 'back'),
+                      ('kind [spring]', 'back'), ('Load 1 is left out.', 'no')]
+        elif prompt == 'point 2, name':
+            steps += [('link: ', '?'), ('remove leaves out the point', '2'), ('position', 'remove'),
+                      ('Point 2 is left out.', 'no more')]
+    steps = [*steps[:2], ('coordinates: ', 'remove'), ('Nothing can be left out here', '1'), *steps[3:]]
+    text = text_saved(talks, talks.mech9d, steps, 'begun by mistake')
+    expected = text_saved(talks, talks.mech9d, scripts.PENDULUM_TO_THE_END, 'the pendulum')
+    talks.checks.true(text == expected and '&load' not in text, 'nothing is left of what was begun by mistake', text)
+    # a load that is added at the end and left brings the end back
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(EXAMPLE['simple_pendulum'], os.path.join(folder, 'p.nml'))
+        steps = [('all is right', 'add load'), ('load 1, kind', 'torque'), ('link: ', 'remove'), ('load 1, kind', ''),
+                 ('all is right', 'quit')]
+        talks.pipe(talks.mech9d, steps, 'an added load left out', arguments=('--edit', 'p.nml'), folder=folder)
+
+
+def short_answers(talks):
+    """A slider-crank with a screw in short answers: the data file has full forms, and a reader of data files takes no
+    others. After the slide, Enter means a hinge about the axis of the hinges."""
+    steps = [('title', 'Crank'), ('links: ', '4'), ('coordinates: ', '4'), ('angle_unit', 'd'), ('[pairs]', 'p'),
+             ('links of pair 1', '1-2'), ('links of pair 2', '1 - 4'), ('links of pair 3', '2-3'), ('links of pair 4', '3-4'),
+             ('cq: ', '1'), ('which of them', 'zero'), ('kind [revolute]', 'rev'), ('point', ''), ('axis: ', ''),
+             ('This must be given', 'z'), ('zero', '-x'),
+             ('kind [revolute]', 'pris'), ('point', ''), ('axis: ', '-x'), ('zero', ''),
+             ('kind [revolute]', ''), ('point', '.1 0 0'), ('axis [0, 0, 1]', ''), ('zero', ''),
+             ('kind [revolute]', ''), ('point', '.4 0 0'), ('axis [0, 0, 1]', ''), ('zero', ''),
+             ('kind [polynomial]', 'har'), ('mean (deg) [0]', ''), ('amplitude (deg): ', '?'), ('For example: 30 (', '20'),
+             ('angular_frequency (deg/s)', '360'), ('phase (deg) [0]', '?'), ('For example: 90 (begins at', ''),
+             ('guesses', ''), ('point 1, name', 'none'), ('start', ''), ('end', ''), ('intervals', '10'),
+             ('derivatives which of them', 'energies'), ("'energies' is none of these names", ''), ('table [', '')]
+    text = text_saved(talks, talks.mech9k, steps, 'short answers')
+    for part in ("angle_unit='deg'", "links=1, 4, kind='prismatic', axis=-1, 0, 0 /", "kind='revolute', axis=0, 0, 1, zero=-1, 0, 0",
+                 "links=3, 4, kind='revolute', point=.4, 0, 0, axis=0, 0, 1 /", "kind='harmonic'"):
+        talks.checks.true(part in text, f'short answers: {part} is in the file', text)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'short.nml')
+        for full, short in (("'revolute'", "'rev'"), ('axis=-1, 0, 0', 'axis=-x'), ('links=3, 4', 'links=3-4')):
+            with open(path, 'w', encoding='utf-8') as file:
+                file.write(text.replace(full, short))
+            done = run(talks.mech9k, path, '--check', folder=folder)
+            talks.checks.true(full in text and done.returncode == DATA, f'{short} is none in a data file', done.stderr)
+
+
+def gravity(talks):
+    """Gravity is asked for: Enter alone does not leave it out."""
+    for answer, written in (('-y', '0, -9.81, 0'), ('none', '0, 0, 0'), ('0 0 -1.62', '0, 0, -1.62')):
+        steps = []
+        for prompt, usual in scripts.PENDULUM_TO_THE_END:
+            is_gravity = prompt == 'acceleration'
+            steps += [(prompt, ''), ('Gravity must be given', answer)] if is_gravity else [(prompt, usual)]
+        text = text_saved(talks, talks.mech9d, steps, f'gravity {answer}')
+        talks.checks.true(f'&gravity acceleration={written} /' in text, f'gravity: {answer} is {written}', text)
+
+
+def unsaved_runs(talks):
+    """The end of a conversation says which file holds what was run, and what was changed since."""
+    to_run = [*scripts.PENDULUM_TO_THE_END, ('all is right', ''), ('[both]', 'run')]
+    draft = 'simple_pendulum.draft.nml'
+    with tempfile.TemporaryDirectory() as folder:
+        steps = [*to_run, ('run or done [done]', 'done'), ('No data file is saved; what was typed is kept in ' + draft, '')]
+        talks.pipe(talks.mech9d, steps, 'run, not saved', folder=folder)
+        talks.checks.equal(sorted(os.listdir(folder)), ['simple_pendulum.dat', draft], 'as it says')
+        steps = [('all is right', ''), ('[both]', ''), ('data file [', ''), ('run or done', 'time intervals = 7'),
+                 ('[run]', 'run'), ('run or done [done]', ''), ('The changes are saved in simple_pendulum.nml', '')]
+        talks.pipe(talks.mech9d, steps, 'changed, run again', folder=folder, arguments=('--resume', draft))
+        talks.checks.true('intervals=7' in text_of(os.path.join(folder, 'simple_pendulum.nml')), 'as it says')
+        steps = [('all is right', ''), ('[both]', ''), ('data file [', ''), ('run or done', 'time intervals = 9'),
+                 ('[run]', 'done'), ('since the last run are kept in ' + draft, '')]
+        talks.pipe(talks.mech9d, steps, 'changed, not run', folder=folder, arguments=('--edit', 'simple_pendulum.nml'))
+        talks.checks.true('intervals=9' in text_of(os.path.join(folder, draft)), 'as it says')
+
+
 def refusals(talks):
     with tempfile.TemporaryDirectory() as folder:
         for arguments, code, said in ((('--edit', 'nowhere.nml'), FILE, 'there is no such file'),
@@ -273,6 +371,10 @@ def main():
     the_document(talks)
     structure_and_start(talks)
     edited_files(talks)
+    begun_by_mistake(talks)
+    short_answers(talks)
+    gravity(talks)
+    unsaved_runs(talks)
     refusals(talks)
     cut_off_anywhere(talks)
     if available():

@@ -1,5 +1,6 @@
 !> Every name of the data file is asked for in the conversation of a program that uses it, whatever the table of
-!> names holds; each question is told from the others by its label, and explained with the words of the table.
+!> names holds; each question is told from the others by its label, and explained in whole sentences with an example in the
+!> unit that is asked for. A group that was begun can be left out, and nothing is proposed that was meant for something else.
 program test_questions
   use mech9_text, only: string_type
   use mech9_grammar, only: group_table, item_table, find_group_row
@@ -8,13 +9,21 @@ program test_questions
   use mech9_outline, only: ways
   use mech9_interview, only: interview_type
   use mech9_questions, only: question_type, label_of, find_question, ask_item, check_structure, check_start, check_all
-  use mech9_question_words, only: default_of, prompt_of, help_of, words_for
+  use mech9_question_words, only: default_type, default_of, prompt_of, words_for
+  use mech9_question_help, only: help_of
+  use mech9_explanations, only: find_explanation, explanations
+  use mech9_answer, only: read_answer
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: tester
 
   call the_topics(tester)
   call all_names(tester)
+  call explained_names(tester)
+  call units_of_examples(tester)
+  call leaving_out(tester)
+  call proposals(tester)
+  call dropped_drives(tester)
   call tester%finish()
 
 contains
@@ -129,9 +138,170 @@ contains
       associate (item => item_table(question%row))
         call tester%is_true(index(prompt_of(question, interview%draft, default_of(question, interview%draft, &
                                   interview%outline, 'x.dat')), trim(item%name)) > 0, label_of(question)//': named in its prompt')
-        call tester%is_true(index(help_of(question, interview%draft, interview%outline), trim(item%help)) > 0, &
+        call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'For example: ') > 0, &
                             label_of(question)//': explained')
+        call tester%is_true(any([character(len=6) :: 'both', interview%outline%program_name] == item%program), &
+                            label_of(question)//': used by the program that asks')
       end associate
     end do
   end subroutine look_at
+
+  !> Each row of the grammar has an explanation, and each explanation a row; they are sentences, and their examples answers.
+  subroutine explained_names(tester)
+    type(tester_type), intent(inout) :: tester
+    integer :: row, place, times(size(explanations))
+
+    times = 0
+    do row = 1, size(item_table)
+      associate (item => item_table(row))
+        place = find_explanation(trim(item%group), trim(item%name), trim(item%kinds))
+        call tester%is_true(place > 0, '&'//trim(item%group)//' '//trim(item%name)//' ('//trim(item%kinds)// &
+                            ') has an explanation in src/dialogue/explanations.f90')
+        if (place == 0) cycle
+        times(place) = times(place) + 1
+        call tester%is_true(ends_sentence(trim(explanations(place)%text)), trim(item%name)//': whole sentences')
+        call is_answer(tester, row, trim(explanations(place)%example))
+        if (explanations(place)%degrees /= '') call is_answer(tester, row, trim(explanations(place)%degrees))
+        if (explanations(place)%length /= '') call is_answer(tester, row, trim(explanations(place)%length))
+      end associate
+    end do
+    call tester%is_true(all(times == 1), 'each explanation belongs to one name')
+  end subroutine explained_names
+
+  !> Whether a text begins with a capital and ends with a full stop.
+  pure logical function ends_sentence(text)
+    character(len=*), intent(in) :: text
+
+    ends_sentence = text(1:1) >= 'A' .and. text(1:1) <= 'Z' .and. text(len(text):) == '.'
+  end function ends_sentence
+
+  !> What stands before the parenthesis of an example can be typed.
+  subroutine is_answer(tester, row, example)
+    type(tester_type), intent(inout) :: tester
+    integer, intent(in) :: row                   !< in item_table
+    character(len=*), intent(in) :: example
+    character(len=:), allocatable :: text, problem
+
+    call read_answer(item_table(row), example(:index(example//' (', ' (') - 1), text, problem)
+    call tester%is_true(problem == '', trim(item_table(row)%group)//' '//trim(item_table(row)%name)//': '//example// &
+                        ' is an answer')
+  end subroutine is_answer
+
+  !> A constant rate is explained in degrees, in rad and in m, as the coordinate that is asked about has it: a turn a second
+  !> is 360 degrees or 2 pi rad in a second.
+  subroutine units_of_examples(tester)
+    type(tester_type), intent(inout) :: tester
+
+    call tester%is_true(index(help_on('drive(1).coefficients', 'revolute', 'rad'), '6.2832 (begins at 0 rad') > 0, 'rad')
+    call tester%is_true(index(help_on('drive(1).coefficients', 'revolute', 'deg'), '360 (begins at 0 deg') > 0, 'degrees')
+    call tester%is_true(index(help_on('drive(1).coefficients', 'prismatic', 'deg'), '(begins at 0.1 m') > 0, 'metres')
+    call tester%is_true(index(help_on('load(4).damping', 'revolute', 'deg'), '(N m s)') > 0, 'damping of an angle')
+    call tester%is_true(index(help_on('load(4).damping', 'prismatic', 'deg'), '(N s/m)') > 0, 'damping of a length')
+    call tester%is_true(index(help_on('load(4).rest', 'revolute', 'deg'), '30 (a twelfth of a turn)') > 0, 'rest in degrees')
+  end subroutine units_of_examples
+
+  !> What ? says of a question in a four-bar whose first pair is of this kind.
+  function help_on(label, kind, angle_unit) result(text)
+    character(len=*), intent(in) :: label        !< of the question
+    character(len=*), intent(in) :: kind
+    character(len=*), intent(in) :: angle_unit   !< rad or deg
+    character(len=:), allocatable :: text
+    type(interview_type) :: interview
+    integer :: number
+
+    if (label(:4) == 'load') then
+      call begin('mech9d', 'pairs', 'polynomial', interview)
+    else
+      call begin('mech9k', 'pairs', 'polynomial', interview)
+    end if
+    call interview%draft%give('mechanism', 1, 'angle_unit', "'"//angle_unit//"'")
+    call interview%draft%give('pair', 1, 'kind', "'"//kind//"'")
+    if (label(:4) == 'load') call interview%draft%give('load', 4, 'coordinate', '1')
+    call interview%refresh('')
+    number = find_question(interview%questions, label)
+    text = ''
+    if (number > 0) text = help_of(interview%questions(number), interview%draft, interview%outline)
+  end function help_on
+
+  !> A load that was begun is left by going back before its first question, a complete one is not; any is by `leave_out`.
+  subroutine leaving_out(tester)
+    type(tester_type), intent(inout) :: tester
+    type(interview_type) :: interview
+    logical :: done
+
+    call begin('mech9d', 'pairs', 'polynomial', interview)
+    interview%at = find_question(interview%questions, 'load(1).kind')
+    call tester%is_true(interview%is_begun(), 'a force without its link and its components is begun')
+    interview%at = find_question(interview%questions, 'load(5).kind')
+    call tester%is_true(.not. interview%is_begun(), 'a load of a user is complete')
+    interview%at = find_question(interview%questions, 'load(6).kind')
+    call interview%leave_out(done)
+    call tester%is_true(.not. done, 'what is not begun cannot be left out')
+    interview%at = find_question(interview%questions, 'pair(1).kind')
+    call interview%leave_out(done)
+    call tester%is_true(.not. done .and. interview%draft%count_of('pair') == 4, 'nor can a pair')
+    interview%at = find_question(interview%questions, 'load(5).kind')
+    call interview%leave_out(done)
+    call tester%is_true(done .and. interview%draft%count_of('load') == 4, 'the load is left out')
+    call tester%is_true(label_of(interview%due()) == 'load(5).kind' .and. interview%questions(interview%at)%is_new, &
+                        'and another one is asked for in its place')
+  end subroutine leaving_out
+
+  !> After a slide neither its kind nor its axis is proposed; after a hinge its axis is, also over a slide between.
+  !> Gravity has no proposal.
+  subroutine proposals(tester)
+    type(tester_type), intent(inout) :: tester
+    type(interview_type) :: interview
+    integer :: i
+
+    call begin('mech9d', 'pairs', 'polynomial', interview)
+    do i = 1, 4
+      call interview%draft%take_away('pair', i, 'kind')
+    end do
+    call interview%draft%give('pair', 1, 'kind', "'revolute'")
+    call interview%draft%give('pair', 1, 'axis', '0, 1, 0')
+    call interview%draft%give('pair', 2, 'kind', "'prismatic'")
+    call interview%refresh('')
+    call tester%is_true(proposal(interview, 'pair(2).axis') == '', 'a slide after a hinge: no axis')
+    call interview%draft%give('pair', 2, 'axis', '1, 0, 0')
+    call interview%refresh('')
+    call tester%is_true(proposal(interview, 'pair(3).kind') == "'revolute'", 'after a slide: a hinge')
+    call interview%draft%give('pair', 3, 'kind', "'revolute'")
+    call interview%refresh('')
+    call tester%is_true(proposal(interview, 'pair(3).axis') == '0, 1, 0', 'after a slide: the axis of the hinge before')
+    call tester%is_true(proposal(interview, 'gravity(1).acceleration') == '', 'gravity')
+    call interview%draft%give('body', 1, 'mass', '2.0')
+    call interview%draft%give('body', 2, 'link', '3')
+    call interview%refresh('')
+    call tester%is_true(proposal(interview, 'body(2).mass') == '', 'the mass of the body before')
+  end subroutine proposals
+
+  !> What Enter answers to a question, as a data file writes it; empty: nothing.
+  function proposal(interview, label) result(text)
+    type(interview_type), intent(in) :: interview
+    character(len=*), intent(in) :: label        !< of the question
+    character(len=:), allocatable :: text
+    type(default_type) :: default
+
+    default = default_of(interview%questions(find_question(interview%questions, label)), interview%draft, &
+                         interview%outline, 'x.dat')
+    text = default%text
+  end function proposal
+
+  !> Where other coordinates become independent, a drive of which something was entered is named as dropped; others are not.
+  subroutine dropped_drives(tester)
+    type(tester_type), intent(inout) :: tester
+    type(interview_type) :: interview
+
+    call begin('mech9k', 'pairs', 'polynomial', interview)
+    call interview%draft%give('structure', 1, 'cq', '1, 2')
+    call interview%refresh('')
+    call tester%is_true(interview%draft%count_of('drive') == 2, 'a drive of coordinate 2 is asked for')
+    call interview%draft%give('structure', 1, 'cq', '1')
+    call interview%refresh('')
+    call tester%is_true(interview%draft%count_of('drive') == 1 .and. interview%dropped == '', 'it goes without a word')
+    call interview%draft%give('structure', 1, 'cq', '2')
+    call interview%refresh('')
+    call tester%is_true(interview%dropped == 'drive 1', 'one with a kind is named')
+  end subroutine dropped_drives
 end program test_questions

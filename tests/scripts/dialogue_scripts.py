@@ -47,7 +47,7 @@ PENDULUM_TO_THE_END = [
     ('angle_unit [rad]', ''), ('[pairs]', ''), ('links of pair 1', '1 2'), ('cq: ', '1'), ('which of them', ''),
     ('kind', ''), ('point', ''), ('axis', '0,0,1'), ('position', ''), ('velocity', '0.0'),
     ('body 1, link', '2'), ('mass', '1.0'), ('centre', '-1 0 0'), ('inertia', ''), ('body 2, link', ''),
-    ('gravity, acceleration', '0 -9.81 0'), ('load 1, kind', ''),
+    ('acceleration', '0 -9.81 0'), ('load 1, kind', ''),
     ('point 1, name', 'P'), ('link: ', '2'), ('position', '-1 0 0'), ('point 2, name', ''),
     ('start', ''), ('end', '10'), ('intervals', ''),
     ('which of them', 'relative_tolerance, absolute_tolerance'), ('method', ''),
@@ -60,7 +60,7 @@ def with_errors(steps):
     What must be said of each is given as the prompt of the step that follows it."""
     wrong = {
         'links: ': [('', 'six'), ("takes whole numbers, and six is none", '6 5'), ('2 values for', '0'),
-                    ("must be >=1", '1000000'), ('too many to speak of', '?'), ('frame included', None)],
+                    ("must be >=1", '1000000'), ('too many to speak of', '?'), ('Count every rigid part', None)],
         'links of pair 3': [('', '3 9'), ('the links are 1 to 6', '3 3'), ('to itself', '3 5 6'),
                             ('3 values for', 'back'), ('links of pair 2', ''), ('links of pair 3', 'list'),
                             ('[4] links 1, 6', None)],
