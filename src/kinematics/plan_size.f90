@@ -10,6 +10,10 @@ module mech9_plan_size
   private
   public :: find_size, find_units
 
+  !> Distances below this part of the distance from the links' origins are no size: round-off of the places would be more than
+  !> 1e-12 of them. Errors of a spherical mechanism's centre are such distances.
+  real(wp), parameter :: no_size = 1.0e-4_wp
+
 contains
 
   !> Size of the mechanism and a good origin: the middle of link 1's pairs.
@@ -55,8 +59,7 @@ contains
     do k = 1, size(mechanism%points)
       reach = max(reach, maxval(abs(mechanism%points(k)%position)))
     end do
-    ! distances that are nothing but round-off are no size
-    if (plan%length <= 1.0e-9_wp*reach) plan%length = reach
+    if (plan%length <= no_size*reach) plan%length = reach
     if (plan%length <= 1.0e-14_wp) plan%length = 1.0_wp
   end subroutine find_size
 
