@@ -21,6 +21,9 @@ module mech9_reader
   private
   public :: read_structure_only, read_mechanism
 
+  !> Closed chains that stay open by more are not closed [rad, parts of the mechanism's size].
+  real(wp), parameter :: largest_data_tolerance = 1.0e-3_wp
+
 contains
 
   !> The structure alone. The mechanism's geometry need not be given; whatever is given is checked
@@ -114,6 +117,10 @@ contains
     group = group_or_empty(document, 'mechanism')
     mechanism%title = get_text(group, 'title')
     if (get_text(group, 'angle_unit') == 'deg') mechanism%angle_unit = radians_per_degree
+    mechanism%data_tolerance = get_real(group, 'data_tolerance')
+    if (mechanism%data_tolerance > largest_data_tolerance) &
+      call diagnostics%add(span_of(group, 'data_tolerance', 1), 'data_tolerance is at most 1e-3: chains that are less exact '// &
+                           'are not closed')
     group = group_or_empty(document, 'user')
     mechanism%parameters = get_reals(group, 'parameters')
     group = group_or_empty(document, 'solver')

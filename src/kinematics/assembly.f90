@@ -30,6 +30,9 @@ module mech9_assembly
   !> Errors that are left at a singular position where they fall slowly: still far below any tolerance.
   real(wp), parameter :: closed_singular = 1.0e-12_wp
 
+  !> The length of the errors of a block, several closures together, against what one may stay open by.
+  real(wp), parameter :: may_stay_open = 10.0_wp
+
   !> How an assembly went.
   type :: assembly_outcome_type
     logical :: closed = .false.
@@ -94,11 +97,14 @@ contains
     type(assembly_outcome_type), intent(out) :: outcome
     type(error_type), allocatable, intent(out) :: err
     type(newton_outcome_type) :: newton
-    real(wp) :: before(size(block%unknowns)), lack
+    real(wp) :: before(size(block%unknowns)), lack, enough
 
-    call reduce_errors(plan, block, state, work, near_enough, 1.0e-2_wp, lack, err)
+    ! redundant equations that may stay open must be as near to closed as they get
+    enough = near_enough
+    if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) enough = closed_enough
+    call reduce_errors(plan, block, state, work, enough, 1.0e-2_wp, lack, err)
     if (allocated(err)) return
-    outcome%closed = lack <= near_enough
+    outcome%closed = lack <= max(near_enough, may_stay_open*plan%data_tolerance)
     if (outcome%closed) then
       before = state%q(block%coordinates)
       call close_block(plan, block, state, work, newton, err)
@@ -107,12 +113,12 @@ contains
         state%q(block%coordinates) = before
         call reduce_errors(plan, block, state, work, closed_enough, 1.0e-10_wp, lack, err)
         if (allocated(err)) return
-        outcome%closed = lack <= closed_singular
+        outcome%closed = lack <= max(closed_singular, may_stay_open*plan%data_tolerance)
       end if
     end if
     call find_worst(plan, block, state, outcome)
     ! all six components of every closure count here, also those outside its space of motions
-    outcome%closed = outcome%closed .and. outcome%gap <= 1.0e-10_wp*plan%length
+    outcome%closed = outcome%closed .and. outcome%gap <= max(1.0e-10_wp, plan%data_tolerance)*plan%length
   end subroutine descend
 
   !> Damped least squares (Levenberg and Marquardt) until the errors are as small as asked for, or get

@@ -8,11 +8,12 @@ module mech9_diagnosis
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_assembly, only: assembly_outcome_type
+  use mech9_finite_motion, only: locked_chain_type
   use mech9_release, only: close_free, most_free_coordinates
   use mech9_mobility, only: find_motions, choose_coordinates, shares_of, moves_least
   implicit none
   private
-  public :: judge_choice, refuse_open, refuse_undetermined
+  public :: judge_choice, refuse_open, refuse_undetermined, refuse_locked
 
   !> Numbers that a list in a message shows at most.
   integer, parameter :: longest_list = 24
@@ -21,6 +22,9 @@ module mech9_diagnosis
   real(wp), parameter :: comes_back = 1.0e-4_wp
   !> Part in the motions of length one from which a coordinate would not come back by chance.
   real(wp), parameter :: seems_to_move = 1.0e-2_wp
+
+  !> Dimensions that are this near to those of a mechanism that moves were meant to be these.
+  real(wp), parameter :: overconstrained_nearby = 1.0e-3_wp
 
 contains
 
@@ -221,12 +225,43 @@ contains
     end associate
     if (outcome%gap < 1.0e-5_wp*plan%length) then
       text = text//'so small a gap comes from directions or points given with too few digits, '// &
-             'for a chain that moves only when its geometry is exact'
+             'for a chain that moves only when its geometry is exact; give more digits, or allow for their error with '// &
+             '&mechanism data_tolerance='//trim(power_of_ten(outcome%gap/plan%length))
     else
       text = text//'check its dimensions and the independent coordinates, or give better guesses with &initial'
     end if
     call raise(err, exit_assembly, text)
   end subroutine refuse_open
+
+  !> A chain whose equations are redundant at the start only.
+  subroutine refuse_locked(plan, locked, err)
+    type(plan_type), intent(in) :: plan
+    type(locked_chain_type), intent(in) :: locked
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: text
+
+    text = 'closed chain '//to_text(plan%closures(locked%closure)%chain)//' does not move: '//to_text(locked%redundant)// &
+           ' of its equations follow'//trim(merge('s', ' ', locked%redundant == 1))//' from the others at the start only; '// &
+           'after a displacement of '//to_text(locked%displacement, 2)//' (rad, or parts of the mechanism''s size) it stays '// &
+           'open by '//to_text(locked%gap, 3)//' m; '
+    if (locked%distance <= overconstrained_nearby) then
+      text = text//'its dimensions are about '//to_text(locked%distance, 1)//' (rad, or parts of the size) from those of '// &
+             'an overconstrained mechanism that moves: give points and directions with more digits, or allow for their '// &
+             'error with &mechanism data_tolerance='//trim(power_of_ten(max(locked%distance, locked%gap/plan%length)))// &
+             ', or use pairs with more freedom'
+    else
+      text = text//'check the points and directions of its pairs, or use pairs with more freedom'
+    end if
+    call raise(err, exit_structure, text)
+  end subroutine refuse_locked
+
+  !> The next power of ten, as a data file has it: "1e-6".
+  pure function power_of_ten(value) result(text)
+    real(wp), intent(in) :: value         !< above 0
+    character(len=5) :: text
+
+    write (text, '(a,i0)') '1e', ceiling(log10(max(value, 1.0e-15_wp)))
+  end function power_of_ten
 
   pure function numbers_of(mask) result(numbers)
     logical, intent(in) :: mask(:)

@@ -44,6 +44,7 @@ contains
       plan%n_coordinates = structure%n_coordinates
       plan%independent = pack([(i, i=1, structure%n_coordinates)], structure%independent)
     end associate
+    plan%data_tolerance = mechanism%data_tolerance
     allocate (plan%steps(plan%n_coordinates), plan%step_of(plan%n_coordinates))
     allocate (plan%frame_of(plan%n_links), source=0)
     allocate (plan%link_in_frame(plan%n_links), plan%pairs(plan%n_coordinates))

@@ -22,6 +22,8 @@ module mech9_loop_rank
   integer, parameter :: longest_loop = 60
   !> Pivots below this fraction of the largest count as zero.
   real(wp), parameter :: rank_tolerance = 1.0e-9_wp
+  !> Pivots that inexact dimensions make, against their error.
+  real(wp), parameter :: inexact = 10.0_wp
 
 contains
 
@@ -69,7 +71,7 @@ contains
       if (allocated(err)) cycle
       if (.not. outcome%closed) cycle
       call factorize_block(loop, loop%blocks(1), state, work)
-      found = work%equations%rank(rank_tolerance)
+      found = work%equations%rank(max(rank_tolerance, inexact*loop%data_tolerance))
       best = max(best, found)
       closed = closed + 1
       if (best == rank .or. closed == 2) exit
@@ -87,6 +89,7 @@ contains
     n = size(closure%path%steps)
     loop%n_coordinates = n
     loop%length = plan%length
+    loop%data_tolerance = plan%data_tolerance
     loop%steps = plan%steps(closure%path%steps)
     loop%unit_of = plan%unit_of(loop%steps%coordinate)
     allocate (loop%pairs(n))

@@ -17,6 +17,8 @@ module mech9_loop_space
   !> Screws count as lying in a smaller space within this: well above the round-off of directions given
   !> with 16 digits, well below any deliberate deviation.
   real(wp), parameter :: tolerance = 1.0e-11_wp
+  !> Screws of inexact dimensions are so many times less exact: products of several of them count.
+  real(wp), parameter :: inexact = 10.0_wp
 
 contains
 
@@ -49,7 +51,9 @@ contains
     type(closure_type), intent(inout) :: closure
     real(wp) :: screws(6, 2*size(closure%path%steps))
     integer :: i, n, s
+    real(wp) :: within
 
+    within = max(tolerance, inexact*plan%data_tolerance)
     n = 0
     do i = 1, size(closure%path%steps)
       s = closure%path%steps(i)
@@ -62,13 +66,13 @@ contains
       screws(:, n) = loop_screw(plan, closure, state, state%axis_w_rate(:, s), &
                                 state%axis_v_rate(:, s) - cross(state%axis_w(:, s), state%axis_v(:, s)), &
                                 state%p(:, s))
-      if (norm2(screws(:, n)) > tolerance) then
+      if (norm2(screws(:, n)) > within) then
         screws(:, n) = screws(:, n)/norm2(screws(:, n))
       else
         n = n - 1
       end if
     end do
-    call generated_algebra(screws(:, :n), tolerance, closure%rows, closure%rank)
+    call generated_algebra(screws(:, :n), within, closure%rows, closure%rank)
     if (closure%rank == 6) closure%rows = 0.0_wp
   end subroutine find_space
 end module mech9_loop_space

@@ -14,6 +14,8 @@ module mech9_mobility
 
   !> Singular values below this fraction of the largest count as zero.
   real(wp), parameter :: rank_tolerance = 1.0e-8_wp
+  !> Singular values that inexact dimensions make, against their error.
+  real(wp), parameter :: inexact = 10.0_wp
   !> Coordinates that take a smaller part than this in motions of length one do not move.
   real(wp), parameter :: moves_least = 1.0e-8_wp
 
@@ -46,7 +48,7 @@ contains
     if (n > 0) then
       if (block%equations > 0) call closure_jacobian(plan, block, state, column_of, a)
       call dgesvd('N', 'A', m, n, a, m, s, u, 1, vt, n, work, size(work), info)
-      rank = count(s > rank_tolerance*max(s(1), tiny(s)))
+      rank = count(s > max(rank_tolerance, inexact*plan%data_tolerance)*max(s(1), tiny(s)))
     end if
     allocate (motions(plan%n_coordinates, n - rank), source=0.0_wp)
     do i = 1, plan%n_coordinates

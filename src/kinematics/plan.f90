@@ -73,6 +73,7 @@ module mech9_plan
     integer :: n_links = 0
     integer :: n_coordinates = 0
     real(wp) :: length = 1.0_wp                     !< the mechanism's size [m]; weighs rotations against lengths
+    real(wp) :: data_tolerance = 0.0_wp             !< redundant equations may stay open by this: rad, parts of `length`
     real(wp) :: origin(3) = 0.0_wp                  !< of frame 0 in link 1 [m]
     type(step_type), allocatable :: steps(:)
     type(closure_type), allocatable :: closures(:)

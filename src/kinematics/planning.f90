@@ -23,13 +23,16 @@ module mech9_planning
   use mech9_branches, only: close_from_random_starts
   use mech9_elsewhere, only: elsewhere_type, go_elsewhere
   use mech9_release, only: carry_inputs
-  use mech9_diagnosis, only: judge_choice, refuse_open, refuse_undetermined
+  use mech9_diagnosis, only: judge_choice, refuse_open, refuse_undetermined, refuse_locked
+  use mech9_finite_motion, only: locked_chain_type, find_locked_chain
   implicit none
   private
   public :: make_plan, chain_names
 
   !> Pivots below this fraction of the largest count as zero when ranks are found.
   real(wp), parameter :: rank_tolerance = 1.0e-9_wp
+  !> Pivots, and rates that chains cannot follow, that inexact dimensions make, against their error.
+  real(wp), parameter :: inexact = 10.0_wp
   !> Unknowns of one block for which there is memory and time: its equations are a full matrix.
   integer, parameter :: most_unknowns = 3000
   !> Rates that the chains cannot follow, against rates of one, where the inputs contradict each other.
@@ -70,6 +73,9 @@ contains
     call settle_blocks(plan, state, elsewhere, err)
     if (allocated(err)) return
     call check_inputs(plan, state, elsewhere, err)
+    if (allocated(err)) return
+    ! a plan for other independent coordinates, made with `needs`, is one of a mechanism that moves
+    if (.not. present(needs)) call check_motion(plan, state, err)
     if (allocated(err)) return
     if (present(needs)) call leave_out(plan, needs)
     call find_constants(plan)
@@ -158,13 +164,13 @@ contains
         elsewhere%exists = .false.
       end if
       call factorize_block(plan, block, state, work)
-      complete = work%equations%rank(rank_tolerance) == size(block%unknowns)
+      complete = work%equations%rank(max(rank_tolerance, inexact*plan%data_tolerance)) == size(block%unknowns)
       if (complete .and. .not. elsewhere%exists) return
       ! a singular start, or a rank that is small everywhere?
       call go_elsewhere(plan, blocks, state, elsewhere, closed)
       if (complete .or. .not. closed) return
       call factorize_block(plan, block, elsewhere%state, work)
-      complete = work%equations%rank(rank_tolerance) == size(block%unknowns)
+      complete = work%equations%rank(max(rank_tolerance, inexact*plan%data_tolerance)) == size(block%unknowns)
     end associate
   end subroutine settle_block
 
@@ -230,7 +236,7 @@ contains
       work = new_block_work(plan%blocks(b))
       if (plan%blocks(b)%equations > 0) call factorize_block(plan, plan%blocks(b), trial, work)
       call solve_rates(plan, plan%blocks(b), trial, work, remainder)
-      free = remainder <= contradiction
+      free = remainder <= max(contradiction, inexact*plan%data_tolerance)
       if (.not. free) exit
     end do
     if (free) return
@@ -239,6 +245,17 @@ contains
     if (.not. allocated(err)) call raise(err, exit_structure, 'the independent coordinates cannot all move freely: '// &
       chain_names(plan%blocks(b))//' would not stay closed')
   end subroutine check_inputs
+
+  !> Chains with redundant equations must stay closed when they move.
+  subroutine check_motion(plan, state, err)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state      !< assembled
+    type(error_type), allocatable, intent(out) :: err
+    type(locked_chain_type) :: locked
+
+    call find_locked_chain(plan, state, locked)
+    if (locked%exists) call refuse_locked(plan, locked, err)
+  end subroutine check_motion
 
   pure elemental integer function unknowns_of(block)
     type(block_type), intent(in) :: block

@@ -19,6 +19,8 @@ module mech9_mechanism
     character(len=:), allocatable :: title
     !> Radians in one unit of angle of the data file and of the results: 1, or pi/180.
     real(wp) :: angle_unit = 1.0_wp
+    !> How far redundant equations may stay open: of the mechanism's size, and rad. For dimensions of few digits.
+    real(wp) :: data_tolerance = 0.0_wp
     type(structure_type) :: structure
     !> The order of computation: from the data file, or made from the structure.
     type(structural_vectors_type) :: vectors

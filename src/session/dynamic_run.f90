@@ -21,6 +21,7 @@ module mech9_dynamic_run
   use mech9_side_steps, only: side_steps_type, begin_integration
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_columns, only: kinematic_columns
+  use mech9_closure_guard, only: check_closure
   use mech9_recording, only: motion_source_type, stop_if_interrupted
   implicit none
   private
@@ -146,6 +147,7 @@ contains
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: row(:)
     type(error_type), allocatable, intent(out) :: err
+    real(wp) :: gap
     integer :: next
 
     if (self%started) then
@@ -153,6 +155,9 @@ contains
     else
       call self%start_integrator(err)
     end if
+    if (allocated(err)) return
+    gap = largest_closure(self%system%plan, self%system%state)
+    call check_closure(self%system%plan, t, gap, err)
     if (allocated(err)) return
     associate (system => self%system)
       call self%columns%fill(system%mechanism, system%plan, system%state, row)
@@ -162,7 +167,7 @@ contains
         next = next + 3
       end if
       call self%columns%fill_poses(system%plan, system%state, row)
-      row(next) = largest_closure(system%plan, system%state)
+      row(next) = gap
       if (system%mechanism%output%conditioning) then
         call self%conditioning%look(t, system%work%blocks, row(next + 1))
       else

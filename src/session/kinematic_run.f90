@@ -10,6 +10,7 @@ module mech9_kinematic_run
   use mech9_needs, only: needs_of_results, leave_out
   use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs
   use mech9_columns, only: kinematic_columns
+  use mech9_closure_guard, only: check_closure
   use mech9_recording, only: motion_source_type
   implicit none
   private
@@ -76,6 +77,7 @@ contains
       call start_tracking(self%mechanism, self%plan, self%start, t, self%tracker, err, self%needs%derivatives > 1)
       self%started = .true.
     end if
+    if (.not. allocated(err)) call check_closure(self%plan, t, self%tracker%closure, err)
     if (allocated(err)) return
     call self%columns%fill(self%mechanism, self%plan, self%tracker%state, row)
     next = self%columns%motion + 1

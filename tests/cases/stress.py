@@ -30,6 +30,7 @@ REDUNDANT = 1e-14          # ... but a redundant chain sees what the block befor
                            # its least singular value
 ACCELERATIONS = 1e-5       # second differences at 1e-4: round-off 1e-8, truncation 1e-8 that grows beside dead points
 LIMIT = 1e-9               # of the driven coordinate at a dead point, as promised [rad, sizes]
+ALLOWED_FOR = 1000.0       # data_tolerance against an error of one dimension: conditioning enlarges what stays open
 SECONDS = 60.0             # for a run of milliseconds; checked builds on a busy machine take a hundred times as long
 
 
@@ -39,6 +40,7 @@ class Mechanism:
     def __init__(self, family, loops, member, size, intervals, guess):
         self.family, self.loops, self.member, self.size = family, loops.take([member]), member, size
         self.intervals, self.guess, self.changes, self.start = intervals, guess, {}, {}
+        self.data_tolerance = 0.0
 
     def unit(self):
         """Of each coordinate: 1 where a pair turns, the size where it slides."""
@@ -46,7 +48,7 @@ class Mechanism:
 
     def text(self):
         loops, lines = self.loops, [f"&mechanism title='{self.family} {self.member}', links={self.loops.links.max()}, "
-                                    f'coordinates={len(self.loops.links)} /',
+                                    f'coordinates={len(self.loops.links)}, data_tolerance={self.data_tolerance!r} /',
                                     '&structure cq=' + ','.join(str(k + 1) for k in self.loops.inputs) + ' /']
         for k, (reference, moving) in enumerate(loops.links):
             turns, slides = loops.turns[0, k], loops.slides[0, k]
@@ -242,6 +244,27 @@ class Stress:
         for member in range(members):
             self.expect(Mechanism(family, loops, member, 10.0 ** self.rng.uniform(-2, 2), 5, np.zeros(len(links))), 4, 'mobility')
 
+    def disturbed_family(self, family, variant, members):
+        """Mechanisms that a small error of one dimension locks: exit code 4, and no row that is open. Where the error is
+        allowed for they move, and their chains are open by about as much."""
+        links, pairs, inputs = variant(self.rng, members)
+        extent = np.max(np.linalg.norm(pairs.point, axis=-1), axis=1)
+        loops = Loops(links, pairs.point / extent[:, None, None], pairs.axis, pairs.turns, pairs.slides, [k - 1 for k in inputs],
+                      np.ones((members, len(inputs))))
+        for member in range(members):
+            mechanism = Mechanism(family, loops, member, 10.0 ** self.rng.uniform(-2, 2), 5, np.zeros(len(links)))
+            self.expect(mechanism, 4, f'locked by an error of {pairs.error[member]:.1e}')
+            mechanism.data_tolerance = min(1e-3, ALLOWED_FOR * pairs.error[member])
+            if pairs.error[member] > 1e-3 / ALLOWED_FOR:
+                continue
+            code, said, rows, _ = self.run(mechanism)
+            if code not in (0, 6):
+                self.fail(mechanism, f'an error of {pairs.error[member]:.1e} that is allowed for: exit code {code}', said)
+            elif rows is None or not np.max(rows['closure']) <= 2 * mechanism.data_tolerance * mechanism.size:
+                self.fail(mechanism, f'an error of {pairs.error[member]:.1e} opens chains by more than is allowed', said)
+            else:
+                self.checks.passed += 1
+
     def infeasible(self, family, variant, change, members):
         """Mechanisms that a change of lengths takes apart: exit code 5."""
         links, pairs, inputs = variant(self.rng, members)
@@ -337,6 +360,8 @@ def part(mech9k, seed, family, number, members):
         stress.begin(family, number)
         if family in families.MOVING:
             stress.moving_family(family, families.MOVING[family][number], members)
+        elif family in families.DISTURBED:
+            stress.disturbed_family(family, families.DISTURBED[family][number], max(2, members // 2))
         elif family in families.WRONG:
             stress.wrong_family(family, families.WRONG[family][number], max(1, members // 3))
         else:
@@ -351,7 +376,7 @@ def main():
     seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1995
     only = sys.argv[4] if len(sys.argv) > 4 else ''
     tasks = [(mech9k, seed, family, number, members)
-             for family, variants in {**families.MOVING, **families.WRONG, **{name: [1] for name in INFEASIBLE}}.items()
+             for family, variants in {**families.MOVING, **families.DISTURBED, **families.WRONG, **{name: [1] for name in INFEASIBLE}}.items()
              for number in range(len(variants) if only in family else 0)]
     stress = Stress(mech9k, '', seed)
     with multiprocessing.Pool(2) as pool:

@@ -275,6 +275,35 @@ def locked(rng, b):
     return ring(5), moved(rng, pairs), [5]
 
 
+def disturbed(variant, what):
+    """A family that moves only by its exact dimensions, with one point moved across its axis, or one axis turned, by 1e-1 to
+    1e-8: closed at home, and locked."""
+    def make(rng, b):
+        links, pairs, inputs = variant(rng, b)
+        k, error = rng.integers(0, pairs.point.shape[1], b), 10.0 ** rng.uniform(-8, -1, b)
+        axis = pairs.axis[np.arange(b), k]
+        across = unit(np.cross(axis, rng.standard_normal((b, 3)))) * error[:, None]
+        if what == 'point':
+            extent = np.max(np.linalg.norm(pairs.point, axis=-1), axis=1)
+            pairs.point[np.arange(b), k] += across * extent[:, None]
+        else:
+            pairs.axis[np.arange(b), k] = unit(axis + across)
+        pairs.error = error
+        return links, pairs, inputs
+    return make
+
+
+#: Planar chains stay planar where a point is moved, and Sarrus' loop has points anywhere: there axes are turned.
+DISTURBED = {
+    'disturbed four-bars': [disturbed(four_bar(1), 'axis')],
+    'disturbed spherical': [disturbed(spherical(1), 'point')],
+    'disturbed Bennett': [disturbed(bennett, 'axis'), disturbed(bennett, 'point')],
+    'disturbed Sarrus': [disturbed(sarrus, 'axis')],
+    'disturbed Bricard, of a line': [disturbed(bricard_of_a_line, 'axis'), disturbed(bricard_of_a_line, 'point')],
+    'disturbed Bricard, of a plane': [disturbed(bricard_of_a_plane, 'axis'), disturbed(bricard_of_a_plane, 'point')],
+    'disturbed cranks': [disturbed(parallel_cranks(3), 'axis')],
+}
+
 WRONG = {
     'too many inputs': [lambda rng, b: (*four_bar(1)(rng, b)[:2], [1, 3]), lambda rng, b: (*bennett(rng, b)[:2], [1, 2])],
     'too few inputs': [lambda rng, b: (*five_bar((1, 5))(rng, b)[:2], [1]), lambda rng, b: (*rssr(rng, b)[:2], [1])],

@@ -1,0 +1,32 @@
+!> The last guard of a run: no row whose closed chains are open is ever recorded.
+module mech9_closure_guard
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_text, only: to_text
+  use mech9_plan, only: plan_type
+  implicit none
+  private
+  public :: check_closure
+
+  !> Closed chains count as closed up to this part of the mechanism's size: a thousand times above the worst round-off that was
+  !> ever seen, far below any accuracy that is asked for.
+  real(wp), parameter :: closed = 1.0e-9_wp
+
+contains
+
+  !> Fails with exit_singular where a position is not closed.
+  subroutine check_closure(plan, t, gap, err)
+    type(plan_type), intent(in) :: plan
+    real(wp), intent(in) :: t                 !< time of the position [s]
+    real(wp), intent(in) :: gap               !< largest closure error there [m, rotations times the mechanism's size]
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: tolerance
+
+    tolerance = max(closed, plan%data_tolerance)*plan%length
+    if (gap <= tolerance) return
+    call raise(err, exit_singular, 'the closed chains are open by '//to_text(gap, 3)//' m at t = '//to_text(t, 7)// &
+               ' s, and '//to_text(tolerance, 3)//' m is allowed ('//to_text(tolerance/plan%length, 1)//' of the mechanism''s '// &
+               'size): its dimensions let it move near the start only; give points and directions with more digits, or a '// &
+               'larger &mechanism data_tolerance')
+  end subroutine check_closure
+end module mech9_closure_guard
