@@ -34,6 +34,10 @@ module mech9_explanations
     explanation_type('mechanism', 'angle_unit', '', &
                   'All angles that you type and all angles in the results are in this unit, and their rates in this unit '// &
                   'per second.', 'deg'), &
+    explanation_type('mechanism', 'data_tolerance', '', &
+                  'Points and directions from a drawing have a few digits only, and a mechanism that moves by its exact '// &
+                  'dimensions alone would be locked. Its redundant equations may stay open by this part of its size, and '// &
+                  'by as many rad. Leave it at 0 where the dimensions are exact.', '1e-6'), &
     explanation_type('structure', 'c', '', &
                   'Row i of the coincidence matrix has a number for each link: the number of the pair that joins link i '// &
                   'to that link, and 0 where none does. The matrix is symmetric.', &

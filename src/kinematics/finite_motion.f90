@@ -1,4 +1,5 @@
-!> Whether chains with redundant equations stay closed over a finite motion.
+!> Whether chains with redundant equations stay closed over a finite motion. Uses kinds, error, lapack, random, rotation, plan,
+!> planar_plan, state, closure, solver, assembly, elsewhere.
 !>
 !> The rank of a chain at its start can be lower than at every other position. Its equations then seem redundant, and rates
 !> that satisfy them exist, but the chain is locked: no finite motion keeps it closed. Bennett's linkage, whose equations are
