@@ -20,7 +20,7 @@ module mech9_session
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_structure_text, only: print_structure
+  use mech9_structure_text, only: print_structure, print_names_of_vectors
   use mech9_task, only: task_type, answers_only
   use mech9_run_words, only: save_short_report
   use mech9_choice_check, only: judge_choice_of
@@ -112,7 +112,10 @@ contains
     if (options%has('structure')) then
       if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, mechanism)
       call read_structure_only(document, structure, vectors, diagnostics)
-      if (.not. diagnostics%failed()) call print_structure(output_unit, vectors)
+      if (.not. diagnostics%failed()) then
+        if (.not. options%has('quiet')) call print_names_of_vectors(error_unit)
+        call print_structure(output_unit, vectors)
+      end if
     else
       legible = .not. diagnostics%failed()
       call read_mechanism(document, task%needs_drives, mechanism, diagnostics)

@@ -9,7 +9,7 @@ module mech9_structure_text
   use mech9_planning, only: chain_names
   implicit none
   private
-  public :: print_structure, print_mobility, print_mobility_report, print_marked
+  public :: print_structure, print_names_of_vectors, print_mobility, print_mobility_report, print_marked
 
   !> Lines of one sort that are printed at most.
   integer, parameter :: most_lines = 40
@@ -30,6 +30,17 @@ contains
     write (unit, '(2a)') 'rdw = ', to_text(vectors%rdw, ' ')
     write (unit, '(2a)') 'nrw = ', to_text(vectors%nrw, ' ')
   end subroutine print_structure
+
+  !> What the structural vectors are, a line each.
+  subroutine print_names_of_vectors(unit)
+    integer, intent(in) :: unit
+
+    write (unit, '(a)') 'The structural vectors, an element for each place in the order of computation:'
+    write (unit, '(a)') '  nrg  number of the link that is reached; a chain that closes ends on a link that was reached before'
+    write (unit, '(a)') '  nws  number of the coordinate of the pair that leads there; 0 where a chain starts'
+    write (unit, '(a)') '  rdw  kind of that coordinate: 1 independent (and where a chain starts), 0 dependent'
+    write (unit, '(a)') '  nrw  number of closed chains so far; it grows by one at the link on which a chain closes'
+  end subroutine print_names_of_vectors
 
   !> Counts, mobility and redundancy.
   subroutine print_mobility(unit, plan)
