@@ -1,11 +1,12 @@
 !> The file of a table drive: lines with t and q. Uses kinds, error, text, source, numeral,
 !> item_check, diagnostics.
 !>
-!> Two numbers in each line, with blanks or a comma between; `#` begins a comment.
+!> Two numbers in each line, with blanks or a comma between; `#` begins a comment. A line of names may stand before
+!> the first point.
 module mech9_table_file
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, lower, starts_with
   use mech9_source, only: source_type, span_type, read_source
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_item_check, only: is_sensible
@@ -29,6 +30,7 @@ contains
     type(source_type) :: source
     type(error_type), allocatable :: err
     integer :: number, line, n, found
+    logical :: may_be_names
 
     ok = .false.
     allocate (t(0), q(0))
@@ -42,8 +44,9 @@ contains
     deallocate (t, q)
     allocate (t(size(source%line_start)), q(size(source%line_start)))
     n = 0
+    may_be_names = .true.
     do line = 1, size(source%line_start)
-      call read_point(source, number, line, t, q, n, diagnostics)
+      call read_point(source, number, line, may_be_names, t, q, n, diagnostics)
     end do
     t = t(:n)
     q = q(:n)
@@ -54,9 +57,10 @@ contains
   end subroutine read_table_file
 
   !> Take the point of a line, if there is one.
-  pure subroutine read_point(source, number, line, t, q, n, diagnostics)
+  pure subroutine read_point(source, number, line, may_be_names, t, q, n, diagnostics)
     type(source_type), intent(in) :: source
     integer, intent(in) :: number, line
+    logical, intent(inout) :: may_be_names                 !< no line before it held anything
     real(wp), intent(inout) :: t(:), q(:)
     integer, intent(inout) :: n                            !< points so far
     type(diagnostics_type), intent(inout) :: diagnostics
@@ -67,6 +71,10 @@ contains
     call source%line_bounds(line, first, last)
     call split(source%text, first, last, number, fields, count)
     if (count == 0) return
+    if (may_be_names) then
+      may_be_names = .false.
+      if (are_names(source%text(first:last))) return
+    end if
     if (count /= 2) then
       call diagnostics%add(span_type(number, first, max(first, last)), 'each line holds two numbers, t and q; here are '// &
                            to_text(count))
@@ -92,6 +100,27 @@ contains
     t(n) = numerals(1)%number
     q(n) = numerals(2)%number
   end subroutine read_point
+
+  !> Whether a line holds names of columns: none of its words begins as a number does, or means one that is not finite.
+  pure logical function are_names(line)
+    character(len=*), intent(in) :: line
+    character(len=len(line)) :: rest
+    integer :: at
+
+    are_names = .false.
+    rest = lower(line)
+    do
+      at = verify(rest, gaps)
+      if (at == 0) exit
+      rest = rest(at:)
+      if (rest(1:1) == '#') exit
+      if (scan(rest(1:1), '0123456789+-.') > 0 .or. starts_with(rest, 'nan') .or. starts_with(rest, 'inf')) return
+      at = scan(rest, gaps//'#')
+      if (at == 0) exit
+      rest = rest(at:)
+    end do
+    are_names = .true.
+  end function are_names
 
   !> The words of a line up to its comment; of more than two only the number is told.
   pure subroutine split(text, first, last, source, fields, count)

@@ -111,6 +111,10 @@ def table_drive(s):
 """
     table = s.table(text.format(start=0.0, end=2.0, intervals=8))
     s.checks.near(table['q1'], values, POSITION, 'the table drive goes through its points')
+    # with names above the points, as spreadsheets write them
+    s.write('named.csv', '# measured\n\n"time [s]", angle  # in rad\n' + ''.join(f'{t!r},{q!r}\n' for t, q in zip(times.tolist(), values.tolist())))
+    named = s.table(text.format(start=0.0, end=2.0, intervals=8).replace('drive.txt', 'named.csv'))
+    s.checks.true(np.array_equal(named['q1'], table['q1']), 'a line of names before the points is skipped')
     step = 1e-6
     for knot in times[1:-1].tolist():
         near = s.table(text.format(start=knot - step, end=knot + step, intervals=2))
