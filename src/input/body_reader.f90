@@ -1,6 +1,11 @@
-!> Bodies and gravity from a checked document. Uses kinds, body, document, lookup, motion_reader, diagnostics.
+!> Bodies and gravity from a checked document. Uses kinds, text, structure, pair, turning_direction, body, document,
+!> lookup, motion_reader, diagnostics.
 module mech9_body_reader
   use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_structure, only: structure_type
+  use mech9_pair, only: pair_slot_type
+  use mech9_turning_direction, only: turning_search_type, new_turning_search
   use mech9_body, only: body_type
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, get_integer, get_real, get_reals, span_of
@@ -10,20 +15,31 @@ module mech9_body_reader
   private
   public :: read_bodies, read_gravity
 
+  !> Parts of a tensor, and angles of its axes, that count as none: data are often rounded to three digits.
+  real(wp), parameter :: slack = 1.0e-3_wp
+
 contains
 
   !> All groups &body: masses, centres and inertia tensors, checked.
-  pure subroutine read_bodies(document, n_links, bodies, diagnostics)
+  pure subroutine read_bodies(document, structure, pairs, bodies, diagnostics)
     type(document_type), intent(in) :: document
-    integer, intent(in) :: n_links                           !< 0 where it is not known
+    type(structure_type), intent(in) :: structure            !< without links where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)             !< (M); those in whose groups is an error are missing
     type(body_type), allocatable, intent(out) :: bodies(:)
     type(diagnostics_type), intent(inout) :: diagnostics
+    type(turning_search_type) :: search
     integer, allocatable :: numbers(:)
     real(wp) :: j(6)
+    logical :: judged
     integer :: i
 
     numbers = groups_named(document, 'body')
     allocate (bodies(size(numbers)))
+    judged = size(numbers) > 0 .and. structure%n_links > 0
+    do i = 1, size(pairs)
+      judged = judged .and. allocated(pairs(i)%pair)
+    end do
+    if (judged) call new_turning_search(structure, pairs, search)
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)))
         bodies(i)%link = get_integer(group, 'link')
@@ -32,23 +48,70 @@ contains
         j = get_reals(group, 'inertia')
         bodies(i)%inertia = reshape([j(1), j(4), j(5), j(4), j(2), j(6), j(5), j(6), j(3)], [3, 3])
         bodies(i)%place = diagnostics%place(group%span)
-        call check_link(group, 'link', 1, n_links, diagnostics)
-        call check_inertia(group, bodies(i)%inertia, diagnostics)
+        call check_link(group, 'link', 1, structure%n_links, diagnostics)
+        call check_inertia(group, bodies(i), judged .and. bodies(i)%link <= structure%n_links, search, diagnostics)
       end associate
     end do
   end subroutine read_bodies
 
-  !> A body's second moments, half the trace of the tensor minus the tensor, form a matrix without
-  !> negative eigenvalues; with it the tensor has none either, and no principal moment exceeds the sum of
-  !> the two others. All principal minors of such a matrix are zero or positive.
-  pure subroutine check_inertia(group, inertia, diagnostics)
+  !> A tensor must be that of a body. A link that can turn about one direction only needs no more than the moment
+  !> about that; the rest of its tensor may be zero.
+  pure subroutine check_inertia(group, body, judged, search, diagnostics)
     type(group_type), intent(in) :: group
-    real(wp), intent(in) :: inertia(3, 3)
+    type(body_type), intent(in) :: body
+    logical, intent(in) :: judged                            !< whether it is known how the link can turn
+    type(turning_search_type), intent(inout) :: search       !< of use where that is known
     type(diagnostics_type), intent(inout) :: diagnostics
-    real(wp), parameter :: slack = 1.0e-3_wp                 ! data are often rounded to three digits
+    character(len=:), allocatable :: problem
+    real(wp) :: direction(3)
+    logical :: has_one, is_enough
+    integer :: at, barrier
+
+    call judge_tensor(body%inertia, problem, at)
+    if (.not. allocated(problem)) return
+    call only_direction(body%inertia, direction, has_one)
+    if (has_one) then
+      if (.not. judged) return                               ! other errors were reported
+      call search%turns_only_about(body%link, direction, slack, is_enough, barrier)
+      if (is_enough) return
+      problem = problem//'; one moment alone is enough where a link turns about the axis of that moment only'
+      if (barrier > 0) problem = problem//', and pair '//to_text(barrier)//' lets link '//to_text(body%link)// &
+                                 ' turn otherwise'
+      problem = problem//'; give all three moments'
+    end if
+    call diagnostics%add(span_of(group, 'inertia', at), problem)
+  end subroutine check_inertia
+
+  !> The direction of a tensor that has a moment about one direction and nothing else.
+  pure subroutine only_direction(inertia, direction, has_one)
+    real(wp), intent(in) :: inertia(3, 3)                    !< [kg m^2]
+    real(wp), intent(out) :: direction(3)                    !< of length 1
+    logical, intent(out) :: has_one
+    real(wp) :: moment
+    integer :: i, k
+
+    i = maxloc([(inertia(k, k), k=1, 3)], dim=1)
+    direction = [0.0_wp, 0.0_wp, 1.0_wp]
+    has_one = inertia(i, i) > 0.0_wp
+    if (.not. has_one) return
+    direction = inertia(:, i)/norm2(inertia(:, i))
+    moment = dot_product(direction, matmul(inertia, direction))
+    do k = 1, 3
+      has_one = has_one .and. all(abs(inertia(:, k) - moment*direction*direction(k)) <= slack*moment)
+    end do
+  end subroutine only_direction
+
+  !> Whether a body can have a tensor. Its second moments, half the trace of the tensor minus the tensor, form a
+  !> matrix without negative eigenvalues; with it the tensor has none either, and no principal moment exceeds the sum
+  !> of the two others. All principal minors of such a matrix are zero or positive.
+  pure subroutine judge_tensor(inertia, problem, at)
+    real(wp), intent(in) :: inertia(3, 3)                    !< [kg m^2]
+    character(len=:), allocatable, intent(out) :: problem    !< in words; not allocated where there is none
+    integer, intent(out) :: at                               !< the number of the list that shows it
     real(wp) :: s(3, 3), scale
     integer :: i
 
+    at = 1
     scale = maxval(abs(inertia))
     if (.not. scale > 0.0_wp) return
     s = -inertia/scale
@@ -57,15 +120,16 @@ contains
     end do
     do i = 1, 3
       if (s(i, i) >= -slack) cycle
-      call diagnostics%add(span_of(group, 'inertia', i), 'no body has this inertia: '//moment_name(i)//' exceeds the sum of '// &
-                           'the two others; for planar motion give each of these half of it')
+      at = i
+      problem = 'no body has this inertia: '//moment_name(i)//' exceeds the sum of the two others'
       return
     end do
     if (minor(s, 1, 2) >= -slack .and. minor(s, 1, 3) >= -slack .and. minor(s, 2, 3) >= -slack &
         .and. determinant(s) >= -slack) return
-    call diagnostics%add(span_of(group, 'inertia', 4), 'no body has this inertia: the products xy, xz, yz are too '// &
-                         'large for the moments xx, yy, zz (xy is minus the integral of x y dm)')
-  end subroutine check_inertia
+    at = 4
+    problem = 'no body has this inertia: the products xy, xz, yz are too large for the moments xx, yy, zz '// &
+              '(xy is minus the integral of x y dm)'
+  end subroutine judge_tensor
 
   pure function moment_name(i) result(name)
     integer, intent(in) :: i

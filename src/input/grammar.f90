@@ -147,7 +147,8 @@ module mech9_grammar
     item_row_type('body', 'centre', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', '', &
                   'its mass centre, in the link', '1.6, 0.4, 0'), &
     item_row_type('body', 'inertia', 'real', 6, 6, 'kg m^2', optional, '0, 0, 0, 0, 0, 0', '', '', '', &
-                  'xx, yy, zz, xy, xz, yz of its tensor about the centre, in link axes; xy is minus the integral of x y dm', &
+                  'xx, yy, zz, xy, xz, yz about the centre, in link axes; xy is minus the integral of xy dm; '// &
+                  'in a plane one is enough', &
                   '0.1, 0.1, 0.2, 0, 0, 0'), &
     item_row_type('gravity', 'acceleration', 'real', 3, 3, 'm/s^2', needed, '', '', '', '', &
                   'its components along the axes of link 1', '0, -9.81, 0')]

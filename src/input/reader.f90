@@ -86,7 +86,7 @@ contains
       call read_points(document, n_links, m%points, diagnostics)
       call read_drives(document, m%structure, m%pairs, m%angle_unit, m%time%start, m%parameters, needs_drives, &
                        m%drives, diagnostics)
-      call read_bodies(document, n_links, m%bodies, diagnostics)
+      call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
       call read_loads(document, n_links, m%pairs, m%angle_unit, m%parameters, m%loads, diagnostics)
       call read_output(document, n_coordinates, m%output, diagnostics)

@@ -49,7 +49,7 @@ contains
     type(skeleton_type), intent(out) :: skeleton
     type(pair_axes_type), allocatable :: axes(:)
 
-    axes = pair_axes(mechanism)
+    axes = pair_axes(mechanism%pairs)
     skeleton%graph = graph_from_structure(mechanism%structure)
     allocate (skeleton%places(size(axes)))
     skeleton%places%pair_axes_type = axes
