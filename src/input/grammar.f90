@@ -29,7 +29,7 @@ module mech9_grammar
     character(len=12) :: unit
     logical :: needed              !< must be given wherever its kind allows it
     character(len=22) :: default   !< as it would be written; in parentheses where it is a rule
-    character(len=4) :: range      !< empty, >0, >=0 or >=1
+    character(len=9) :: range      !< empty, >0, >=0, >=1, or >0 and <1
     character(len=72) :: words     !< the texts allowed, with blanks between; empty: any
     character(len=40) :: kinds     !< the kinds of the group it belongs to; empty: all
     character(len=120) :: help
@@ -193,7 +193,7 @@ module mech9_grammar
     item_row_type('solver', 'method', 'text', 1, 1, '', optional, '''prince-dormand''', '', &
                   'prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
                   'the integrator; bdf for stiff motions', '''adams'''), &
-    item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0', '', '', &
+    item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0 and <1', '', '', &
                   'error allowed in a step, relative to the coordinates and their rates', '1e-8', seldom=.true.), &
     item_row_type('solver', 'absolute_tolerance', 'real', 1, 1, '', optional, '1e-10', '>0', '', '', &
                   'error allowed in a step, in rad, m and their rates', '1e-10', seldom=.true.), &

@@ -165,6 +165,8 @@ contains
       inside = value%number >= 0.0_wp
     case ('>=1')
       inside = value%number >= 1.0_wp
+    case ('>0 and <1')
+      inside = value%number > 0.0_wp .and. value%number < 1.0_wp
     case default
       inside = .true.
     end select

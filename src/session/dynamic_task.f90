@@ -1,6 +1,7 @@
-!> What mech9d does with a mechanism. Uses task, facts, hdf5_sink, results, recording, dynamic_run, dynamic_report.
+!> What mech9d does with a mechanism. Uses kinds, task, facts, hdf5_sink, results, recording, dynamic_run, dynamic_report.
 module mech9_dynamic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -71,11 +72,24 @@ contains
     else if (answers_only(options)) then
       call print_check(options, pictures, mechanism, plan, run%needs, start, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
+      if (options%has('check')) call check_motion(mechanism, run, err)
+      if (allocated(err)) call diagnostics%add_error(err)
     else
       call carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
     end if
     call run%close()
   end subroutine work
+
+  !> What a run would refuse at its start, is refused by a check.
+  subroutine check_motion(mechanism, run, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(dynamic_run_type), intent(inout) :: run     !< that was begun; the first row is taken of it
+    type(error_type), allocatable, intent(out) :: err
+    real(wp), allocatable :: row(:)
+
+    allocate (row(run%columns%width()))
+    call run%row_at(mechanism%time%start, row, err)
+  end subroutine check_motion
 
   !> The run itself and its report.
   subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)

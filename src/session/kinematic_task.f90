@@ -1,7 +1,8 @@
-!> What mech9k does with a mechanism. Uses needs, task, range_text, facts, results, recording, kinematic_run,
+!> What mech9k does with a mechanism. Uses kinds, needs, tracking, task, range_text, facts, results, recording, kinematic_run,
 !> kinematic_report.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -10,6 +11,7 @@ module mech9_kinematic_task
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_needs, only: needs_of_results
+  use mech9_tracking, only: set_inputs
   use mech9_task, only: task_type, answers_only, print_check, begin_run, end_run
   use mech9_range_text, only: print_ranges
   use mech9_facts, only: facts_type
@@ -74,11 +76,30 @@ contains
       call print_check(options, pictures, mechanism, plan, needs_of_results(mechanism, pictures%any_wanted()), start, &
                        diagnostics)
       if (options%has('range')) call print_ranges(output_unit, mechanism, plan, start)
+      if (options%has('check')) call check_motion(mechanism, plan, start, err)
+      if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
     call new_kinematic_run(mechanism, plan, start, run, pictures%any_wanted())
     call carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
   end subroutine work
+
+  !> What a run would refuse, is refused by a check: a start from which the motion cannot begin, drives without values
+  !> at the end of the time.
+  subroutine check_motion(mechanism, plan, start, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start            !< assembled
+    type(error_type), allocatable, intent(out) :: err
+    type(kinematic_run_type) :: run
+    real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
+    real(wp), allocatable :: row(:)
+
+    call new_kinematic_run(mechanism, plan, start, run)
+    allocate (row(run%columns%width()))
+    call run%row_at(mechanism%time%start, row, err)
+    if (.not. allocated(err)) call set_inputs(mechanism, mechanism%time%end, q, dq, ddq, err)
+  end subroutine check_motion
 
   !> The run itself and its report.
   subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
