@@ -9,14 +9,15 @@ module mech9_same_file
   use mech9_path, only: folder_of, name_of
   implicit none
   private
-  public :: file_place_type, find_place, find_open_place, same_place, same_file, is_fifo
+  public :: file_place_type, find_place, find_open_place, same_place, same_file, is_fifo, is_regular
 
   !> Bytes of the longest path of the system, with the one that ends it.
   integer, parameter :: longest_path = 4096
   !> Links that follow each other at most, as the system counts.
   integer, parameter :: most_links = 40
   !> Kinds of files, and the bits of a file's mode that tell the kind (S_IFMT), the same on all Unixes.
-  integer, parameter :: kind_bits = int(o'170000'), fifo = int(o'010000'), character_device = int(o'020000')
+  integer, parameter :: kind_bits = int(o'170000'), fifo = int(o'010000'), character_device = int(o'020000'), &
+                        regular_file = int(o'100000'), permission_bits = int(o'7777')
   !> Of statx: names start from the folder of the program; an empty name means the descriptor itself; what is asked for.
   integer(c_int), parameter :: from_here = -100, empty_path = 4096, basic_facts = 2047
 
@@ -25,7 +26,9 @@ module mech9_same_file
     logical :: exists = .false.
     integer(long) :: device = 0, inode = 0
     integer :: kind = 0                        !< S_IFREG, S_IFIFO, ... of what exists
-    character(len=:), allocatable :: path      !< where it would be made; empty: what exists, or nowhere
+    integer :: permissions = 0                 !< of what exists: the lower bits of its mode
+    integer :: owner = 0                       !< of what exists: the number of the user
+    character(len=:), allocatable :: path      !< without detours and links, of what exists or would be made; empty: none
   end type file_place_type
 
   !> What the system tells of a file: its layout is the same on all processors.
@@ -72,7 +75,11 @@ contains
     place%path = ''
     if (path == '' .or. index(path, c_null_char) > 0) return
     call ask(from_here, path, 0_c_int, place)
-    if (.not. place%exists) call find_future_path(path, place%path)
+    if (place%exists) then
+      call resolve(path, place%path)
+    else
+      call find_future_path(path, place%path)
+    end if
   end subroutine find_place
 
   !> What a file that is open leads to, such as standard output.
@@ -113,6 +120,13 @@ contains
     is_fifo = place%exists .and. place%kind == fifo
   end function is_fifo
 
+  !> Whether a place is a file with contents of its own: no device, no pipe, no folder.
+  pure logical function is_regular(place)
+    type(file_place_type), intent(in) :: place
+
+    is_regular = place%exists .and. place%kind == regular_file
+  end function is_regular
+
   !> Ask the system for device, inode and kind.
   subroutine ask(folder, path, flags, place)
     integer(c_int), intent(in) :: folder, flags     !< of statx
@@ -125,6 +139,8 @@ contains
     place%device = ishft(int(facts%device(1), long), 32) + iand(int(facts%device(2), long), int(z'ffffffff', long))
     place%inode = facts%inode
     place%kind = iand(int(facts%mode), kind_bits)
+    place%permissions = iand(int(facts%mode), permission_bits)
+    place%owner = int(facts%owner)
   end subroutine ask
 
   !> Where a file that is not there would be made: the links of its name are followed, then the folder's detours left
@@ -148,11 +164,22 @@ contains
     end do
     folder = folder_of(future)
     if (folder == '') folder = '.'
-    if (.not. c_associated(c_realpath(folder//c_null_char, letters))) return
-    call take(letters(:findloc(letters, c_null_char, 1) - 1), target)
+    call resolve(folder, target)
+    if (target == '') return
     if (target /= '/') target = target//'/'
     future = target//name_of(future)
   end subroutine find_future_path
+
+  !> The path of what exists, without detours and links; empty where there is none.
+  subroutine resolve(path, resolved)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable, intent(inout) :: resolved
+    character(kind=c_char) :: letters(longest_path)
+
+    letters(1) = c_null_char
+    if (.not. c_associated(c_realpath(path//c_null_char, letters))) letters(1) = c_null_char
+    call take(letters(:findloc(letters, c_null_char, 1) - 1), resolved)
+  end subroutine resolve
 
   !> Letters of C as a text.
   pure subroutine take(letters, text)

@@ -1,13 +1,15 @@
 !> The end of a conversation: the summary, in which any answer can be changed, and then saving and running.
-!> Uses error, text, draft_check, draft_file, conversation, correcting, summary.
+!> Uses error, text, path, same_file, draft_check, draft_file, conversation, correcting, summary.
 module mech9_closing
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
   use mech9_text, only: string_type, lower
+  use mech9_path, only: folder_of
+  use mech9_same_file, only: same_file
   use mech9_diagnostics, only: diagnostics_type, printable
   use mech9_mechanism, only: mechanism_type
   use mech9_answer, only: yes_or_no
-  use mech9_draft, only: draft_type
+  use mech9_draft, only: draft_type, unquoted
   use mech9_draft_text, only: draft_text_type
   use mech9_draft_check, only: fault_type, read_draft, faults_of
   use mech9_draft_file, only: save_draft, delete_file, file_exists
@@ -142,6 +144,10 @@ contains
         call conversation%say('This is not the name of a file.')
         cycle
       end if
+      if (is_read(conversation%interview%draft, path)) then
+        call conversation%say(path//' holds the table of a drive; give another name.')
+        cycle
+      end if
       call agree_to_overwrite(conversation, path, agreed)
       if (conversation%state /= going) return
       if (.not. agreed) cycle
@@ -153,6 +159,24 @@ contains
     conversation%data_path = path
     call conversation%say('Saved in '//path//'; '//conversation%program_name//' '//path//' runs it again.')
   end subroutine save
+
+  !> Whether a data file of this name would be written over the table of one of its drives.
+  logical function is_read(draft, path)
+    type(draft_type), intent(in) :: draft
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: table
+    integer :: i
+
+    is_read = .true.
+    do i = 1, draft%count_of('drive')
+      table = unquoted(draft%value('drive', i, 'file'))
+      if (table == '') cycle
+      ! named as the data file will name it, from its own folder on
+      if (table(1:1) /= '/') table = folder_of(path)//table
+      if (same_file(table, path)) return
+    end do
+    is_read = .false.
+  end function is_read
 
   !> Write all answers as a finished data file; then what was kept of them on the way is of no more use.
   subroutine write_data_file(conversation, path, err)
@@ -166,7 +190,8 @@ contains
     if (draft%head == '') draft%head = '! A data file of '//conversation%program_name//', from a conversation.'//achar(10)
     call save_draft(draft, path, '', conversation%program_name, err)
     if (allocated(err)) return
-    if (conversation%draft_path /= '' .and. conversation%draft_path /= path) call delete_file(conversation%draft_path)
+    if (conversation%draft_path == '') return
+    if (.not. same_file(conversation%draft_path, path)) call delete_file(conversation%draft_path)
   end subroutine write_data_file
 
   !> A file that is there and is not the one being edited is overwritten only where the user says so.

@@ -7,7 +7,7 @@ module mech9_draft_file
   use mech9_document, only: document_type
   use mech9_parser, only: read_document
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_text_file, only: save_text
+  use mech9_text_file, only: replace_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_draft_text, only: draft_text_type, write_draft
   use mech9_draft_source, only: draft_from_document
@@ -22,7 +22,8 @@ module mech9_draft_file
 
 contains
 
-  !> Write a draft as a data file. With a bookmark it is one that goes on there.
+  !> Write a draft as a data file. With a bookmark it is one that goes on there. What stood in the file before is kept
+  !> until all is written.
   subroutine save_draft(draft, path, bookmark, program_name, err)
     type(draft_type), intent(in) :: draft
     character(len=*), intent(in) :: path
@@ -35,7 +36,7 @@ contains
     remark = ''
     if (bookmark /= '') remark = mark//bookmark//' ('//program_name//' --resume '//path//')'
     call write_draft(draft, remark, written)
-    call save_text(path, written%text, err)
+    call replace_text(path, written%text, err)
   end subroutine save_draft
 
   !> Read a data file as a draft, and its bookmark, empty where it has none. What cannot be read stands in the diagnostics.

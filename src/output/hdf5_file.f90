@@ -18,6 +18,7 @@ module mech9_hdf5_file
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_file
   use mech9_text, only: string_type, to_text
+  use mech9_replacement, only: replacement_type, begin_replacement
   use mech9_hdf5_reason, only: last_reason
   implicit none
   private
@@ -33,6 +34,7 @@ module mech9_hdf5_file
     type(error_type), allocatable :: failure      !< the first one
     integer(hid_t), private :: text_type = -1     !< UTF-8 of any length
     integer(hid_t), private :: make_groups = -1   !< property: groups on the way are made
+    type(replacement_type), private :: replacement
   contains
     procedure :: create => create_file
     procedure :: flush => flush_file
@@ -62,7 +64,8 @@ contains
     text = 'HDF5 '//to_text(major)//'.'//to_text(minor)//'.'//to_text(release)
   end function hdf5_version
 
-  !> Create the file, or empty it if it exists.
+  !> Create the file. It gets its name when it is handed to the system for the first time: until then it cannot be opened,
+  !> and an older file of that name stays.
   subroutine create_file(self, path, err)
     class(hdf5_file_type), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -75,6 +78,8 @@ contains
       call raise(err, exit_file, "'"//path//"' is not the name of a file for HDF5 results")
       return
     end if
+    call begin_replacement(path, self%replacement, err)
+    if (allocated(err)) return
     ! everything is closed in order; what HDF5 would do at the end of the program can only fail aloud
     call h5dont_atexit_f(status)
     call h5open_f(status)
@@ -82,7 +87,7 @@ contains
     call h5pcreate_f(h5p_file_access_f, access, status)
     call h5pset_fclose_degree_f(access, h5f_close_strong_f, status)
     call h5pset_meta_block_size_f(access, metadata_block, status)
-    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, access_prp=access)
+    call h5fcreate_f(self%replacement%path, h5f_acc_trunc_f, self%id, status, access_prp=access)
     if (status < 0) then
       self%id = -1
       call raise(err, exit_file, "cannot open '"//path//"' for writing: "//last_reason())
@@ -125,9 +130,11 @@ contains
     if (allocated(self%failure)) return
     call h5fflush_f(self%id, h5f_scope_local_f, status)
     call self%check(status)
+    if (.not. allocated(self%failure)) call self%replacement%finish(self%failure)
   end subroutine flush_file
 
-  !> Close the file, and with it all that is open in it; does nothing to one that is not open.
+  !> Close the file, and with it all that is open in it; one that was never handed over is removed. Does nothing to one that
+  !> is not open.
   subroutine close_file(self)
     class(hdf5_file_type), intent(inout) :: self
     integer :: status
@@ -138,6 +145,7 @@ contains
     call h5fclose_f(self%id, status)
     call self%check(status)
     self%id = -1
+    call self%replacement%abandon()
   end subroutine close_file
 
   subroutine put_text(self, name, text, long_name)

@@ -1,5 +1,5 @@
 !> A file or standard output that takes whole lines and reports every failure.
-!> Uses mech9_error, mech9_system_error.
+!> Uses error, system_error, replacement.
 !>
 !> It calls the system's own `creat`, `write` and `close`: gfortran's runtime library loses the failure of
 !> a write that it held back (up to 8 KiB on a full disk vanish with a status of zero), and ends
@@ -7,10 +7,11 @@
 module mech9_text_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t, c_char, c_null_char
   use mech9_error, only: error_type, raise, exit_file
+  use mech9_replacement, only: replacement_type, begin_replacement
   use mech9_system_error, only: error_number, reason, interrupted_call
   implicit none
   private
-  public :: text_file_type, save_text
+  public :: text_file_type, save_text, replace_text
 
   integer(c_int), parameter :: standard_output = 1
   integer(c_int), parameter :: permissions = int(o'666', c_int)   !< less what the user masks
@@ -50,10 +51,11 @@ module mech9_text_file
 contains
 
   !> Create the file, or empty it if it exists.
-  subroutine open_file(self, path, err)
+  subroutine open_file(self, path, err, name)
     class(text_file_type), intent(inout) :: self
-    character(len=*), intent(in) :: path   !< '-' is standard output
+    character(len=*), intent(in) :: path             !< '-' is standard output
     type(error_type), allocatable, intent(out) :: err
+    character(len=*), intent(in), optional :: name   !< what messages call it; its path unless given
 
     if (path == '-') then
       self%path = 'standard output'
@@ -61,6 +63,7 @@ contains
       return
     end if
     self%path = "'"//path//"'"
+    if (present(name)) self%path = "'"//name//"'"
     if (path == '' .or. index(path, c_null_char) > 0) then
       call raise(err, exit_file, self%path//' is not the name of a file')
       return
@@ -124,4 +127,24 @@ contains
     call file%close(at_close)
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine save_text
+
+  !> Write a file of this text in the place of another one: that stays as it is until this one is whole. Errors are
+  !> exit_file.
+  subroutine replace_text(path, text, err)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: text   !< of whole lines
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: at_close
+    type(replacement_type) :: replacement
+    type(text_file_type) :: file
+
+    call begin_replacement(path, replacement, err)
+    if (.not. allocated(err)) call file%open(replacement%path, err, path)
+    if (allocated(err)) return
+    call file%write(text, err)
+    call file%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+    if (.not. allocated(err)) call replacement%finish(err)
+    if (allocated(err)) call replacement%abandon()
+  end subroutine replace_text
 end module mech9_text_file

@@ -1,8 +1,9 @@
 !> Everything that a run or an answer is going to write, also what is made beside it: one list, known before anything is
-!> opened. Uses text, settings, the pictures floor for the names of what is made beside, command_line.
+!> opened. Uses text, settings, replacement, the pictures floor for the names of what is made beside, command_line.
 module mech9_written_files
   use mech9_text, only: string_type
   use mech9_settings, only: output_settings_type
+  use mech9_replacement, only: path_of_part
   use mech9_plot, only: picture_of_plot, script_of_plot
   use mech9_structure_graph, only: text_of_graph
   use mech9_xdmf, only: xdmf_path
@@ -89,6 +90,7 @@ contains
       call append(files, name_of(options, 'table', 'table'), paths%table)
     end if
     call append(files, name_of(options, 'hdf5', 'hdf5'), paths%hdf5)
+    if (paths%hdf5 /= '') call append(files, 'the beginning of the HDF5 file', path_of_part(paths%hdf5))
     if (paths%hdf5 /= '' .and. output%poses) &
       call append(files, 'the description for ParaView beside the HDF5 file', xdmf_path(paths%hdf5))
     call list_plots(options, paths%table, files)

@@ -1,0 +1,134 @@
+"""Files that hold what nobody wants to lose, drafts and data files of a conversation and HDF5 files, are written beside
+and then named: the file that was there stays as it was for whoever has it, until the new one is whole.
+
+usage: replaced_files.py MECH9K
+"""
+import os
+import shutil
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from dialogue import piped
+from mech9_cases import TREE, Checks, run, text_of
+
+try:
+    import h5py
+except ImportError:
+    h5py = None
+
+FIG1 = os.path.join(TREE, 'examples', 'fig1', 'fig1.nml')
+TABLE = "&drive coordinate=5, kind='table', file='motion.txt' /"
+
+
+def rights(path):
+    return stat.S_IMODE(os.stat(path).st_mode)
+
+
+def drafts(checks, program):
+    """A draft that is written again and again, and a data file that is saved over itself."""
+    with tempfile.TemporaryDirectory() as folder:
+        there = lambda name: os.path.join(folder, name)
+        shutil.copy(FIG1, there('fig1.nml'))
+        piped(program, '--edit', 'fig1.nml', folder=folder, answers='time end = 2\nquit\n')
+        draft = text_of(there('fig1.draft.nml'))
+        os.link(there('fig1.draft.nml'), there('before'))
+        os.chmod(there('fig1.draft.nml'), 0o640)
+        piped(program, '--resume', 'fig1.draft.nml', folder=folder, answers='time end = 3\nquit\n')
+        checks.equal(text_of(there('before')), draft, 'the draft of before was not touched')
+        checks.true('end=3' in text_of(there('fig1.draft.nml')), 'the new one holds the new answer', text_of(there('fig1.draft.nml')))
+        checks.equal(rights(there('fig1.draft.nml')), 0o640, 'it has the rights of the one before')
+        # a link stays a link, and its file is replaced where it stands
+        os.mkdir(there('drafts'))
+        os.rename(there('fig1.draft.nml'), there('drafts/kept'))
+        os.symlink('drafts/kept', there('fig1.draft.nml'))
+        piped(program, '--resume', 'fig1.draft.nml', folder=folder, answers='time end = 4\nquit\n')
+        checks.true(os.path.islink(there('fig1.draft.nml')) and 'end=4' in text_of(there('drafts/kept')), 'through a link')
+        os.link(there('fig1.nml'), there('data before'))
+        data = text_of(there('fig1.nml'))
+        done = piped(program, '--edit', 'fig1.nml', folder=folder, answers='time end = 5\n\nsave\n\n')
+        checks.equal(done.returncode, 0, f'saved over itself: {done.stderr}')
+        checks.equal(text_of(there('data before')), data, 'the data file of before was not touched')
+        checks.true('end=5' in text_of(there('fig1.nml')), 'the new one holds the new answer')
+        # the draft and the data file are one file with two names: it is not removed as the draft
+        done = piped(program, '--edit', 'fig1.nml', folder=folder, answers='time end = 6\n\nsave\n./fig1_2.draft.nml\nyes\n')
+        kept = [name for name in os.listdir(folder) if name.startswith('fig1_2')]
+        checks.true(kept == [] or 'end=6' in text_of(there(kept[0])), 'saved under another name of the draft', (kept, done.stderr))
+        checks.true('Saved in ./fig1_2.draft.nml' not in done.stderr or kept == ['fig1_2.draft.nml'], 'what was saved is there',
+                    (kept, done.stderr))
+        checks.equal([name for name in os.listdir(folder) if name.endswith('.part')], [], 'no part is left')
+
+
+def tables_of_drives(checks, program):
+    """A data file is not saved over the table of its drive."""
+    with tempfile.TemporaryDirectory() as folder:
+        lines = [TABLE if line.startswith('&drive') else line for line in text_of(FIG1).splitlines()]
+        with open(os.path.join(folder, 'driven.nml'), 'w', encoding='utf-8') as file:
+            file.write('\n'.join(lines) + '\n')
+        motion = ''.join(f'{i / 4} {0.5 + i}\n' for i in range(5))
+        with open(os.path.join(folder, 'motion.txt'), 'w', encoding='utf-8') as file:
+            file.write(motion)
+        done = piped(program, '--edit', 'driven.nml', folder=folder, answers='time end = 0.5\n\nsave\nmotion.txt\nyes\nnew.nml\n')
+        checks.true('holds the table of a drive' in done.stderr, 'over the table of a drive', done.stderr)
+        checks.equal(text_of(os.path.join(folder, 'motion.txt')), motion, 'the table is as it was')
+
+
+def results(checks, program):
+    """An HDF5 file stays until the first rows of the next run are there, at whatever moment that is killed."""
+    with tempfile.TemporaryDirectory() as folder:
+        path, part = os.path.join(folder, 'a.h5'), os.path.join(folder, '.a.h5.part')
+        words = [program, FIG1, '--hdf5', path, '--quiet', '--set', "output.table=''"]
+        checks.equal(run(*words).returncode, 0, 'a run')
+        os.link(path, os.path.join(folder, 'before.h5'))
+        checks.equal(run(*words, '--set', 'time.intervals=10').returncode, 0, 'another run')
+        for name, rows in (('before.h5', 101), ('a.h5', 11)):
+            with h5py.File(os.path.join(folder, name), 'r') as file:
+                checks.equal(file['time'].shape[0], rows, f'{name} holds its own rows')
+        checks.true(not os.path.exists(part), 'no part is left')
+        # how long a run takes here until its file has its name
+        endless = words + ['--set', 'time.intervals=50000000']
+        os.remove(path)
+        process, start = subprocess.Popen(endless), time.monotonic()
+        while not os.path.exists(path) and time.monotonic() - start < 60.0:
+            time.sleep(0.001)
+        laid_out = time.monotonic() - start
+        process.kill()
+        process.wait()
+        named = 0
+        for i in range(30):
+            if os.path.exists(path):
+                os.remove(path)
+            process = subprocess.Popen(endless)
+            time.sleep(1.3 * laid_out * i / 30)
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            if not os.path.exists(path):
+                continue
+            named += 1
+            try:
+                with h5py.File(path, 'r') as file:
+                    checks.equal(file['time'][:1].tolist(), [0.0], f'killed in moment {i} of 30: the start is there')
+            except (OSError, KeyError) as error:
+                checks.true(False, f'killed in moment {i} of 30: the file opens', error)
+        print(f'{named} of 30 files had their name')
+        checks.equal(run(*words).returncode, 0, 'a run after those that were killed')
+        checks.true(not os.path.exists(part), 'it leaves nothing of theirs')
+
+
+def main():
+    program = os.path.abspath(sys.argv[1])
+    checks = Checks()
+    drafts(checks, program)
+    tables_of_drives(checks, program)
+    if h5py:
+        results(checks, program)
+    else:
+        print('h5py is not installed (Debian: python3-h5py): no HDF5 file is tested')
+    checks.finish()
+
+
+main()
