@@ -85,15 +85,21 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics
     type(item_type), allocatable :: merged(:)
     type(item_type) :: one
-    integer :: i, j, count
+    integer :: firsts(size(group%items)), i, j, count, names
 
     count = 0
+    names = 0
     do i = 1, size(group%items)
       if (is_matrix(group, group%items(i))) then
         one = group%items(i)
         call expand_repeats(group%items(i), one%values, diagnostics)
       else
-        if (any([(group%items(j)%name == group%items(i)%name, j=1, i - 1)])) cycle
+        do j = 1, names
+          if (group%items(firsts(j))%name == group%items(i)%name) exit
+        end do
+        if (j <= names) cycle
+        names = names + 1
+        firsts(names) = i   ! where each name stands first
         call merge_items(group%items, group%items(i)%name, one, diagnostics)
       end if
       if (all(one%values%kind == value_null)) cycle   ! "name = ," says as much as nothing

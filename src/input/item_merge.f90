@@ -23,11 +23,12 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics
     type(value_type), allocatable :: values(:)
     logical, allocatable :: filled(:)
-    integer :: i, first, number
+    integer :: i, first, number, count
 
     merged%name = name
     allocate (merged%subscripts(0), merged%values(0), filled(0))
     number = 0
+    count = 0
     do i = 1, size(items)
       if (items(i)%name /= name) cycle
       number = number + 1
@@ -40,9 +41,10 @@ contains
       merged%span = items(i)%span
       if (first == 0) cycle
       call expand_repeats(items(i), values, diagnostics)
-      call place_values(items(i), values, first, merged%values, filled, diagnostics)
+      call place_values(items(i), values, first, merged%values, filled, count, diagnostics)
     end do
-    if (.not. all(filled)) &
+    merged%values = merged%values(:count)
+    if (.not. all(filled(:count))) &
       call diagnostics%add(merged%span, ''''//name//'('//to_text(findloc(filled, .false., dim=1))//')'' is missing')
   end subroutine merge_items
 
@@ -96,13 +98,14 @@ contains
     end associate
   end function line_of
 
-  !> Put values at their positions.
-  pure subroutine place_values(item, new, first, values, filled, diagnostics)
-    type(item_type), intent(in) :: item
-    type(value_type), intent(in) :: new(:)
-    integer, intent(in) :: first
-    type(value_type), allocatable, intent(inout) :: values(:)
-    logical, allocatable, intent(inout) :: filled(:)
+  !> Put values at their positions. The arrays grow by doubling.
+  pure subroutine place_values(item, new, first, values, filled, count, diagnostics)
+    type(item_type), intent(in) :: item                         !< that gives the values
+    type(value_type), intent(in) :: new(:)                      !< its values, repeats written out
+    integer, intent(in) :: first                                !< position of the first of them
+    type(value_type), allocatable, intent(inout) :: values(:)   !< what the items before gave
+    logical, allocatable, intent(inout) :: filled(:)            !< of the same size: a value was given there
+    integer, intent(inout) :: count                             !< so many elements of these arrays are in use
     type(diagnostics_type), intent(inout) :: diagnostics
     integer :: i, last
 
@@ -118,7 +121,8 @@ contains
         return
       end if
     end if
-    if (last > size(values)) call lengthen(values, filled, last)
+    if (last > size(values)) call lengthen(values, filled, count, max(last, 2*size(values)))
+    count = max(count, last)
     do i = first, last
       if (new(i - first + 1)%kind == value_null) cycle
       if (filled(i) .and. .not. item%overrides) then
@@ -130,19 +134,19 @@ contains
     end do
   end subroutine place_values
 
-  pure subroutine lengthen(values, filled, length)
+  !> Make room for more values.
+  pure subroutine lengthen(values, filled, count, length)
     type(value_type), allocatable, intent(inout) :: values(:)
     logical, allocatable, intent(inout) :: filled(:)
-    integer, intent(in) :: length
+    integer, intent(in) :: count      !< elements that are in use
+    integer, intent(in) :: length     !< of the arrays afterwards
     type(value_type), allocatable :: more(:)
     logical, allocatable :: more_filled(:)
-    integer :: n
 
-    n = size(values)
     allocate (more(length))
     allocate (more_filled(length), source=.false.)
-    more(:n) = values
-    more_filled(:n) = filled
+    more(:count) = values(:count)
+    more_filled(:count) = filled(:count)
     call move_alloc(more, values)
     call move_alloc(more_filled, filled)
   end subroutine lengthen

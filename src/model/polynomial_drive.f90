@@ -1,11 +1,16 @@
-!> Drive q = c0 + c1 t + c2 t^2 + ... Uses kinds, error, drive.
+!> Drive q = c0 + c1 t + c2 t^2 + ... Uses kinds, error, text, drive.
 module mech9_polynomial_drive
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_text, only: to_text
   use mech9_drive, only: drive_type
   implicit none
   private
   public :: polynomial_drive_type
+
+  !> Terms of the Taylor series about a time, up to this power of the time from there, are worked out one by one.
+  integer, parameter :: highest = 12
 
   type, extends(drive_type) :: polynomial_drive_type
     real(wp), allocatable :: coefficients(:)   !< c0, c1, ... [rad or m, per s^i]
@@ -16,10 +21,11 @@ module mech9_polynomial_drive
 
 contains
 
+  !> By Horner's rule, for the value and its derivatives at once.
   subroutine evaluate(self, t, q, dq, ddq, err)
     class(polynomial_drive_type), intent(in) :: self
-    real(wp), intent(in) :: t
-    real(wp), intent(out) :: q, dq, ddq
+    real(wp), intent(in) :: t              !< [s]
+    real(wp), intent(out) :: q, dq, ddq    !< [rad or m], per s, per s^2
     type(error_type), allocatable, intent(out) :: err
     integer :: i
 
@@ -27,34 +33,57 @@ contains
     dq = 0.0_wp
     ddq = 0.0_wp
     do i = size(self%coefficients), 1, -1
-      ddq = ddq*t + 2.0_wp*dq
+      ddq = ddq*t + dq
       dq = dq*t + q
       q = q*t + self%coefficients(i)
     end do
+    ddq = 2.0_wp*ddq
+    if (.not. (ieee_is_finite(q) .and. ieee_is_finite(dq) .and. ieee_is_finite(ddq))) &
+      call raise(err, exit_data, 'the polynomial that drives coordinate '//to_text(self%coordinate)// &
+                 ' or a derivative of it is beyond all numbers at t = '//to_text(t, 12)//' s; correct its coefficients', &
+                 self%place)
   end subroutine evaluate
 
-  !> By the sizes of all terms of its Taylor series at t, k |q^(k)|/k! |h|^(k-1): exact for a constant
-  !> rate, close for small h, never too small.
+  !> By the sizes of the terms of the Taylor series of the rate at t, k |q^(k)|/k! |h|^(k-1) for k up to `highest`, and
+  !> for the rest by a bound of the next derivative over the whole interval, to which each coefficient adds its size.
+  !> Never too small, exact for a constant rate, and close for small h. The work is linear in the number of coefficients.
   function greatest_rate(self, t, h) result(rate)
     class(polynomial_drive_type), intent(in) :: self
-    real(wp), intent(in) :: t, h
-    real(wp) :: rate, term, binomial
-    integer :: i, k, n
+    real(wp), intent(in) :: t        !< [s]
+    real(wp), intent(in) :: h        !< [s], may be negative
+    real(wp) :: rate                 !< [rad/s or m/s]
+    real(wp) :: terms(0:highest), sizes(0:highest + 1)
+    integer :: k
 
-    n = size(self%coefficients) - 1
     rate = 0.0_wp
-    do k = n, 1, -1
-      ! q^(k)/k! by Horner's rule, with i over k as factors of the coefficients
-      binomial = 1.0_wp
-      do i = 1, k
-        binomial = binomial*real(n - k + i, wp)/i
-      end do
-      term = 0.0_wp
-      do i = n, k, -1
-        term = term*t + binomial*self%coefficients(i + 1)
-        binomial = binomial*real(i - k, wp)/i
-      end do
-      rate = rate*abs(h) + k*abs(term)
+    if (size(self%coefficients) > highest + 1) then
+      call find_terms(self%coefficients, .true., max(abs(t), abs(t + h)), highest + 1, sizes)
+      rate = (highest + 1)*sizes(highest + 1)
+    end if
+    call find_terms(self%coefficients, .false., t, highest, terms)
+    do k = highest, 1, -1
+      rate = rate*abs(h) + k*abs(terms(k))
     end do
   end function greatest_rate
+
+  !> Value and derivatives of a polynomial, divided by the factorials of their orders, by Horner's rule.
+  pure subroutine find_terms(coefficients, of_sizes, t, last, terms)
+    real(wp), intent(in) :: coefficients(:)   !< of 1, t, t^2, ...
+    logical, intent(in) :: of_sizes           !< of the polynomial whose coefficients are the sizes of these
+    real(wp), intent(in) :: t                 !< [s]
+    integer, intent(in) :: last               !< highest order
+    real(wp), intent(out) :: terms(0:last)
+    real(wp) :: c
+    integer :: i, k
+
+    terms = 0.0_wp
+    do i = size(coefficients), 1, -1
+      c = coefficients(i)
+      if (of_sizes) c = abs(c)
+      do k = last, 1, -1
+        terms(k) = terms(k)*t + terms(k - 1)
+      end do
+      terms(0) = terms(0)*t + c
+    end do
+  end subroutine find_terms
 end module mech9_polynomial_drive

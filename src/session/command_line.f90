@@ -75,26 +75,67 @@ contains
 
   !> Words as one line that a shell takes for the same words.
   pure function shell_line(words) result(line)
-    type(string_type), intent(in) :: words(:)
+    type(string_type), intent(in) :: words(:)   !< as a program is given them
     character(len=:), allocatable :: line
-    character(len=*), parameter :: harmless = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+%@'
-    integer :: i, k
+    integer :: i, n, at
 
-    line = ''
+    n = max(size(words) - 1, 0)
     do i = 1, size(words)
-      if (i > 1) line = line//' '
-      if (verify(words(i)%text, harmless) == 0 .and. words(i)%text /= '') then
-        line = line//words(i)%text
-        cycle
-      end if
-      line = line//"'"
-      do k = 1, len(words(i)%text)
-        if (words(i)%text(k:k) == "'") line = line//"'\'"
-        line = line//words(i)%text(k:k)
-      end do
-      line = line//"'"
+      n = n + shell_length(words(i)%text)
+    end do
+    allocate (character(len=n) :: line)
+    line(:) = ''
+    at = 1
+    do i = 1, size(words)
+      n = shell_length(words(i)%text)
+      call write_for_shell(words(i)%text, line(at:at + n - 1))
+      at = at + n + 1
     end do
   end function shell_line
+
+  !> Length of a word as a shell must be given it.
+  pure integer function shell_length(word)
+    character(len=*), intent(in) :: word
+    integer :: i
+
+    shell_length = len(word)
+    if (is_harmless(word)) return
+    shell_length = len(word) + 2
+    do i = 1, len(word)
+      if (word(i:i) == "'") shell_length = shell_length + 3
+    end do
+  end function shell_length
+
+  !> A word as a shell must be given it: in quotes where it holds what a shell would not take as it is.
+  pure subroutine write_for_shell(word, text)
+    character(len=*), intent(in) :: word
+    character(len=*), intent(inout) :: text   !< of length shell_length(word)
+    character(len=*), parameter :: quote = "'\''"
+    integer :: i, at
+
+    text = word
+    if (is_harmless(word)) return
+    text(1:1) = "'"
+    at = 2
+    do i = 1, len(word)
+      if (word(i:i) == "'") then
+        text(at:at + len(quote) - 1) = quote
+        at = at + len(quote)
+      else
+        text(at:at) = word(i:i)
+        at = at + 1
+      end if
+    end do
+    text(at:at) = "'"
+  end subroutine write_for_shell
+
+  !> Whether a shell takes a word as it is.
+  pure logical function is_harmless(word)
+    character(len=*), intent(in) :: word
+    character(len=*), parameter :: harmless = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+%@'
+
+    is_harmless = word /= '' .and. verify(word, harmless) == 0
+  end function is_harmless
 
   !> A single dash is not an option: it names standard input or output.
   pure logical function is_option(word)

@@ -33,6 +33,17 @@ program test_drive_bounds
     call test%no_error(err, 'a table')
     call check(table, 'a table')
   end do
+  ! more terms than are worked out one by one
+  do i = 1, 10
+    polynomial%coefficients = [(random%symmetric()/(1.0_wp + j), j=0, 12 + 3*i)]
+    call check(polynomial, 'a polynomial')
+  end do
+  polynomial%coefficients = [(0.5_wp**j, j=0, 1000)]
+  call test%near(polynomial%greatest_rate(1.0_wp, 1.0e-3_wp), 0.5_wp/(1.0_wp - 0.5_wp*1.001_wp)**2, 1.0e-9_wp, &
+                 'where all terms are positive the bound is the rate at the end')
+  ! work that grew with the square of their number would take an hour
+  polynomial%coefficients = [(1.0_wp/(1.0_wp + j)**2, j=0, 1000000)]
+  call test%is_true(polynomial%greatest_rate(0.5_wp, 0.1_wp) > 0.5_wp, 'a million coefficients')
   ! at rest at both ends and in the middle, with a swing between: 16 x^2 (1-x)^2 (1-2x)^2
   polynomial%coefficients = 16.0_wp*[0.0_wp, 0.0_wp, 1.0_wp, -6.0_wp, 13.0_wp, -12.0_wp, 4.0_wp]
   call test%is_true(polynomial%greatest_rate(0.0_wp, 1.0_wp) > 1.0_wp, 'a swing between two rests is seen')

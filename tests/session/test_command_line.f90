@@ -16,6 +16,7 @@ contains
     call test_good_lines(tester)
     call test_every_option(tester)
     call test_bad_lines(tester)
+    call test_line_for_shell(tester)
     call test_help(tester)
     call tester%finish()
   end subroutine run_tests
@@ -168,6 +169,22 @@ contains
   end subroutine refuse
 
   !> The help fits a terminal of 100 columns, and its lines end without blanks.
+  !> All words as one line. A shell takes 'a'\''b' for a'b.
+  subroutine test_line_for_shell(tester)
+    type(tester_type), intent(inout) :: tester
+    type(command_line_type) :: options
+    type(error_type), allocatable :: err
+    integer, parameter :: many = 3000000
+
+    call parse("it's.nml|--set|pair(2).point=1,2|--table=a b|--quiet", options, err)
+    call tester%is_true(options%line == "'it'\''s.nml' --set 'pair(2).point=1,2' '--table=a b' --quiet", 'words in quotes')
+    call parse('', options, err)
+    call tester%is_true(options%line == '', 'no word')
+    ! work that grew with the square of its length would take an hour
+    call parse("a.nml|--set|user.parameters='"//repeat('1,', many), options, err)
+    call tester%is_true(options%line == "a.nml --set 'user.parameters='\''"//repeat('1,', many)//"'", 'a long word')
+  end subroutine test_line_for_shell
+
   subroutine test_help(tester)
     type(tester_type), intent(inout) :: tester
     character(len=:), allocatable :: text
