@@ -11,7 +11,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import REFERENCE, Checks, run, table_and_report, table_of, text_of
+from mech9_cases import REFERENCE, Checks, run, table_and_report, table_of, text_of, without_drives
 
 FIVE_BAR = os.path.join(REFERENCE, 'dynamics_fivebar.nml')
 LOOSE = ('--set', 'time.end=5', '--set', 'time.intervals=1', '--set', 'solver.relative_tolerance=1e-5')
@@ -161,10 +161,10 @@ def test_pictures(case):
     checks = case.checks
     film = os.path.join(case.folder, 'film.html')
     less = ('--set', 'output.coordinates=4', '--set', 'output.derivatives=0')
-    for program in case.kinematics, case.dynamics:
+    for program, text in ((case.kinematics, SIX_AND_TWO), (case.dynamics, without_drives(SIX_AND_TWO))):
         films = []
         for settings in (), less:
-            done = run(program, case.file(SIX_AND_TWO, more=''), '--quiet', '--table', os.devnull, '--animate', film, *settings)
+            done = run(program, case.file(text, more=''), '--quiet', '--table', os.devnull, '--animate', film, *settings)
             checks.equal(done.returncode, 0, f'a film; stderr: {done.stderr}')
             films.append(text_of(film))
         checks.true(len(films[0]) > 10000 and films[0] == films[1], f'{os.path.basename(program)}: the same film')
@@ -240,8 +240,9 @@ def test_open_chains(case):
 def test_dynamics(case):
     """Links without mass have no terms; chains that nothing depends on, and energies, are left out."""
     checks = case.checks
+    free = without_drives(SIX_AND_TWO)
     exact = '&solver relative_tolerance=1e-12, absolute_tolerance=1e-12 /\n'
-    path = case.file(SIX_AND_TWO, more=exact)
+    path = case.file(free, more=exact)
     table, whole = table_and_report(case.dynamics, path)
     checks.equal(whole['links_with_inertia'], 2, 'two bodies')
     # link 1 does not move; links 3, 5 to 8 carry nothing, but 3 and 6 the chains behind them
@@ -257,22 +258,22 @@ def test_dynamics(case):
     quiet = table_of(case.dynamics, path, '--set', 'output.energies=.false.')
     checks.equal([name for name in quiet if name.startswith('E')], [], 'no energies')
     case.same(quiet, table, (0, 0, 0), 'without energies')
-    heavy = table_and_report(case.dynamics, case.file(SIX_AND_TWO, more=exact + '&body link=3, mass=0 /\n'))
+    heavy = table_and_report(case.dynamics, case.file(free, more=exact + '&body link=3, mass=0 /\n'))
     checks.equal(heavy[1]['links_with_inertia'], 2, 'a body without mass is none')
     case.same(heavy[0], table, (0, 0, 0), 'a body without mass')
     idle = "&load kind='force', link=1, force=1,2,3 /\n&load kind='coordinate', coordinate=10 /\n"
-    unloaded = table_and_report(case.dynamics, case.file(SIX_AND_TWO, more=exact + idle))
+    unloaded = table_and_report(case.dynamics, case.file(free, more=exact + idle))
     checks.equal(unloaded[1]['acting_loads'], 0, 'loads that move nothing')
     case.same(unloaded[0], table, (0, 0, 0), 'loads that move nothing')
-    pushed = table_and_report(case.dynamics, case.file(SIX_AND_TWO, more=exact + idle + "&load kind='torque', link=2, torque=0,0,1 /"))
+    pushed = table_and_report(case.dynamics, case.file(free, more=exact + idle + "&load kind='torque', link=2, torque=0,0,1 /"))
     checks.equal(pushed[1]['acting_loads'], 1, 'and one that does')
     checks.true(abs(pushed[0]['q3'][-1] - table['q3'][-1]) > 0.01, 'it does')
-    plan = run(case.dynamics, case.file(SIX_AND_TWO, more=idle), '--plan').stdout
+    plan = run(case.dynamics, case.file(free, more=idle), '--plan').stdout
     checks.true('zero, or on link 1 alone, left out: loads 1, 2' in plan, 'the plan says so', plan)
-    loaded = case.file(SIX_AND_TWO, more="&output coordinates=3 /\n&load kind='coordinate', coordinate=10, damping=0.1 /\n")
+    loaded = case.file(free, more="&output coordinates=3 /\n&load kind='coordinate', coordinate=10, damping=0.1 /\n")
     checks.true('left out: no result' not in run(case.dynamics, loaded, '--plan').stdout, 'a load is a reason to solve')
     spring = exact + "&load kind='spring', links=1,8, position=0,1,0, second_position=0.1,0,0, stiffness=100, free_length=0.1 /\n"
-    path = case.file(SIX_AND_TWO, more=spring)
+    path = case.file(free, more=spring)
     sprung, less = table_of(case.dynamics, path), table_of(case.dynamics, path, '--set', 'output.coordinates=1')
     checks.true(np.max(np.abs(sprung['q1'] - table['q1'])) > 1e-3, 'a spring on a link of the last chain')
     case.same(less, sprung, (1e-9, 1e-9, 1e-9), 'what a spring holds is followed')

@@ -86,6 +86,11 @@ def read_table(text):
     return {name: rows[:, i] for i, name in enumerate(names)}
 
 
+def without_drives(text):
+    """A data file for mech9d of one for mech9k, each &drive of which stands on a line of its own."""
+    return ''.join(line for line in text.splitlines(keepends=True) if not line.startswith('&drive'))
+
+
 def table_of(program, data, *options):
     """The table that a program writes for a data file; fails loudly where the run fails."""
     with tempfile.TemporaryDirectory() as folder:
