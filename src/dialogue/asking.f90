@@ -186,12 +186,28 @@ contains
     end if
     call read_answer(item_table(question%row), line, text, problem)
     if (problem == '') call hold_against_rest(conversation, question, text, problem)
+    if (problem == '') call count_independent(conversation, text, problem)
     if (problem == '') then
       call keep_answer(conversation, text)
     else
       call conversation%say(problem)
     end if
   end subroutine take_item
+
+  !> Whether an answer makes more coordinates independent than the structure allows. What it hardly allows is refused
+  !> once: given again it is taken.
+  subroutine count_independent(conversation, text, problem)
+    class(conversation_type), intent(inout) :: conversation
+    character(len=*), intent(in) :: text                      !< the answer as a data file writes it
+    character(len=:), allocatable, intent(inout) :: problem   !< empty where nothing speaks against it
+    logical :: certain
+
+    call conversation%interview%excess(text, problem, certain)
+    if (problem == '' .or. certain) return
+    if (text == conversation%doubted) problem = ''
+    if (problem /= '') problem = problem//' If it is so here, give the same answer again.'
+    conversation%doubted = text
+  end subroutine count_independent
 
   !> Note an answer and go on.
   subroutine keep_answer(conversation, text)

@@ -3,7 +3,6 @@
 module mech9_checking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, exit_structure
-  use mech9_structure, only: structure_type
   use mech9_text, only: to_text
   use mech9_diagnostics, only: diagnostics_type
   use mech9_mechanism, only: mechanism_type
@@ -43,48 +42,21 @@ contains
   subroutine judge_structure(conversation)
     class(conversation_type), intent(inout) :: conversation
 
-    character(len=:), allocatable :: problem, otherwise
+    character(len=:), allocatable :: otherwise
 
     associate (interview => conversation%interview)
       otherwise = 'structure(1).cq'
       if (interview%outline%way == 'vectors') otherwise = 'structure(1).rdw'
-      if (.not. interview%outline%structure_known) then
-        call conversation%say('The structure is not complete or not right yet:')
-        call show_faults(conversation, interview%faults)
-        call offer_correction(conversation, interview%faults, otherwise)
-        return
-      end if
-      call print_sketch(error_unit, interview%structure, interview%vectors)
-      problem = excess_of(interview%structure)
-      if (problem == '') then
+      if (interview%outline%structure_known) then
+        call print_sketch(error_unit, interview%structure, interview%vectors)
         call interview%step()
       else
-        call conversation%say('Too many coordinates are independent: '//problem)
+        if (.not. conversation%shown) call conversation%say('The structure is not complete or not right yet:')
+        if (.not. conversation%shown) call show_faults(conversation, interview%faults)
         call offer_correction(conversation, interview%faults, otherwise)
       end if
     end associate
   end subroutine judge_structure
-
-  !> Why a structure cannot have, or hardly can have, so many independent coordinates; empty where nothing speaks against
-  !> them. Each closed chain makes at least one coordinate dependent, and three unless its pairs are of a special kind.
-  pure function excess_of(structure) result(text)
-    type(structure_type), intent(in) :: structure
-    character(len=:), allocatable :: text
-    integer :: chains, named, most, usual
-
-    chains = structure%n_coordinates - structure%n_links + 1
-    named = count(structure%independent)
-    most = structure%n_coordinates - chains
-    usual = max(1, structure%n_coordinates - 3*chains)
-    text = ''
-    if (named > most) then
-      text = to_text(named)//' are named, and '//to_text(most)//' can be at most, since each closed chain makes at least one '// &
-             'coordinate depend on the others.'
-    else if (named > usual) then
-      text = to_text(named)//' are named, and by the count it should be '//to_text(usual)//'. More can be only where a closed '// &
-             'chain has slides alone, or turns and slides along one line alone.'
-    end if
-  end function excess_of
 
   !> Put the mechanism together at the start and tell how it went.
   subroutine judge_start(conversation, task)
@@ -112,8 +84,8 @@ contains
       call diagnostics%add_error(err)
     end if
     call faults_of(diagnostics, written, faults)
-    call conversation%say('The mechanism is not put together yet:')
-    call show_faults(conversation, faults)
+    if (.not. conversation%shown) call conversation%say('The mechanism is not put together yet:')
+    if (.not. conversation%shown) call show_faults(conversation, faults)
     call offer_correction(conversation, faults, otherwise)
   end subroutine judge_start
 

@@ -34,6 +34,8 @@ module mech9_conversation
     integer :: topic = 0                             !< whose title was shown last
     logical :: opened(size(topics)) = .false.        !< topics that were explained already
     logical :: summed_up = .false.                   !< all answers were shown at the end
+    logical :: shown = .false.                       !< what a check found wrong was shown, and nothing was changed since
+    character(len=:), allocatable :: doubted         !< the answer that was refused unless it is given again; empty: none
     character(len=:), allocatable :: heading         !< shown last
     logical :: told(size(item_table)) = .false.      !< names that were explained already
   contains

@@ -61,6 +61,7 @@ contains
     conversation%stem = ''
     conversation%data_path = ''
     conversation%heading = ''
+    conversation%doubted = ''
     call draft%clear()
     bookmark = ''
     path = options%argument('resume')

@@ -57,6 +57,7 @@ contains
     proposal = otherwise(index(otherwise, '.') + 1:)
     if (missing > 0) proposal = label_of(conversation%interview%questions(missing))
     if (first > 0) proposal = to_text(first)
+    conversation%shown = .true.
     call conversation%listen('  number to change, or go (on as it is) ['//proposal//']: ', words, line)
     if (conversation%state /= going) return
     select case (lower(line(:min(len(line), 8))))
@@ -165,6 +166,8 @@ contains
     else
       call change_answer(conversation, line, found)
     end if
+    ! what changed nothing shows nothing again
+    conversation%shown = .not. found
     if (present(done)) done = found
   end subroutine change
 

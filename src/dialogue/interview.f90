@@ -40,6 +40,7 @@ module mech9_interview
     procedure :: is_begun
     procedure :: leave_out
     procedure :: correct
+    procedure :: excess
     procedure :: note
     procedure :: unnote
     procedure :: bookmark
@@ -221,6 +222,40 @@ contains
     self%at = number
     if (self%return_to == '') self%return_to = here
   end subroutine correct
+
+  !> Why an answer to the question that is due makes too many coordinates independent; empty where it does not, or is about
+  !> something else. Each closed chain makes at least one coordinate dependent, and three unless its pairs are of a
+  !> special kind.
+  pure subroutine excess(self, answer, problem, certain)
+    class(interview_type), intent(in) :: self
+    character(len=*), intent(in) :: answer                     !< as a data file writes it
+    character(len=:), allocatable, intent(out) :: problem
+    logical, intent(out) :: certain                            !< no pairs at all can make it right
+    type(interview_type) :: trial
+    integer :: chains, named, most, usual
+
+    problem = ''
+    certain = .false.
+    if (group_table(self%questions(self%at)%group_row)%name /= 'structure') return
+    trial = self
+    call trial%note(answer)
+    if (.not. trial%outline%structure_known) return
+    associate (structure => trial%structure)
+      chains = structure%n_coordinates - structure%n_links + 1
+      named = count(structure%independent)
+      most = structure%n_coordinates - chains
+      usual = max(1, structure%n_coordinates - 3*chains)
+    end associate
+    certain = named > most
+    if (certain) then
+      problem = 'Too many coordinates are independent: '//to_text(named)//' are named, and '//to_text(most)//' can be at '// &
+                'most, since each closed chain makes at least one coordinate depend on the others.'
+    else if (named > usual) then
+      problem = 'Too many coordinates are independent: '//to_text(named)//' are named, and by the count it should be '// &
+                to_text(usual)//'. More can be only where a closed chain has slides alone, or turns and slides along one '// &
+                'line alone.'
+    end if
+  end subroutine excess
 
   !> Keep an answer to the question that is due, which then may have others after it.
   pure subroutine note(self, text)

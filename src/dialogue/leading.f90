@@ -25,6 +25,7 @@ contains
           call announce_topic(conversation, question)
           call check(conversation, task)
         case default
+          conversation%shown = .false.
           call ask(conversation)
         end select
       end associate

@@ -16,7 +16,7 @@ module mech9_short_answers
 
 contains
 
-  !> The full form of an answer to the question about a name: "rev" is revolute, "-z" the axis 0, 0, -1, "1-2" the links
+  !> The full form of an answer to the question about a name: "rev" and "hinge" are revolute, "-z" the axis 0, 0, -1, "1-2" the links
   !> 1, 2, and for gravity "-y" is 0, -9.81, 0 and "none" 0, 0, 0. What is not short stays as it is.
   pure function full_form(row, line) result(text)
     type(item_row_type), intent(in) :: row          !< of the name
@@ -28,6 +28,7 @@ contains
     if (len(line) > longest .or. line == '') return
     if (row%words /= '') then
       word = word_meant(line, words_of(trim(row%words)))
+      if (row%group == 'pair' .and. word == '') word = kind_of_pair(line)
       if (word /= '') text = word
     else if (row%type == 'real' .and. index(directions, ' '//trim(row%name)//' ') > 0) then
       if (is_signed_axis(line)) text = along(line, '1')
@@ -38,6 +39,23 @@ contains
       text = two_numbers(line)
     end if
   end function full_form
+
+  !> What mechanics call the kinds of pairs; empty for other words.
+  pure function kind_of_pair(line) result(kind)
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: kind
+
+    select case (lower(line))
+    case ('hinge', 'pin')
+      kind = 'revolute'
+    case ('slide', 'slider')
+      kind = 'prismatic'
+    case ('screw')
+      kind = 'helical'
+    case default
+      kind = ''
+    end select
+  end function kind_of_pair
 
   !> The one word of a list that begins with what was typed, or is it; empty where none does, or several do.
   pure function word_meant(line, words) result(word)

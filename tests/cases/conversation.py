@@ -169,20 +169,22 @@ def structure_and_start(talks):
     """Structures and starts that cannot be are shown as soon as they are complete, and can be mended."""
     apart = [(p, '2 4' if p == 'links of pair 1' else a) for p, a in scripts.MECHANISM + scripts.BY_PAIRS]
     apart = [(p, '2 4' if p == 'links of pair 2' else a) for p, a in apart]
-    mended = apart + [('link 6 is not connected to link 1', 'pair 1 links'), ('links of pair 1 [2, 4]', '1 6'),
+    mended = apart + [('link 6 is not connected to link 1', '?'), ('Give the number of', 'zzz'),
+                      ('no answer that can be changed', 'pair 1 links'), ('links of pair 1 [2, 4]', '1 6'),
                       ('1 -1- 6 (open)', 'no')]
     with tempfile.TemporaryDirectory() as folder:
         done = talks.pipe(talks.mech9k, mended, 'a link apart', INTERRUPTED, folder=folder)
         talks.checks.true('1 = 7 - 2 x 3 in a plane' in done.stderr, 'mobility by the count', done.stderr)
+        talks.checks.equal(done.stderr.count('is not connected to link 1'), 1, 'told once: nothing was changed between')
     # two independent coordinates where one is right: refused with the structure, and corrected there
     two = [(p, '5 6' if p == 'cq: ' else a) for p, a in scripts.MECHANISM + scripts.BY_PAIRS]
-    steps = two + [('2 are named, and by the count it should be 1', ''), ('cq [5, 6]', '1 2 3 4 5 6'),
-                   ('5 can be at most', ''), ('cq [1, 2, 3, 4, 5, 6]', '5'), ('Independent now: 1.', '')]
+    steps = two + [('2 are named, and by the count it should be 1', '1 2 3 4 5 6'), ('5 can be at most', '1 2 3 4 5 6'),
+                   ('5 can be at most', '5'), ('Independent now: 1.', '')]
     with tempfile.TemporaryDirectory() as folder:
         done = talks.pipe(talks.mech9k, steps, 'too many independent coordinates', INTERRUPTED, folder=folder)
         talks.checks.true('dropped' not in done.stderr, 'drives of which nothing was entered go without a word', done.stderr)
     # insisted on, and corrected after the geometry
-    steps = two + [('Too many coordinates are independent', 'go')] + scripts.pairs(False)
+    steps = two + [('give the same answer again', '5 6')] + scripts.pairs(False)
     steps += [('Drive of coordinate 5', ''), ('coefficients', '0.5 6'), ('Drive of coordinate 6', ''),
               ('coefficients', '1.8'), ('guesses', ''), ('the mobility is 1', ''), ('cq [5, 6]', '5'), ('drive 6', 'P')]
     with tempfile.TemporaryDirectory() as folder:

@@ -31,6 +31,10 @@ contains
 
     call becomes(tester, 'pair', 'kind', '', 'rev', 'revolute')
     call becomes(tester, 'pair', 'kind', '', 'P', 'prismatic')
+    call becomes(tester, 'pair', 'kind', '', 'hinge', 'revolute')
+    call becomes(tester, 'pair', 'kind', '', 'Slider', 'prismatic')
+    call becomes(tester, 'pair', 'kind', '', 'screw', 'helical')
+    call becomes(tester, 'drive', 'kind', '', 'hinge', 'hinge')
     call becomes(tester, 'pair', 'kind', '', 'revolutte', 'revolutte')
     call becomes(tester, 'pair', 'kind', '', 'x', 'x')
     call becomes(tester, 'solver', 'method', '', 'v', 'verner')
