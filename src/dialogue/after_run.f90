@@ -26,7 +26,7 @@ module mech9_after_run
   integer, parameter :: usual_rows = 8, most_rows = 1000, longest_line = 500
   character(len=7), parameter :: commands(6) = [character(len=7) :: 'show', 'plot', 'compare', 'change', 'run', 'done']
   character(len=*), parameter :: help = &
-    'show: the last rows of the table; "show 20 q1 P.x" shows twenty rows of these columns. '// &
+    'show: the last rows of the table; "show 20 q1 P.x" shows twenty rows of these columns, "show P" of a point. '// &
     'plot: a plot here in the terminal; "plot q1,P.x", "plot P.x:P.y" (a path), "plot picture.svg:q1" (a file). '// &
     'compare: the largest differences from the run before. "change time end = 2" changes an answer; without the '// &
     'value you are asked for it; its number from list will do, too. run: run again. done ends.'
@@ -56,6 +56,7 @@ contains
       line = line(:min(len(line), longest_line))
       word = lower(line(:scan(line//' ', ' ') - 1))
       rest = trim(adjustl(line(len(word) + 1:)))
+      if (word == 'show' .or. word == 'plot') rest = with_points(kept, rest)
       select case (word)
       case ('done')
         return
@@ -194,6 +195,38 @@ contains
     call compare_runs(earlier, kept, comparison)
     write (error_unit, '(a)', advance='no') comparison_text(comparison, kept)
   end subroutine compare
+
+  !> A list of columns with the name of a point as its three coordinates: "q1, P" as "q1,P.x,P.y,P.z".
+  pure function with_points(kept, list) result(text)
+    type(kept_rows_type), intent(in) :: kept
+    character(len=*), intent(in) :: list         !< what was typed behind the command
+    character(len=:), allocatable :: text, word
+    character(len=len(list)), allocatable :: words(:)
+    integer :: i
+
+    text = list
+    if (kept%count == 0 .or. index(list, ':') > 0) return
+    words = words_of(with_blanks(list))
+    text = ''
+    do i = 1, size(words)
+      if (i > 1) text = text//','
+      word = trim(words(i))
+      if (.not. is_column(kept, word) .and. is_column(kept, word//'.x')) word = word//'.x,'//word//'.y,'//word//'.z'
+      text = text//word
+    end do
+  end function with_points
+
+  pure logical function is_column(kept, name)
+    type(kept_rows_type), intent(in) :: kept
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    is_column = .true.
+    do i = 1, size(kept%names)
+      if (kept%names(i)%text == name) return
+    end do
+    is_column = .false.
+  end function is_column
 
   !> Commas as blanks.
   pure function with_blanks(text) result(plain)

@@ -2,12 +2,12 @@
 !> what is said of Enter where it answers nothing. Uses grammar, data_help, draft, topics, outline, questions, question_words,
 !> explanations.
 module mech9_question_help
-  use mech9_grammar, only: item_table, item_row_type
+  use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group
   use mech9_data_help, only: values_text, default_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: can_be_left_out
   use mech9_outline, only: outline_type
-  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_guesses
+  use mech9_questions, only: question_type, is_seldom, ask_item, ask_seldom, ask_way, ask_guesses
   use mech9_question_words, only: coordinate_kind, angle_unit, unit_here, is_needed, seldom_names
   use mech9_explanations, only: find_explanation, explanations
   implicit none
@@ -53,8 +53,9 @@ contains
              'The first letter will do.'
     case (ask_seldom)
       names = seldom_names(question, outline)
-      text = 'These names have defaults that mostly serve: '//names//'. Answer yes to be asked for all of them, or name '// &
-             'those that you want to give, for example: '//names(:index(names//',', ',') - 1)
+      text = 'These names have defaults that mostly serve:'//line_end//list_of_seldom(question, outline)// &
+             'Answer yes to be asked for all of them, or name those that you want to give.'//line_end//'For example: '// &
+             names(:index(names//',', ',') - 1)
     case (ask_guesses)
       text = 'The same links can be put together in several ways. Rough values of the dependent coordinates choose '// &
              'one; without them the search starts from zeros, the position in which the mechanism is described. '// &
@@ -68,6 +69,22 @@ contains
     if (can_be_left_out(question%group_row)) text = text//' remove leaves out the '//trim(item_table(question%row)%group)// &
                                                     ' that is asked about.'
   end function help_of
+
+  !> The names of a group that are asked for only when told so, each with what it means in a line.
+  pure function list_of_seldom(question, outline) result(text)
+    type(question_type), intent(in) :: question
+    type(outline_type), intent(in) :: outline
+    character(len=:), allocatable :: text
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    text = ''
+    rows = rows_of_group(group_table(question%group_row)%name)
+    do i = 1, size(rows)
+      if (is_seldom(outline, item_table(rows(i)))) &
+        text = text//trim(item_table(rows(i))%name)//': '//trim(item_table(rows(i))%help)//line_end
+    end do
+  end function list_of_seldom
 
   !> The explanation of a name, the values it takes, and an example in the unit that is asked for.
   pure function help_on_name(question, draft, outline) result(text)

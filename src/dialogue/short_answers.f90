@@ -16,8 +16,8 @@ module mech9_short_answers
 
 contains
 
-  !> The full form of an answer to the question about a name: "rev" and "hinge" are revolute, "-z" the axis 0, 0, -1, "1-2" the links
-  !> 1, 2, and for gravity "-y" is 0, -9.81, 0 and "none" 0, 0, 0. What is not short stays as it is.
+  !> The full form of an answer to the question about a name: "rev" and "hinge" are revolute, "-z" the axis 0, 0, -1,
+  !> "1-2" the links 1, 2, and for gravity "-y" is 0, -9.81, 0 and "none" 0, 0, 0. What is not short stays as it is.
   pure function full_form(row, line) result(text)
     type(item_row_type), intent(in) :: row          !< of the name
     character(len=*), intent(in) :: line            !< what was typed, without blanks around it

@@ -133,10 +133,12 @@ module mech9_grammar
                   'c0, c1, c2, ... of q = c0 + c1 t + c2 t^2 + ...', '0.5, 2.0'), &
     item_row_type('drive', 'mean', 'real', 1, 1, 'q', optional, '0', '', '', 'harmonic', &
                   'of q = mean + amplitude sin(angular_frequency t + phase)', '0.1'), &
-    item_row_type('drive', 'amplitude', 'real', 1, 1, 'q', needed, '', '', '', 'harmonic', 'see mean', '0.3'), &
+    item_row_type('drive', 'amplitude', 'real', 1, 1, 'q', needed, '', '', '', 'harmonic', &
+                  'how far the coordinate goes to each side of the mean', '0.3'), &
     item_row_type('drive', 'angular_frequency', 'real', 1, 1, 'angle/s', needed, '', '', '', 'harmonic', &
-                  'see mean', '6.28'), &
-    item_row_type('drive', 'phase', 'real', 1, 1, 'angle', optional, '0', '', '', 'harmonic', 'see mean', '1.57'), &
+                  'a full turn of it is one swing to and fro; see mean', '6.28'), &
+    item_row_type('drive', 'phase', 'real', 1, 1, 'angle', optional, '0', '', '', 'harmonic', &
+                  'where in its swing the coordinate is at t = 0; 0 is at the mean and growing', '1.57'), &
     item_row_type('drive', 'file', 'text', 1, 1, 's, q', needed, '', '', '', 'table', &
                   'a text file with t and q in each line, beside the data file; a smooth curve runs through them', &
                   '''motion.dat''')]
@@ -165,11 +167,12 @@ module mech9_grammar
                   'the point of the (first) link it acts on, in the link', '1.0, 0, 0'), &
     item_row_type('load', 'second_position', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', 'spring', &
                   'the point of the second link', '0, 0.3, 0'), &
-    item_row_type('load', 'force', 'real', 3, 3, 'N', needed, '', '', '', 'force', 'its components; see frame', '0, -10, 0'), &
+    item_row_type('load', 'force', 'real', 3, 3, 'N', needed, '', '', '', 'force', &
+                  'its components along the axes that frame names', '0, -10, 0'), &
     item_row_type('load', 'force', 'real', 1, 1, 'N or N m', optional, '0', '', '', 'coordinate', &
                   'a constant part of the load', '2.5'), &
     item_row_type('load', 'torque', 'real', 3, 3, 'N m', needed, '', '', '', 'torque', &
-                  'its components; see frame', '0, 0, 4'), &
+                  'its components along the axes that frame names', '0, 0, 4'), &
     item_row_type('load', 'frame', 'text', 1, 1, '', optional, '''fixed''', '', 'fixed link', 'force torque', &
                   'along the axes of link 1, or turning with the link', '''link'''), &
     item_row_type('load', 'stiffness', 'real', 1, 1, 'N/m', optional, '0', '>=0', '', 'spring', &
@@ -183,7 +186,7 @@ module mech9_grammar
     item_row_type('load', 'damping', 'real', 1, 1, 'N s/m', optional, '0', '>=0', '', 'spring', &
                   'force per rate of its length', '1.5'), &
     item_row_type('load', 'damping', 'real', 1, 1, 'N s/m, N m s', optional, '0', '', '', 'coordinate', &
-                  'see stiffness', '1.5')]
+                  'torque or force for each unit of dq/dt; per rad/s for angles, whatever angle_unit says', '1.5')]
 
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &

@@ -63,16 +63,17 @@ def rows_shown(text):
 
 def test_show(session):
     checks = session.checks
-    said, _ = session.after_run('show 3 q5 P.y', 'show 5', 'show q7', 'show 2 q55', 'done')
+    said, _ = session.after_run('show 3 q5 P.y', 'show 5', 'show q7', 'show 2 q55', 'show 4 q1 P', 'plot P', 'done')
     table = session.written()
     for text, names, count in ((said[0], ['t', 'q5', 'P.y'], 3), (said[1], ['t', 'q1', 'q2', 'q3', 'q4', 'q5'], 5),
-                               (said[2], ['t', 'q7'], 8)):
+                               (said[2], ['t', 'q7'], 8), (said[4], ['t', 'q1', 'P.x', 'P.y', 'P.z'], 4)):
         got, _, rows = rows_shown(text)
         checks.equal(got, names, f'show: the columns {names}')
         # seven significant digits are shown
         checks.true(np.allclose(rows, np.array([table[name][-count:] for name in names]).T, rtol=5e-7, atol=1e-12),
                     f'show: the last {count} rows of the table', text)
     checks.true("no column 'q55'" in said[3] and 'did you mean q5?' in said[3], 'show: a name that is not there', said[3])
+    checks.true('no column' not in said[5], 'plot: a point stands for its coordinates', said[5])
     checks.true(all(len(line) <= 79 for text in said for line in text.splitlines()), 'show: within 80 columns')
 
 

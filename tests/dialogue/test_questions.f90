@@ -8,7 +8,7 @@ program test_questions
   use mech9_topics, only: topics, groups_of_topic, is_numbered
   use mech9_outline, only: ways
   use mech9_interview, only: interview_type
-  use mech9_questions, only: question_type, label_of, find_question, ask_item, check_structure, check_start, check_all
+  use mech9_questions, only: question_type, label_of, find_question, ask_item, ask_seldom, check_structure, check_start, check_all
   use mech9_question_words, only: default_type, default_of, prompt_of, words_for
   use mech9_question_help, only: help_of
   use mech9_explanations, only: find_explanation, explanations
@@ -133,6 +133,9 @@ contains
       if (any(question%kind == [check_structure, check_start, check_all])) cycle
       call words_for(question, interview%outline, words)
       call tester%is_true(size(words) >= 4, label_of(question)//': words to complete')
+      if (question%kind == ask_seldom .and. group_table(question%group_row)%name == 'output') &
+        call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'view: of these pictures') > 0, &
+                            'seldom names are explained one by one')
       if (question%kind /= ask_item) cycle
       asked(question%row) = .true.
       associate (item => item_table(question%row))
