@@ -56,9 +56,9 @@ contains
     call find_first(conversation, faults, first, missing)
     proposal = otherwise(index(otherwise, '.') + 1:)
     if (missing > 0) proposal = label_of(conversation%interview%questions(missing))
-    if (first > 0) proposal = to_text(first)
+    if (first > 0) proposal = 'answer '//to_text(first)
     conversation%shown = .true.
-    call conversation%listen('  number to change, or go (on as it is) ['//proposal//']: ', words, line)
+    call conversation%listen('  Enter for '//proposal//'; number of another answer; or go (on): ', words, line)
     if (conversation%state /= going) return
     select case (lower(line(:min(len(line), 8))))
     case ('?', 'help')

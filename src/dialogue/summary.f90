@@ -26,6 +26,8 @@ contains
     number = 0
     piece = ''
     do i = 1, size(draft%groups)
+      ! a coordinate of which nothing else is said
+      if (all([(is_hidden(draft, i, j), j=1, size(draft%groups(i)%entries))])) cycle
       line = '  '//title_of(draft, i)//':'
       do j = 1, size(draft%groups(i)%entries)
         if (is_hidden(draft, i, j)) cycle

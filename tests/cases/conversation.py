@@ -169,7 +169,7 @@ def structure_and_start(talks):
     """Structures and starts that cannot be are shown as soon as they are complete, and can be mended."""
     apart = [(p, '2 4' if p == 'links of pair 1' else a) for p, a in scripts.MECHANISM + scripts.BY_PAIRS]
     apart = [(p, '2 4' if p == 'links of pair 2' else a) for p, a in apart]
-    mended = apart + [('link 6 is not connected to link 1', '?'), ('Give the number of', 'zzz'),
+    mended = apart + [('link 6 is not connected to link 1', '?'), ('number of another answer', 'zzz'),
                       ('no answer that can be changed', 'pair 1 links'), ('links of pair 1 [2, 4]', '1 6'),
                       ('1 -1- 6 (open)', 'no')]
     with tempfile.TemporaryDirectory() as folder:
