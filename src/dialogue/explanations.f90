@@ -169,10 +169,10 @@ module mech9_explanations
                   'in one position, in which all link systems coincide, these are its coordinates in the frame in that '// &
                   'position.', '1.6, 0.4, 0'), &
     explanation_type('body', 'inertia', '', &
-                  'Give six elements of the inertia tensor about the mass centre, along the axes of the link, in the '// &
-                  'order xx, yy, zz, xy, xz, yz; xy is minus the integral of x y dm. In a mechanism that moves in the '// &
-                  'plane of x and y only zz has an influence.', &
-                  '0.001, 0.083, 0.083, 0, 0, 0 (a slender rod of 1 kg and 1 m along x)'), &
+                  'Give six elements of the inertia tensor about the mass centre, along the axes of the link, in the order '// &
+                  'xx, yy, zz, xy, xz, yz; xy is minus the integral of x y dm. In a mechanism that moves in the plane of x '// &
+                  'and y only zz has an influence, and the others may be 0.', &
+                  '0, 0, 0.083, 0, 0, 0 (a slender rod of 1 kg and 1 m in that plane)'), &
     explanation_type('gravity', 'acceleration', '', &
                   'Give the acceleration of gravity by its components along the axes of the frame. The letters x, y, z '// &
                   'and -x, -y, -z mean 9.81 m/s^2 along that axis, and none means no gravity.', &

@@ -76,7 +76,8 @@ contains
     if (group == 'initial') then
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
-    else if (any(item_table(rows)%seldom)) then
+    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism') then
+      ! a conversation does not begin with what is seldom: that of the mechanism is changed by its name where it is needed
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)

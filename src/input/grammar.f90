@@ -72,7 +72,7 @@ module mech9_grammar
                   'unit of all angles in this file and in its results', '''deg'''), &
     item_row_type('mechanism', 'data_tolerance', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
                   'error of the dimensions in this file, of the mechanism''s size and in rad: redundant equations may stay '// &
-                  'open by as much', '1e-6'), &
+                  'open by as much', '1e-6', seldom=.true.), &
     item_row_type('structure', 'c', 'integer', 1, unlimited, '', optional, '(from the pairs)', '>=0', '', '', &
                   'coincidence matrix by rows: element i,j is the number of the pair between links i and j, or 0', &
                   'c(1,:) = 0, 1, 2'), &

@@ -183,6 +183,11 @@ def structure_and_start(talks):
     with tempfile.TemporaryDirectory() as folder:
         done = talks.pipe(talks.mech9k, steps, 'too many independent coordinates', INTERRUPTED, folder=folder)
         talks.checks.true('dropped' not in done.stderr, 'drives of which nothing was entered go without a word', done.stderr)
+    # what is seldom about the mechanism is not asked for, but can be given by its name wherever an answer can be changed
+    steps = apart + [('link 6 is not connected', 'mechanism data_tolerance = 1e-6'), ('link 6 is not connected', 'list'),
+                     ('data_tolerance 1e-6', 'quit')]
+    with tempfile.TemporaryDirectory() as folder:
+        talks.pipe(talks.mech9k, steps, 'a seldom name of the mechanism', folder=folder)
     # insisted on, and corrected after the geometry
     steps = two + [('give the same answer again', '5 6')] + scripts.pairs(False)
     steps += [('Drive of coordinate 5', ''), ('coefficients', '0.5 6'), ('Drive of coordinate 6', ''),
