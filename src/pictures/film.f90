@@ -1,13 +1,15 @@
-!> A film: the poses of all links at some of the outputs of a run, and the paths of the points.
-!> Uses kinds, rotation, hermite, mechanism, plan, state, motion.
+!> A film: the poses of all links and the recorded columns at some of the outputs of a run, and the paths of the points.
+!> Uses kinds, text, rotation, hermite, mechanism, plan, state, motion, columns.
 module mech9_film
   use mech9_kinds, only: wp
+  use mech9_text, only: string_type
   use mech9_rotation, only: turn, turn_back
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_motion, only: point_motion, link_motion
+  use mech9_columns, only: columns_type
   implicit none
   private
   public :: film_type, new_film
@@ -27,6 +29,9 @@ module mech9_film
     real(wp), allocatable :: times(:)            !< of the frames [s]
     real(wp), allocatable :: r(:, :, :, :)       !< (3,3,N,frames) rotation of each link
     real(wp), allocatable :: p(:, :, :)          !< (3,N,frames) origin of each link [m]
+    type(string_type), allocatable :: names(:)   !< of the columns, without the time
+    type(string_type), allocatable :: units(:)   !< of the columns
+    real(wp), allocatable :: values(:, :)        !< (columns,frames) what they hold
     real(wp), allocatable :: paths(:, :, :)      !< (3,points,path points) where the points were [m]
     integer, private :: n_outputs = 0            !< seen so far
     integer, private :: expected = 1             !< outputs
@@ -43,10 +48,11 @@ module mech9_film
 
 contains
 
-  !> A film with room for the frames of a run.
-  pure function new_film(mechanism, outputs) result(film)
+  !> A film with room for the frames of a run, and for what they hold of its columns, if they are given.
+  pure function new_film(mechanism, outputs, columns) result(film)
     type(mechanism_type), intent(in) :: mechanism
     integer, intent(in) :: outputs               !< expected number of outputs
+    type(columns_type), intent(in), optional :: columns   !< of the rows that are taken, the time first
     type(film_type) :: film
     integer :: n, frames, points
 
@@ -59,22 +65,29 @@ contains
     frames = (max(outputs, 1) - 1)/film%frame_stride + 2
     points = film%between*((max(outputs, 1) - 1)/film%path_stride + 2)
     allocate (film%times(frames), source=0.0_wp)
+    allocate (film%names(0), film%units(0))
+    if (present(columns)) then
+      film%names = columns%names(2:columns%count)
+      film%units = columns%units(2:columns%count)
+    end if
+    allocate (film%values(size(film%names), frames), source=0.0_wp)
     allocate (film%r(3, 3, n, frames), film%p(3, n, frames), source=0.0_wp)
     allocate (film%paths(3, size(mechanism%points), points), film%latest(3, size(mechanism%points), 3), source=0.0_wp)
   end function new_film
 
   !> The next output of the run; it is kept if its turn has come, or if it is the last.
-  pure subroutine take(self, mechanism, plan, state)
+  pure subroutine take(self, mechanism, plan, state, row)
     class(film_type), intent(inout) :: self
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state        !< positions known
+    real(wp), intent(in) :: row(:)               !< the columns at this output, as far as the film has room for them
     logical :: last
 
     last = self%n_outputs + 1 == self%expected
     if (mod(self%n_outputs, self%path_stride) == 0 .or. last) call take_points(self, mechanism, plan, state)
     if (self%n_frames < size(self%times) .and. (mod(self%n_outputs, self%frame_stride) == 0 .or. last)) &
-      call take_frame(self, plan, state)
+      call take_frame(self, plan, state, row)
     self%n_outputs = self%n_outputs + 1
   end subroutine take
 
@@ -128,15 +141,17 @@ contains
     end do
   end subroutine curve_to
 
-  pure subroutine take_frame(self, plan, state)
+  pure subroutine take_frame(self, plan, state, row)
     class(film_type), intent(inout) :: self
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
+    real(wp), intent(in) :: row(:)
     real(wp) :: omega(3), v(3)
     integer :: i
 
     self%n_frames = self%n_frames + 1
     self%times(self%n_frames) = state%t
+    self%values(:, self%n_frames) = row(2:size(self%names) + 1)
     do i = 1, plan%n_links
       call link_motion(plan, state, i, self%r(:, :, i, self%n_frames), self%p(:, i, self%n_frames), omega, v)
     end do

@@ -1,16 +1,17 @@
 !> A film as a page that a browser plays, with nothing from elsewhere: the first picture, the places of everything
-!> in every frame, and a script. Uses kinds, error, text, rotation, film, projection, scene, svg_picture,
-!> film_script, page, xml_text.
+!> in every frame, the values of the recorded columns, and a script. Uses kinds, error, text, rotation, film, film_clock,
+!> projection, scene, svg_picture, film_page, page, xml_text.
 module mech9_html_film
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_rotation, only: quaternion
   use mech9_film, only: film_type
+  use mech9_film_clock, only: clock_decimals
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, label, in_thread
   use mech9_svg_picture, only: put_picture
-  use mech9_film_script, only: put_style, put_script
+  use mech9_film_page, only: put_page_style, put_picture_style, put_controls, put_script
   use mech9_page, only: page_type
   use mech9_xml_text, only: xml_text, decimal
   implicit none
@@ -21,46 +22,52 @@ module mech9_html_film
   real(wp), parameter :: finest = 1.0e-5_wp
   !> Parts of quaternions are whole numbers of 1/steps.
   real(wp), parameter :: steps = 1.0e5_wp
+  !> Significant digits of the values of columns.
+  integer, parameter :: digits = 6
 
 contains
 
   !> Write the page. Errors are exit_file.
-  subroutine save_html_film(path, title, scene, film, projection, err)
+  subroutine save_html_film(path, title, scene, film, projection, planar, err)
     character(len=*), intent(in) :: path
     character(len=*), intent(in) :: title          !< any text
     type(scene_type), intent(in) :: scene
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
+    logical, intent(in) :: planar                  !< seen along the normal of its plane: dragging moves it at first
     type(error_type), allocatable, intent(out) :: err
     type(page_type) :: page
 
     call page%line('<!DOCTYPE html>')
     call page%line('<html lang="en"><head><meta charset="utf-8"/>')
+    call page%line('<meta http-equiv="Content-Security-Policy" content="default-src ''none''; img-src data:; '// &
+                   'style-src ''unsafe-inline''; script-src ''unsafe-inline''"/>')
     call page%line('<meta name="viewport" content="width=device-width, initial-scale=1"/>')
     call page%line('<title>'//xml_text(title)//'</title>')
     call page%line('<style>')
-    call put_style(page)
-    call page%line('</style></head><body><figure>')
+    call put_page_style(page)
+    call page%line('</style><style id="picture-style">')
+    call put_picture_style(page)
+    call page%line('</style></head><body><main><section aria-label="film"><h1>'//xml_text(title)//'</h1><figure>')
     call put_picture(title, scene, film, projection, 1, .true., page)
-    call page%line('<nav><button id="play" type="button">Play</button>')
-    call page%line('<input id="frame" type="range" min="0" value="0" step="1" aria-label="time"/>')
-    call page%line('<select id="speed" aria-label="speed"><option value="0.25">1/4</option><option value="0.5">1/2</option>'// &
-                   '<option value="1" selected="selected">speed 1</option><option value="2">2</option>'// &
-                   '<option value="4">4</option></select>')
-    call page%line('<label><input id="names" type="checkbox" checked="checked"/> names</label>')
-    call page%line('<button id="home" type="button" title="drag the picture to turn it">view</button></nav></figure>')
+    call page%line('</figure>')
+    call put_controls(page)
+    call page%line('</section><details id="values"><summary>Values</summary>')
+    call page%line('<input id="filter" type="search" placeholder="names, or parts of them: q1 P." aria-label="Names of columns"/>')
+    call page%line('<dl id="list"></dl><p id="more"></p></details></main>')
     call page%line('<script>')
-    call put_film(scene, film, projection, page)
+    call put_film(scene, film, projection, planar, page)
     call put_script(page)
     call page%line('</script></body></html>')
     call page%save(path, err)
   end subroutine save_html_film
 
   !> What the script has to know, as one constant.
-  subroutine put_film(scene, film, projection, page)
+  subroutine put_film(scene, film, projection, planar, page)
     type(scene_type), intent(in) :: scene
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
+    logical, intent(in) :: planar
     type(page_type), intent(inout) :: page
     integer :: numbers(size(film%p, 2))            !< of the links that have nodes; 0: the others, and link 1
     real(wp) :: unit
@@ -87,9 +94,11 @@ contains
     call page%put(to_text(projection%view%toward(1), 9)//','//to_text(projection%view%toward(2), 9)//','// &
                   to_text(projection%view%toward(3), 9))
     call page%line('],')
+    call page%line('planar: '//trim(merge('true ', 'false', planar))//', decimals: '//to_text(clock_decimals(film))//',')
     call put_nodes(scene, numbers, projection%centre, unit, page)
     call put_items(scene, page)
     call put_frames(film, numbers, count, projection%centre, unit, page)
+    call put_values(film, page)
     call page%line('};')
   end subroutine put_film
 
@@ -178,4 +187,37 @@ contains
     end do
     call page%line('],')
   end subroutine put_frames
+
+  !> Names and units of the recorded columns, and what they hold in each frame.
+  subroutine put_values(film, page)
+    type(film_type), intent(in) :: film
+    type(page_type), intent(inout) :: page
+    integer :: frame, i
+
+    call put_words('names', film%names, page)
+    call put_words('units', film%units, page)
+    call page%line('values: [')
+    do frame = 1, film%n_frames
+      call page%put('[')
+      do i = 1, size(film%names)
+        call page%put(to_text(film%values(i, frame), digits)//',')
+      end do
+      call page%line('],')
+    end do
+    call page%line('],')
+  end subroutine put_values
+
+  !> A list of words without quotes in them, such as names of columns and units.
+  subroutine put_words(name, words, page)
+    character(len=*), intent(in) :: name           !< of the list
+    type(string_type), intent(in) :: words(:)
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    call page%put(name//': [')
+    do i = 1, size(words)
+      call page%put('"'//words(i)%text//'",')
+    end do
+    call page%line('],')
+  end subroutine put_words
 end module mech9_html_film

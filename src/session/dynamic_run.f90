@@ -173,7 +173,7 @@ contains
       else
         call self%conditioning%glance(t, system%work%blocks)
       end if
-      if (allocated(self%film)) call self%film%take(system%mechanism, system%plan, system%state)
+      if (allocated(self%film)) call self%film%take(system%mechanism, system%plan, system%state, row)
     end associate
     self%started = .true.
     self%worst_closure = max(self%worst_closure, row(next))

@@ -83,8 +83,8 @@ contains
     next = self%columns%motion + 1
     call self%columns%fill_poses(self%plan, self%tracker%state, row)
     row(next) = self%tracker%closure
-    if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%tracker%state)
     if (self%mechanism%output%conditioning) &
       call self%tracker%conditioning%look(t, self%tracker%work, row(next + 1))
+    if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%tracker%state, row)
   end subroutine row_at
 end module mech9_kinematic_run

@@ -93,7 +93,7 @@ contains
     type(film_type) :: film
 
     film = new_film(mechanism, 1)
-    call film%take(mechanism, plan, start)
+    call film%take(mechanism, plan, start, [start%t])
     sketch_only = self
     sketch_only%animation = ''
     call sketch_only%save(mechanism, film, err)
@@ -153,7 +153,7 @@ contains
     if (.not. moving) then
       call save_sketch(path, mechanism%title, scene, film, projection, 1, err)
     else if (page) then
-      call save_html_film(path, mechanism%title, scene, film, projection, err)
+      call save_html_film(path, mechanism%title, scene, film, projection, planar, err)
     else if (kind_of(path) == 'gif') then
       call save_gif_film(path, mechanism%title, scene, film, projection, err)
     else

@@ -139,7 +139,7 @@ contains
     type(error_type), allocatable :: err
 
     call announce(options, mechanism, plan, run%needs)
-    if (pictures%any_wanted()) run%film = new_film(mechanism, mechanism%time%intervals + 1)
+    if (pictures%any_wanted()) run%film = new_film(mechanism, mechanism%time%intervals + 1, run%columns)
     call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)

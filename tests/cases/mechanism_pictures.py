@@ -206,6 +206,13 @@ def film_of(html):
     return json.loads(re.sub(r',\s*([\]}])', r'\1', text))
 
 
+def picture_of(text):
+    """The picture in a page, or the picture that a file is."""
+    ending = '</svg>\n</figure>' if '<figure>' in text else '</svg>\n'
+    start = re.search(r'<svg [^>]*class="mech9"', text).start()
+    return ElementTree.fromstring(text[start:text.rindex(ending) + len('</svg>')])
+
+
 def turned(q, v):
     w, u = q[0], np.array(q[1:])
     t = 2 * np.cross(u, v)
@@ -234,12 +241,19 @@ def check_page(checks, programs, folder, program, name, points):
     with open(table, encoding='utf-8') as file:
         rows = read_table(file.read())
     checks.equal(set(re.findall(r'\w+://[^"\s]*', html)), {'http://www.w3.org/2000/svg'}, f'{name}: nothing from elsewhere')
-    checks.true(not re.search(r'\b(src|href|@import|url)\b', html), f'{name}: no other file')
-    svg = ElementTree.fromstring(re.search(r'<svg.*</svg>', html, re.S).group(0))
+    markup = re.sub(r'<script>.*</script>', '', html, flags=re.S)
+    checks.true(not re.search(r'\b(src|href|@import|url)\s*[=(]', markup), f'{name}: no other file')
+    checks.true("default-src 'none'" in markup, f'{name}: and the browser may load none')
+    svg = picture_of(html)
     film = film_of(html)
     checks.equal(len(film['times']), len(film['poses']), f'{name}: a pose for each time')
     checks.equal(len(film['poses']), len(rows['t']), f'{name}: a frame for each output')
     checks.near(film['times'], rows['t'], 1e-8, f'{name}: times to nine digits')
+    checks.equal(['t'] + film['names'], list(rows), f'{name}: the columns of the table')
+    checks.equal(len(film['units']), len(film['names']), f'{name}: with their units')
+    values, table_values = np.array(film['values']), np.column_stack([rows[column] for column in film['names']])
+    # six digits; the table has more
+    checks.true(np.all(np.abs(values - table_values) <= 5.1e-6 * np.abs(table_values)), f'{name}: the values of the table')
     elements = [int(group.get('data-i')) for group in svg.find(f"{SVG}g[@id='scene']")]
     checks.equal(sorted(elements), list(range(1, len(film['items']) + 1)), f'{name}: an element for each item')
     dots = {}
@@ -407,7 +421,7 @@ def check_hostile_title(checks, programs, folder):
         with open(path, encoding='utf-8') as file:
             text = file.read()
         checks.true('<script>alert' not in text, f'{ending}: no part of a title is a script')
-        svg = ElementTree.fromstring(re.search(r'<svg.*</svg>', text, re.S).group(0))
+        svg = picture_of(text)
         # in as many lines as it takes
         checks.true(title in ' '.join(texts_of(svg)), f'{ending}: the title stands as it is')
         checks.equal(svg.findtext(SVG + 'title'), title, f'{ending}: and whole as the name of the picture')

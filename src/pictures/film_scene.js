@@ -1,0 +1,159 @@
+"use strict";
+const svg = document.querySelector("svg.mech9"), scene = svg.querySelector("#scene");
+const frames = film.times.length, nodes = film.links.length, elements = [];
+const xy = new Float64Array(2*nodes), depth = new Float64Array(nodes);
+for (const g of scene.children) elements[g.dataset.i - 1] = g;
+
+// what is seen, and how: `zoom` and `aside` are those of the picture as drawn by `film.scale` around `film.middle`
+let view = film.view.slice(), zoom = 1, aside = [0, 0], letters = 1, shown = 0, order = "";
+
+// where the nodes of a frame stand: turned with their links by quaternions, then seen
+function place(frame) {
+  const poses = film.poses[frame], unit = film.unit*film.scale;
+  for (let i = 0; i < nodes; i++) {
+    let x = film.points[3*i], y = film.points[3*i + 1], z = film.points[3*i + 2];
+    const at = 7*(film.links[i] - 1);
+    if (at >= 0) {
+      const w = poses[at + 3]/1e5, a = poses[at + 4]/1e5, b = poses[at + 5]/1e5, c = poses[at + 6]/1e5;
+      const p = 2*(b*z - c*y), q = 2*(c*x - a*z), r = 2*(a*y - b*x);
+      x += w*p + b*r - c*q + poses[at];
+      y += w*q + c*p - a*r + poses[at + 1];
+      z += w*r + a*q - b*p + poses[at + 2];
+    }
+    xy[2*i] = film.middle[0] + unit*(view[0]*x + view[1]*y + view[2]*z);
+    xy[2*i + 1] = film.middle[1] - unit*(view[3]*x + view[4]*y + view[5]*z);
+    depth[i] = unit*(view[6]*x + view[7]*y + view[8]*z);
+  }
+}
+
+const at = (x, y) => x.toFixed(zoom > 3 ? 4 : 2) + " " + y.toFixed(zoom > 3 ? 4 : 2);
+
+function path(shape, n) {
+  let d = "", area = 0;
+  for (let i = 0; i < n.length; i++) {
+    const a = n[i], b = n[(i + 1) % n.length];
+    d += (i == 0 || (shape == 3 && i % 2 == 0) ? "M" : "L") + at(xy[2*a], xy[2*a + 1]);
+    area += xy[2*a]*xy[2*b + 1] - xy[2*a + 1]*xy[2*b];
+  }
+  if (shape == 2 && area > -2e-3) return "";
+  return shape == 1 || shape == 2 ? d + "Z" : d;
+}
+
+function windings(thread, [a, b]) {
+  const x = xy[2*a], y = xy[2*a + 1], dx = xy[2*b] - x, dy = xy[2*b + 1] - y;
+  const length = Math.hypot(dx, dy) || 1;
+  const turns = 2*(thread ? Math.max(3, Math.min(60, Math.round(length/(6*film.symbol)))) : 10);
+  const height = (thread ? 3.5 : 6)*film.symbol/length, lead = thread ? 0 : 0.2;
+  let d = "M" + at(x, y);
+  for (let i = 0; i <= turns; i++) {
+    const along = lead + (1 - 2*lead)*i/turns, side = i == 0 || i == turns ? 0 : height*(1 - 2*(i % 2));
+    d += "L" + at(x + along*dx - side*dy, y + along*dy + side*dx);
+  }
+  return d + "L" + at(x + dx, y + dy);
+}
+
+// bodies from the farthest to the nearest, but none before those that it lies upon
+function arrange() {
+  const [first, last] = film.sorted, keys = [];
+  for (let i = first; i <= last; i++) {
+    const item = film.items[i - 1];
+    keys[i] = Math.round(0.5*item.nodes.reduce((sum, n) => sum + depth[n], 0)/item.nodes.length);
+    for (const j of item.above) keys[i] = Math.max(keys[i], keys[j]);
+  }
+  const sorted = film.items.map((item, i) => i + 1).slice(first - 1, last);
+  sorted.sort((a, b) => keys[a] - keys[b] || a - b);
+  if (sorted.join() == order) return;
+  order = sorted.join();
+  const next = elements[last] || null;
+  for (const i of sorted) scene.insertBefore(elements[i - 1], next);
+}
+
+// labels keep their size when the picture is zoomed, and grow where the page is small; their places do not come nearer
+function drawItem(g, item) {
+  const n = item.nodes, x = xy[2*n[0]], y = xy[2*n[0] + 1];
+  if (item.shape == 6) {
+    const size = letters/zoom, far = Math.max(1, size);
+    g.setAttribute("transform",
+      "translate(" + at(x + far*item.shift[0], y + far*item.shift[1]) + ") scale(" + size + ")");
+  } else if (item.shape == 5) {
+    g.setAttribute("transform", "translate(" + at(x, y) + ") scale(" + film.symbol + ")");
+  } else {
+    const d = item.shape == 4 ? windings(item.thread, n) : path(item.shape, n);
+    for (const line of g.children) line.setAttribute("d", d);
+  }
+}
+
+// a frame; `all`: also what stands still, as the view is another one
+function drawScene(frame, all) {
+  shown = frame;
+  place(frame);
+  film.items.forEach((item, i) => { if (all || !item.still) drawItem(elements[i], item); });
+  arrange();
+}
+
+function drawAxes() {
+  const axes = svg.querySelector("#axes");
+  "xyz".split("").forEach((name, i) => {
+    const x = 26*view[i], y = -26*view[3 + i], line = axes.children[2*i], text = axes.children[2*i + 1];
+    line.setAttribute("d", "M0 0L" + at(x, y));
+    text.setAttribute("x", 1.36*x);
+    text.setAttribute("y", 1.36*y);
+    text.textContent = Math.hypot(x, y) < 2 ? "" : name;
+  });
+}
+
+// the largest of 1, 2, 5, 10 ... m whose bar is at most 90 px long
+function drawScale() {
+  const [line, text] = svg.querySelector("#scale").children, most = 90/(film.scale*zoom);
+  const power = 10**Math.floor(Math.log10(most) + 1e-9);
+  const bar = [5, 2, 1].find(part => part*power <= most*(1 + 1e-9))*power;
+  const length = bar*film.scale*zoom, box = svg.viewBox.baseVal;
+  line.setAttribute("d", "M" + at(box.width - 90 - length, box.height - 19) + "v5h" + length.toFixed(2) + "v-5");
+  text.textContent = Number(bar.toPrecision(3)) + " m";
+}
+
+// all of the present frame, after a change of the view
+function drawView() {
+  const box = svg.viewBox.baseVal;
+  scene.setAttribute("transform", "translate(" + aside.map(x => x.toFixed(2)).join(" ") + ") scale(" + zoom + ")");
+  letters = Math.max(1, Math.min(2, 0.85*box.width/(svg.clientWidth || box.width)));
+  svg.style.setProperty("--text", letters);
+  svg.style.setProperty("--zoom", zoom);
+  drawScene(shown, true);
+  drawAxes();
+  drawScale();
+}
+
+// turns the view about the picture's own axes
+function turn(sideways, upward) {
+  for (const [i, j, angle] of [[0, 6, sideways], [3, 6, upward]]) {
+    const c = Math.cos(angle), s = Math.sin(angle);
+    for (let k = 0; k < 3; k++) {
+      const a = view[i + k], b = view[j + k];
+      view[i + k] = c*a + s*b;
+      view[j + k] = c*b - s*a;
+    }
+  }
+  drawView();
+}
+
+// moves the picture, in px of the picture
+function move(x, y) {
+  aside = [aside[0] + x, aside[1] + y];
+  drawView();
+}
+
+// makes all larger around a place of the picture, which stays where it is
+function zoomAt(factor, x = film.middle[0], y = film.middle[1]) {
+  const next = Math.max(0.25, Math.min(20, zoom*factor)), by = next/zoom;
+  aside = [x - by*(x - aside[0]), y - by*(y - aside[1])];
+  zoom = next;
+  drawView();
+}
+
+function resetView() {
+  view = film.view.slice();
+  zoom = 1;
+  aside = [0, 0];
+  drawView();
+}
