@@ -1,22 +1,23 @@
 !> A film as an animated GIF, drawn by gnuplot. Uses kinds, error, text, film, film_clock, projection, scene, drawing,
-!> picture_style, svg_film, gnuplot, page, xml_text.
+!> picture_style, svg_film, gnuplot, title_lines, page, xml_text.
 !>
 !> gnuplot is given polygons only: lines are drawn forth and back, bands and plates as their outlines.
 module mech9_gif_film
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, raise, add_place, exit_file
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label, in_pin, in_cross, in_cam, &
                          as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
-                         as_input
+                         as_input, as_leader
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, colour_of, ink, edge
   use mech9_svg_film, only: duration_of
   use mech9_svg_picture, only: scale_length, axis_length, beyond_axis, shortest_axis
   use mech9_gnuplot, only: quoted, quoted_path, run_gnuplot, gnuplot_package
+  use mech9_title_lines, only: title_lines
   use mech9_page, only: page_type
   use mech9_xml_text, only: decimal
   implicit none
@@ -29,7 +30,7 @@ module mech9_gif_film
   real(wp), parameter :: zoom = 1.5_wp
   !> Any font without serifs that can be scaled [pt].
   character(len=*), parameter :: font = 'sans,12'
-  character(len=*), parameter :: grey = '#d0d0d0', white = '#ffffff', hatch = '#555555', none = ''
+  character(len=*), parameter :: grey = '#d0d0d0', white = '#ffffff', hatch = '#555555', thin = '#777777', none = ''
   !> Steps of a quarter of a circle.
   integer, parameter :: quarter = 4
 
@@ -97,7 +98,7 @@ contains
     order = drawing_order(scene, drawing)
     script%objects = 0
     call script%page%line('unset object; unset label')
-    call put_text(title, [14.0_wp, 20.0_wp], 'left', ink, script)
+    call put_title(title, projection%width, script)
     call put_text(clock_text(film%times(frame), decimals), [90.0_wp, projection%height - 16.0_wp], 'left', ink, script)
     call put_scale(projection, script)
     call put_axes(projection, script)
@@ -145,6 +146,21 @@ contains
       call put_text(names(i), foot + beyond_axis*tip, 'center', ink, script)
     end do
   end subroutine put_axes
+
+  !> The title, in two lines where one has no room for it: fonts of GIFs have one size.
+  subroutine put_title(title, width, script)
+    character(len=*), intent(in) :: title          !< any text
+    real(wp), intent(in) :: width                  !< of the picture [px]
+    type(script_type), intent(inout) :: script
+    real(wp), parameter :: letter = 7.0_wp, line = 16.0_wp
+    type(string_type), allocatable :: lines(:)
+    integer :: i
+
+    lines = title_lines(title, nint((width - 28.0_wp)/letter), 2)
+    do i = 1, size(lines)
+      call put_text(lines(i)%text, [14.0_wp, 4.0_wp + line*i], 'left', ink, script)
+    end do
+  end subroutine put_title
 
   !> A polygon; an empty colour fills nothing.
   subroutine polygon(self, corners, fill, line, width)
@@ -299,6 +315,8 @@ contains
     case (as_centre)
       call script%circle(at, 4.6_wp*s, white, ink, 1.5_wp)
       call script%circle(at, 1.5_wp*s, ink, ink, 1.0_wp)
+    case (as_leader)
+      call script%polyline(reshape([at, at + s*item%shift], [2, 2]), thin, 0.8_wp)
     case (as_free)
       call script%polygon(reshape([at(1), at(2) - 7*s, at(1) + 7*s, at(2), at(1), at(2) + 7*s, at(1) - 7*s, at(2)], [2, 4]), &
                           white, ink, 1.5_wp)
@@ -309,6 +327,8 @@ contains
     type(item_type), intent(in) :: item
     real(wp), intent(in) :: at(2)
     type(script_type), intent(inout) :: script
+    !> gnuplot puts the middle of a text at its place, other pictures its line.
+    real(wp), parameter :: to_middle(2) = [0.0_wp, -3.5_wp]
     character(len=7) :: colour
 
     colour = ink
@@ -316,11 +336,11 @@ contains
     if (item%style == as_input) colour = dark_colours(2)
     select case (item%style)
     case (as_name)
-      call put_text(item%text, at, 'left', colour, script)
+      call put_text(item%text, at + to_middle, 'left', colour, script)
     case (as_number)
       call put_text(item%text, at, 'center', colour, script)
     case default
-      call put_text(item%text, at, 'right', colour, script)
+      call put_text(item%text, at + to_middle, 'right', colour, script)
     end select
   end subroutine put_label
 

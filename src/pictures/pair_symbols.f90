@@ -16,7 +16,7 @@ module mech9_pair_symbols
                          in_block, in_pin, in_pin_end, in_cross, in_thread, as_stand, as_ring, as_ball, as_free
   implicit none
   private
-  public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, names_of
+  public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
 
   !> Nodes of pairs, and which pairs are one joint.
   type :: symbols_type

@@ -5,7 +5,7 @@
 module mech9_picture_style
   use mech9_kinds, only: wp
   use mech9_xml_text, only: decimal
-  use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free
+  use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader
   implicit none
   private
   public :: style_type, styles, dark_colours, light_colours, colour_of, ink, style_sheet, mark_svg
@@ -45,7 +45,8 @@ module mech9_picture_style
     style_type('cross', ink, 3.2_wp, .true.), &
     style_type('cam', '', 0.5_wp, .true.), &
     style_type('stand'), style_type('ring'), style_type('ball'), style_type('dot'), style_type('centre'), &
-    style_type('free'), style_type('name'), style_type('number'), style_type('coordinate'), style_type('input')]
+    style_type('free'), style_type('name'), style_type('number'), style_type('coordinate'), &
+    style_type('input'), style_type('leader')]
 
   !> Width of an edge [px].
   real(wp), parameter, public :: edge = 1.2_wp
@@ -83,7 +84,8 @@ contains
     end do
     css = css//'.mech9 .pin .i,.mech9 .cross .i{stroke:#d0d0d0}.mech9 .trace path{stroke-opacity:.85}'//nl// &
           '.mech9 .k{fill:'//ink//';stroke:none}.mech9 .w{fill:'//paper//';stroke:'//ink//';stroke-width:1.5}'//nl// &
-          '.mech9 .h{stroke:'//ground//';stroke-width:1}.mech9 .g{stroke:'//ink//';stroke-width:1.5;fill:#e8e8e8}'//nl
+          '.mech9 .h{stroke:'//ground//';stroke-width:1}.mech9 .g{stroke:'//ink//';stroke-width:1.5;fill:#e8e8e8}'//nl// &
+          '.mech9 .e{stroke:#777;stroke-width:.8}'//nl
   end function style_sheet
 
   !> The rule of a style: of a band the edge, which is drawn first, and the inside.
@@ -118,7 +120,7 @@ contains
   !> A mark as SVG around the place (0, 0).
   pure function mark_svg(style, direction) result(svg)
     integer, intent(in) :: style
-    real(wp), intent(in) :: direction(2)          !< of a stand: from the joint to the ground
+    real(wp), intent(in) :: direction(2)          !< of a stand: from the joint to the ground; of a leading line: its end
     character(len=:), allocatable :: svg
 
     select case (style)
@@ -137,6 +139,8 @@ contains
             '<path class="k" d="M0 0V-4.6A4.6 4.6 0 0 1 4.6 0ZM0 0V4.6A4.6 4.6 0 0 1 -4.6 0Z"/>'
     case (as_free)
       svg = '<path class="w" style="fill:'//paper//'" d="M0 -7L7 0L0 7L-7 0Z"/><circle class="k" r="2"/>'
+    case (as_leader)
+      svg = '<path class="e" d="M0 0L'//decimal(direction(1))//' '//decimal(direction(2))//'"/>'
     case default
       svg = ''
     end select

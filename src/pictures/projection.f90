@@ -26,7 +26,7 @@ module mech9_projection
   end type projection_type
 
   !> Room for the mechanism, and around it for symbols, title and scale [px].
-  real(wp), parameter :: widest = 600.0_wp, highest = 480.0_wp, margin = 44.0_wp, above = 34.0_wp, below = 30.0_wp
+  real(wp), parameter :: widest = 600.0_wp, highest = 480.0_wp, margin = 44.0_wp, above = 34.0_wp, below = 56.0_wp
   real(wp), parameter :: least_width = 400.0_wp, least_height = 150.0_wp
   !> Pairs of one link are that far apart where symbols have their full size [px].
   real(wp), parameter :: roomy = 55.0_wp

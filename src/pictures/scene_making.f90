@@ -1,30 +1,26 @@
 !> From a mechanism and its film to a scene: paths and guides, links, springs, pairs, points and labels.
-!> Uses kinds, text, mechanism, spring_load, film, pair_axes, skeleton, projection, scene, scene_paths, link_shapes,
-!> label_places, pair_symbols, coordinate_names.
+!> Uses kinds, mechanism, spring_load, film, pair_axes, skeleton, projection, scene, scene_paths, link_shapes,
+!> pair_symbols, scene_labels.
 module mech9_scene_making
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
   use mech9_spring_load, only: spring_load_type
   use mech9_film, only: film_type
   use mech9_pair_axes, only: free, turning
   use mech9_skeleton, only: skeleton_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, open_path, closed_path, segments, spring, mark, label, in_plate, &
-                         in_tube, in_spring, as_dot, as_centre, as_name, as_number
+  use mech9_scene, only: scene_type, open_path, closed_path, segments, spring, mark, in_plate, in_tube, &
+                         in_spring, in_cam, as_dot, as_centre
   use mech9_scene_paths, only: add_paths, add_curves
   use mech9_link_shapes, only: distinct_points, find_shape
-  use mech9_label_places, only: number_place
   use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
-  use mech9_coordinate_names, only: add_coordinate_names
+  use mech9_scene_labels, only: add_labels
   implicit none
   private
   public :: make_scene
 
   !> Points of a link nearer than this part of the mechanism's size are one for the eye.
   real(wp), parameter :: same = 0.004_wp
-  !> Links and coordinates are labelled where there are no more than these.
-  integer, parameter :: most_labelled = 24
 
   !> Points that give a link its shape, in the link's system, with the nodes that stand there.
   type :: outline_type
@@ -48,7 +44,7 @@ contains
     type(outline_type) :: outlines(skeleton%graph%n_links)
     integer :: shapes(skeleton%graph%n_links)   !< item of each link, 0: none
     logical :: cams(size(skeleton%places))
-    integer :: link
+    integer :: nodes(size(mechanism%points)), link
 
     call prepare_symbols(film, skeleton, projection, planar, scene, symbols)
     call add_paths(mechanism, film, 1.0_wp/projection%scale, scene)
@@ -69,8 +65,8 @@ contains
     call add_springs(mechanism, shapes, scene)
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
     scene%last_sorted = scene%n_items
-    call add_points(mechanism, with_masses, scene)
-    call add_names(mechanism, film, skeleton, projection, symbols, outlines, scene)
+    call add_points(mechanism, with_masses, nodes, scene)
+    call add_labels(mechanism, film, projection, symbols, nodes, shown_by(outlines, shapes, scene), scene)
   end subroutine make_scene
 
   !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
@@ -241,10 +237,11 @@ contains
     end do
   end subroutine add_springs
 
-  !> Points, with their names, and mass centres.
-  subroutine add_points(mechanism, with_masses, scene)
+  !> Points and mass centres.
+  subroutine add_points(mechanism, with_masses, nodes, scene)
     type(mechanism_type), intent(in) :: mechanism
     logical, intent(in) :: with_masses
+    integer, intent(out) :: nodes(:)              !< of the points
     type(scene_type), intent(inout) :: scene
     integer :: i, node
 
@@ -256,33 +253,28 @@ contains
       end do
     end if
     do i = 1, size(mechanism%points)
-      call scene%add_node(mechanism%points(i)%link, mechanism%points(i)%position, node)
-      call scene%add_item(mark, as_dot, [node], mechanism%points(i)%link)
-      call scene%add_item(label, as_name, [node], text=mechanism%points(i)%name, shift=[7.0_wp, -7.0_wp])
+      call scene%add_node(mechanism%points(i)%link, mechanism%points(i)%position, nodes(i))
+      call scene%add_item(mark, as_dot, nodes(i:i), mechanism%points(i)%link)
     end do
   end subroutine add_points
 
-  !> Numbers of the links, and names of the coordinates beside their pairs.
-  subroutine add_names(mechanism, film, skeleton, projection, symbols, outlines, scene)
-    type(mechanism_type), intent(in) :: mechanism
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    type(symbols_type), intent(in) :: symbols
+  !> The item that shows each link, and a node of it; a cam has an item of its own; 0: none.
+  pure function shown_by(outlines, shapes, scene) result(shown)
     type(outline_type), intent(in) :: outlines(:)
-    type(scene_type), intent(inout) :: scene
-    integer :: link, node
+    integer, intent(in) :: shapes(:)              !< item of each link, 0: none
+    type(scene_type), intent(in) :: scene
+    integer :: shown(2, size(shapes))
+    integer :: i
 
-    if (size(outlines) <= most_labelled) then
-      do link = 2, size(outlines)
-        associate (outline => outlines(link))
-          if (outline%count < 2) cycle
-          call scene%add_node(link, number_place(outline%points(:, :outline%count), same*skeleton%size), node)
-          call scene%add_item(label, as_number, [node], link, text=to_text(link))
-        end associate
-      end do
-    end if
-    if (size(skeleton%places) <= most_labelled) &
-      call add_coordinate_names(mechanism%structure%independent, film, projection, symbols, scene)
-  end subroutine add_names
+    shown = 0
+    shown(1, :) = shapes
+    do i = 1, scene%n_items
+      associate (item => scene%items(i))
+        if (item%style == in_cam .and. shown(1, item%link) == 0) shown(1, item%link) = i
+      end associate
+    end do
+    do i = 1, size(outlines)
+      if (outlines(i)%count > 0) shown(2, i) = outlines(i)%nodes(1)
+    end do
+  end function shown_by
 end module mech9_scene_making

@@ -24,7 +24,7 @@ module mech9_svg_picture
   real(wp), parameter, public :: shortest_axis = 2.0_wp
 
   !> Width of a letter of a title, and of small letters [px].
-  real(wp), parameter :: title_letter = 9.0_wp, small_letter = 6.8_wp
+  real(wp), parameter :: title_letter = 9.0_wp, small_letter = 6.6_wp
 
 contains
 

@@ -50,7 +50,7 @@ contains
     if (blank > 1) last = blank
   end function end_of_line
 
-  !> How many letters wide a text is.
+  !> How many letters wide a text is, letters of the usual width.
   pure integer function letters_of(text) result(letters)
     character(len=*), intent(in) :: text              !< in UTF-8
     integer :: i, halves
@@ -86,7 +86,9 @@ contains
     integer, intent(in) :: place                      !< of its first byte
 
     halves = 2
-    if (scan(text(place:place), 'ABCDEFGHKLMNOPQRSTUVWXYZmw@%&') > 0) halves = 3
+    if (index('fijlrtI''"|.,:;!()[]- ', text(place:place)) > 0) halves = 1
+    if (index('ABCDEFGHKLNOPQRSTUVXYZw&', text(place:place)) > 0) halves = 3
+    if (index('MWm%@', text(place:place)) > 0) halves = 4
     if (utf8_length(text, place) > 2) halves = 4
   end function halves_of
 end module mech9_title_lines

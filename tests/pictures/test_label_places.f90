@@ -1,115 +1,187 @@
-!> Places of labels: numbers of links on bars, and names of coordinates where no bar lies.
+!> Places of labels: beside bars, on the page, apart from each other, and with a leading line where all near is covered.
 program test_label_places
   use mech9_kinds, only: wp, pi
   use mech9_text, only: to_text
-  use mech9_random, only: random_type
-  use mech9_random_geometry, only: random_vector
-  use mech9_label_places, only: number_place, name_shift
+  use mech9_label_places, only: obstacles_type, label_type, spots_around, place_labels
   use mech9_testing, only: tester_type
   implicit none
-  real(wp), parameter :: tolerance = 1.0e-6_wp
-  !> A name of two letters, q1: wide, above and below its line [px].
-  integer, parameter :: letters = 2
-  real(wp), parameter :: wide = 12.0_wp, above = 8.0_wp, below = 2.0_wp
+  real(wp), parameter :: page(2) = [600.0_wp, 400.0_wp], at(2) = [300.0_wp, 200.0_wp]
+  !> A joint and its name [px].
+  real(wp), parameter :: ring = 6.0_wp, box(2) = [13.0_wp, 10.0_wp]
+  !> Half the width of a bar [px].
+  real(wp), parameter :: half = 4.7_wp
   type(tester_type) :: test
 
-  call numbers(test)
   call one_bar(test)
   call two_bars(test)
-  call on_the_frame(test)
+  call at_the_edge(test)
+  call several(test)
+  call surrounded(test)
+  call own_link(test)
   call test%finish()
 
 contains
 
-  !> On a bar between two points; on a straight link between the neighbours that are farthest apart, in whatever
-  !> order its points are given; in the middle of a plate.
-  subroutine numbers(test)
-    type(tester_type), intent(inout) :: test
-    type(random_type) :: random
-    real(wp), parameter :: places(5) = [0.0_wp, 1.0_wp, 4.0_wp, 5.5_wp, 6.0_wp]
-    integer, parameter :: orders(5, 3) = reshape([1, 2, 3, 4, 5, 5, 4, 3, 2, 1, 3, 1, 5, 2, 4], [5, 3])
-    real(wp) :: from(3), along(3), place(3), points(3, 5), s
-    integer :: i, k
-
-    from = random_vector(random)
-    along = random_vector(random)
-    do k = 1, 3
-      points = reshape([(from + places(orders(i, k))*along, i=1, 5)], [3, 5])
-      place = number_place(points, tolerance)
-      s = dot_product(place - from, along)/dot_product(along, along)
-      call test%near(norm2(place - from - s*along), 0.0_wp, 1.0e-13_wp, 'on the line; round-off of numbers of the size 10')
-      call test%is_true(s > 1.5_wp .and. s < 3.5_wp, 'in the widest gap, off its ends')
-    end do
-    points(:, 3) = from + [along(2), -along(1), 0.0_wp]
-    place = number_place(points(:, :3), tolerance)
-    call test%near(norm2(place - sum(points(:, :3), 2)/3), 0.0_wp, 1.0e-14_wp, 'in the middle of a plate')
-  end subroutine numbers
-
-  !> A bar from the joint in any direction: the name does not lie on it.
+  !> A bar from the joint in any direction: the name lies beside it, near its joint, without a leading line.
   subroutine one_bar(test)
     type(tester_type), intent(inout) :: test
-    real(wp), parameter :: at(2) = [100.0_wp, 70.0_wp]
-    real(wp) :: bars(2, 2, 1), shift(2)
+    type(obstacles_type) :: obstacles
+    type(label_type) :: labels(1)
     integer :: degrees
 
     do degrees = 0, 355, 5
-      bars(:, 1, 1) = at
-      bars(:, 2, 1) = at + 200.0_wp*[cos(degrees*pi/180), sin(degrees*pi/180)]
-      shift = name_shift(at, letters, .false., .false., bars)
-      call test%is_true(.not. lies_on(at + shift, bars(:, :, 1)), 'beside a bar at '//to_text(degrees)//' degrees')
-      call test%is_true(norm2(shift) < 30.0_wp, 'and near its joint')
+      obstacles%n_lines = 0
+      call add_bar(obstacles, degrees)
+      labels = [named(at)]
+      call place_labels(obstacles, page, labels)
+      call test%is_true(.not. any_covered(obstacles, labels(1)), 'beside a bar at '//to_text(degrees)//' degrees')
+      call test%is_true(distance(labels(1)) < 25.0_wp .and. .not. leads(labels(1)), 'and near its joint')
     end do
-    shift = name_shift(at, letters, .false., .false., bars(:, :, :0))
-    call test%is_true(all(shift < 0.0_wp), 'to the left and above where there is nothing')
+    obstacles%n_lines = 0
+    labels = [named(at)]
+    call place_labels(obstacles, page, labels)
+    call test%is_true(labels(1)%chosen == 1, 'where nothing is in the way, the spot that it likes best')
   end subroutine one_bar
 
-  !> Two bars in any directions: three places are enough to have one beside both.
+  !> Two bars in any directions.
   subroutine two_bars(test)
     type(tester_type), intent(inout) :: test
-    real(wp), parameter :: at(2) = [0.0_wp, 0.0_wp]
-    real(wp) :: bars(2, 2, 2), shift(2), angle
-    integer :: i, j, k
+    type(obstacles_type) :: obstacles
+    type(label_type) :: labels(1)
+    integer :: i, j
     logical :: free
 
     free = .true.
     do i = 0, 350, 10
       do j = 0, 350, 10
-        do k = 1, 2
-          angle = merge(i, j, k == 1)*pi/180
-          bars(:, 1, k) = at
-          bars(:, 2, k) = 150.0_wp*[cos(angle), sin(angle)]
-        end do
-        shift = name_shift(at, letters, .false., .false., bars)
-        free = free .and. .not. lies_on(at + shift, bars(:, :, 1)) .and. .not. lies_on(at + shift, bars(:, :, 2))
+        obstacles%n_lines = 0
+        call add_bar(obstacles, i)
+        call add_bar(obstacles, j)
+        labels = [named(at)]
+        call place_labels(obstacles, page, labels)
+        free = free .and. .not. any_covered(obstacles, labels(1)) .and. distance(labels(1)) < 25.0_wp
       end do
     end do
     call test%is_true(free, 'beside two bars')
   end subroutine two_bars
 
-  !> The stand is on one side, the name on the other, wherever bars are.
-  subroutine on_the_frame(test)
+  !> Near each corner of the page, the whole name is on it.
+  subroutine at_the_edge(test)
     type(tester_type), intent(inout) :: test
-    real(wp), parameter :: bars(2, 2, 1) = reshape([0.0_wp, 0.0_wp, -100.0_wp, -70.0_wp], [2, 2, 1])
-    real(wp) :: shift(2)
+    type(obstacles_type) :: obstacles
+    type(label_type) :: labels(1)
+    integer :: i
 
-    shift = name_shift(bars(:, 1, 1), letters, .true., .false., bars)
-    call test%is_true(shift(2) < 0.0_wp, 'above a stand')
-    shift = name_shift(bars(:, 1, 1), letters, .true., .true., bars)
-    call test%is_true(shift(2) > above, 'below one that hangs')
-  end subroutine on_the_frame
-
-  !> Whether the middle line of a bar goes through a name that ends here, by points of it every half px.
-  pure logical function lies_on(last, bar)
-    real(wp), intent(in) :: last(2)               !< of the name's line [px]
-    real(wp), intent(in) :: bar(2, 2)
-    real(wp) :: point(2)
-    integer :: i, n
-
-    n = nint(2*norm2(bar(:, 2) - bar(:, 1)))
-    lies_on = .false.
-    do i = 0, n
-      point = bar(:, 1) + i*(bar(:, 2) - bar(:, 1))/n - last
-      lies_on = lies_on .or. (point(1) > -wide .and. point(1) < 0.0_wp .and. point(2) > -above .and. point(2) < below)
+    do i = 0, 3
+      labels = [named([merge(8.0_wp, 592.0_wp, i < 2), merge(8.0_wp, 392.0_wp, mod(i, 2) == 0)])]
+      call place_labels(obstacles, page, labels)
+      associate (spot => labels(1)%spots(labels(1)%chosen))
+        call test%is_true(all(spot%low >= 0.0_wp) .and. all(spot%high <= page), 'on the page')
+      end associate
     end do
-  end function lies_on
+  end subroutine at_the_edge
+
+  !> Six names at one joint: no two of them overlap.
+  subroutine several(test)
+    type(tester_type), intent(inout) :: test
+    type(obstacles_type) :: obstacles
+    type(label_type) :: labels(6)
+    integer :: i, j
+
+    call add_bar(obstacles, 90)
+    do i = 1, size(labels)
+      labels(i) = named(at)
+    end do
+    call place_labels(obstacles, page, labels)
+    do i = 1, size(labels)
+      do j = 1, i - 1
+        associate (a => labels(i)%spots(labels(i)%chosen), b => labels(j)%spots(labels(j)%chosen))
+          call test%is_true(any(a%low >= b%high) .or. any(b%low >= a%high), 'two names at one joint are apart')
+        end associate
+      end do
+    end do
+  end subroutine several
+
+  !> A joint in a cage: its name stands outside, and a line leads there.
+  subroutine surrounded(test)
+    type(tester_type), intent(inout) :: test
+    type(obstacles_type) :: obstacles
+    type(label_type) :: labels(1)
+    real(wp) :: from(2), to(2)
+    integer :: i
+
+    do i = 1, 12
+      from = at + 15.0_wp*[cos(i*pi/6), sin(i*pi/6)]
+      to = at + 15.0_wp*[cos((i + 1)*pi/6), sin((i + 1)*pi/6)]
+      call obstacles%add(from, to, 8.0_wp, 1.0_wp)
+    end do
+    labels = [named(at)]
+    call place_labels(obstacles, page, labels)
+    call test%is_true(leads(labels(1)), 'a line leads out of the cage')
+    call test%is_true(.not. any_covered(obstacles, labels(1)), 'to a name that covers nothing')
+  end subroutine surrounded
+
+  !> The number of a link may stand on its own bar, that of another one not.
+  subroutine own_link(test)
+    type(tester_type), intent(inout) :: test
+    type(obstacles_type) :: obstacles
+    type(label_type) :: labels(1)
+    integer :: owner
+
+    call obstacles%add([0.0_wp, 190.0_wp], [600.0_wp, 190.0_wp], half, 1.0_wp, owner=3)
+    do owner = 2, 3
+      labels = [named(at)]
+      labels(1)%owner = owner
+      call place_labels(obstacles, page, labels)
+      call test%is_true(any_covered(obstacles, labels(1)) .eqv. owner == 3, 'on the own bar, beside that of another link')
+    end do
+  end subroutine own_link
+
+  !> A label with the spots of a name.
+  function named(place) result(label)
+    real(wp), intent(in) :: place(2)             !< the joint [px]
+    type(label_type) :: label
+
+    label%spots = spots_around(place, ring, box, to_left=.true.)
+  end function named
+
+  subroutine add_bar(obstacles, degrees)
+    type(obstacles_type), intent(inout) :: obstacles
+    integer, intent(in) :: degrees               !< its direction from the joint
+
+    call obstacles%add(at, at + 150.0_wp*[cos(degrees*pi/180), sin(degrees*pi/180)], half, 1.0_wp)
+  end subroutine add_bar
+
+  pure real(wp) function distance(label)
+    type(label_type), intent(in) :: label
+
+    distance = norm2(0.5_wp*(label%spots(label%chosen)%low + label%spots(label%chosen)%high) - at)
+  end function distance
+
+  pure logical function leads(label)
+    type(label_type), intent(in) :: label
+
+    leads = norm2(label%spots(label%chosen)%to - label%spots(label%chosen)%from) > 0.0_wp
+  end function leads
+
+  !> Whether the middle line of an obstacle goes through a label, by points of it every half px.
+  logical function any_covered(obstacles, label)
+    type(obstacles_type), intent(in) :: obstacles
+    type(label_type), intent(in) :: label
+    real(wp) :: point(2)
+    integer :: i, k, n
+
+    any_covered = .false.
+    associate (spot => label%spots(label%chosen))
+      do k = 1, obstacles%n_lines
+        associate (ends => obstacles%ends(:, :, k))
+          n = nint(2*norm2(ends(:, 2) - ends(:, 1)))
+          do i = 0, n
+            point = ends(:, 1) + i*(ends(:, 2) - ends(:, 1))/n
+            any_covered = any_covered .or. (all(point > spot%low) .and. all(point < spot%high))
+          end do
+        end associate
+      end do
+    end associate
+  end function any_covered
 end program test_label_places

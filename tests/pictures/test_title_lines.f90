@@ -30,10 +30,11 @@ contains
     type(string_type), allocatable :: lines(:)
     integer :: i
 
-    call expect(test, 'a crank and a rocker', 11, 2, ['a crank and', 'a rocker   '])
-    call expect(test, 'a crank and a rocker', 12, 2, ['a crank and', 'a rocker   '])
-    call expect(test, 'birdsinthetallgrass', 8, 3, ['birdsint', 'hetallgr', 'ass     '])
-    call expect(test, 'a crank and a rocker', 8, 2, [character(len=10) :: 'a crank', 'and a r'//more])
+    ! a blank is half as wide as a letter
+    call expect(test, 'aaaaa bbb ccc dddd', 9, 2, ['aaaaa bbb', 'ccc dddd '])
+    call expect(test, 'aaaaa bbb ccc dddd', 8, 3, ['aaaaa  ', 'bbb ccc', 'dddd   '])
+    call expect(test, repeat('nado', 5), 8, 3, ['nadonado', 'nadonado', 'nado    '])
+    call expect(test, 'aaaaa bbb ccc dddd', 6, 2, [character(len=8) :: 'aaaaa', 'bbb c'//more])
     lines = title_lines(repeat('x', 2000), 60, 3)
     call test%is_true(size(lines) == 3, 'two thousand letters in three lines')
     call test%is_true(all([(letters_of(lines(i)%text) <= 61, i=1, 3)]), 'none of them is longer than its room')
@@ -46,7 +47,7 @@ contains
     call expect(test, repeat(face, 4), 4, 2, [repeat(face, 2), repeat(face, 2)])
     call expect(test, repeat(face, 2), 2, 2, [face, face])
     call expect(test, char(255)//'a', 4, 1, ['?a'])
-    call expect(test, 'WWWW', 3, 2, ['WW', 'WW'])
+    call expect(test, 'WWWW', 4, 2, ['WW', 'WW'])
   end subroutine other_letters
 
   subroutine expect(test, title, room, most, expected)
