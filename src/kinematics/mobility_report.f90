@@ -196,7 +196,8 @@ contains
 
   !> The shortest runs in a series whose screws are dependent: they can move by themselves. Spherical
   !> pairs at both ends let a rod spin, axes in one line turn freely. A run that uses all dimensions of
-  !> its loop is idle only if it ends at links with other pairs: else it is how the loop moves.
+  !> its loop is idle only if it ends at links with other pairs: else it is how the loop moves. A run that comes back to
+  !> its first link is a whole loop, overconstrained and moving as it should.
   subroutine search_series(plan, state, series, links, dimension, idle)
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
@@ -212,7 +213,7 @@ contains
         first = first + 1
       end do
       rank = last - first
-      if (rank < dimension .or. (links(0) /= links(size(series)))) then
+      if ((rank < dimension .or. links(0) /= links(size(series))) .and. links(first - 1) /= links(last)) then
         run%coordinates = series(first:last)
         run%ends = [links(first - 1), links(last)]
         call append(idle, run)

@@ -56,7 +56,7 @@ contains
     end do
     call print_counts(unit, plan)
     write (unit, '(a)') 'mobility '//to_text(plan%n_coordinates - unknowns)//' = '// &
-      to_text(plan%n_coordinates)//' coordinates - rank '//to_text(unknowns)
+      counted(plan%n_coordinates, 'coordinate')//' - rank '//to_text(unknowns)
     if (equations > unknowns) write (unit, '(a)') 'redundant equations: '//to_text(equations - unknowns)
   end subroutine print_mobility
 
@@ -64,10 +64,19 @@ contains
     integer, intent(in) :: unit
     type(plan_type), intent(in) :: plan
 
-    write (unit, '(a)') to_text(plan%n_links)//' links, '//to_text(plan%n_coordinates)//' coordinates, '// &
-      trim(to_text(size(plan%closures))//' closed chain'//merge(' ', 's', size(plan%closures) == 1))
+    write (unit, '(a)') to_text(plan%n_links)//' links, '//counted(plan%n_coordinates, 'coordinate')//', '// &
+      counted(size(plan%closures), 'closed chain')
     write (unit, '(a)') 'independent: '//to_text(plan%independent)
   end subroutine print_counts
+
+  !> "1 coordinate", "2 coordinates".
+  pure function counted(number, noun) result(words)
+    integer, intent(in) :: number
+    character(len=*), intent(in) :: noun
+    character(len=:), allocatable :: words
+
+    words = trim(to_text(number)//' '//noun//merge(' ', 's', number == 1))
+  end function counted
 
   !> Counts, ranks, redundant equations, and what each coordinate can be.
   subroutine print_mobility_report(unit, plan, report)
@@ -77,11 +86,11 @@ contains
     integer :: i, c
 
     call print_counts(unit, plan)
-    write (unit, '(a)') 'mobility by the count: '//to_text(report%by_count)//' = '//to_text(plan%n_coordinates)// &
-      ' coordinates - '//to_text(plan%n_coordinates - report%by_count)//' dimensions of the chains'' motions'
-    write (unit, '(a)') 'mobility by the rank: '//to_text(report%by_rank)//' = '//to_text(plan%n_coordinates)// &
-      ' coordinates - rank '//to_text(plan%n_coordinates - report%by_rank)
-    if (.not. report%general) write (unit, '(a)') 'ranks are those of the start: no other position was found near it'
+    write (unit, '(a)') 'mobility by the count: '//to_text(report%by_count)//' = '//counted(plan%n_coordinates, 'coordinate')// &
+      ' - '//to_text(plan%n_coordinates - report%by_count)//' dimensions of the chains'' motions'
+    write (unit, '(a)') 'mobility by the rank: '//to_text(report%by_rank)//' = '// &
+      counted(plan%n_coordinates, 'coordinate')//' - rank '//to_text(plan%n_coordinates - report%by_rank)
+    if (.not. report%general) write (unit, '(a)') 'the ranks are those of the start: no other closed position was found near it'
     call print_ranks(unit, plan, report)
     do c = 1, size(plan%closures)
       if (report%redundant(c) > 0) write (unit, '(a)') 'closed chain '//to_text(plan%closures(c)%chain)//': '// &
@@ -90,7 +99,8 @@ contains
     do i = 1, size(plan%independent)
       if (i <= most_lines) call print_alternatives(unit, plan, report, i)
     end do
-    call print_marked(unit, .not. report%moves, 'cannot move, hence not be independent: ')
+    call print_marked(unit, .not. report%moves, 'cannot move, hence not be independent: ', &
+                      '; the links that these pairs join are as one')
     call print_marked(unit, report%dimensions == 0, 'on no closed chain: ')
     do i = 1, size(report%idle)
       write (unit, '(a)') 'idle: coordinates '//some_of(report%idle(i)%coordinates, longest_list)//' can move while links '// &
@@ -140,12 +150,16 @@ contains
   end subroutine print_alternatives
 
   !> Words and the numbers that are marked; nothing where none is.
-  subroutine print_marked(unit, mask, words)
+  subroutine print_marked(unit, mask, words, more)
     integer, intent(in) :: unit
     logical, intent(in) :: mask(:)
     character(len=*), intent(in) :: words
+    character(len=*), intent(in), optional :: more    !< words after the numbers
     integer :: k
 
-    if (any(mask)) write (unit, '(2a)') words, some_of(pack([(k, k=1, size(mask))], mask), longest_list)
+    if (.not. any(mask)) return
+    write (unit, '(2a)', advance='no') words, some_of(pack([(k, k=1, size(mask))], mask), longest_list)
+    if (present(more)) write (unit, '(a)', advance='no') more
+    write (unit, '(a)') ''
   end subroutine print_marked
 end module mech9_structure_text
