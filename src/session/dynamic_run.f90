@@ -23,6 +23,7 @@ module mech9_dynamic_run
   use mech9_columns, only: kinematic_columns
   use mech9_closure_guard, only: check_closure
   use mech9_recording, only: motion_source_type, stop_if_interrupted
+  use mech9_geometry_text, only: explain_geometry
   implicit none
   private
   public :: dynamic_run_type, event_type, start_dynamic_run, assemble_initial_state
@@ -98,6 +99,7 @@ contains
       return
     end do
     call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call explain_geometry(mechanism, err)
     if (allocated(err)) return
     state%t = mechanism%time%start
     state%dq(plan%independent) = mechanism%initial_velocity(plan%independent)

@@ -9,7 +9,7 @@ module mech9_dynamic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_task, only: task_type, answers_only, print_check, begin_run, end_run
+  use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
@@ -68,6 +68,7 @@ contains
     if (.not. allocated(err)) call assemble_initial_state(mechanism, plan, start, err)
     if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err, pictures%any_wanted())
     if (allocated(err)) then
+      if (options%has('check')) call print_given(mechanism, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
       call print_check(options, pictures, mechanism, plan, run%needs, start, diagnostics)

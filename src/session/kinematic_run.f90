@@ -12,6 +12,7 @@ module mech9_kinematic_run
   use mech9_columns, only: kinematic_columns
   use mech9_closure_guard, only: check_closure
   use mech9_recording, only: motion_source_type
+  use mech9_geometry_text, only: explain_geometry
   implicit none
   private
   public :: kinematic_run_type, new_kinematic_run, assemble_start
@@ -40,6 +41,7 @@ contains
     call set_inputs(mechanism, mechanism%time%start, q, dq, ddq, err)
     if (allocated(err)) return
     call make_plan(mechanism, q, plan, state, err)
+    call explain_geometry(mechanism, err)
     state%t = mechanism%time%start
   end subroutine assemble_start
 

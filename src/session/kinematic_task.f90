@@ -12,7 +12,7 @@ module mech9_kinematic_task
   use mech9_state, only: state_type
   use mech9_needs, only: needs_of_results
   use mech9_tracking, only: set_inputs
-  use mech9_task, only: task_type, answers_only, print_check, begin_run, end_run
+  use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
   use mech9_range_text, only: print_ranges
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
@@ -69,6 +69,7 @@ contains
     call read_picture_requests(options, mechanism, self%program_name, pictures, err)
     if (.not. allocated(err)) call assemble_start(mechanism, plan, start, err)
     if (allocated(err)) then
+      if (options%has('check')) call print_given(mechanism, .false.)
       call diagnostics%add_error(err)
       return
     end if

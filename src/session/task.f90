@@ -20,11 +20,13 @@ module mech9_task
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
   use mech9_structure_text, only: print_structure, print_mobility, print_mobility_report
+  use mech9_geometry_text, only: print_dimensions
+  use mech9_check_notes, only: print_notes
   use mech9_plan_text, only: print_plan
   use mech9_system, only: asked_to_end
   implicit none
   private
-  public :: task_type, answers_only, print_check, begin_run, end_run
+  public :: task_type, answers_only, print_check, print_given, begin_run, end_run
 
   type, abstract :: task_type
     character(len=6) :: program_name = ''
@@ -88,10 +90,22 @@ contains
     if (options%has('plan')) call print_plan(output_unit, mechanism, plan, needs)
     if (options%has('branches')) call print_assemblies(output_unit, mechanism, plan, start, options%number('starts', 100))
     if (options%has('graph')) call draw_graph(options, mechanism, plan, diagnostics)
-    if (options%has('check')) call print_start(mechanism, start)
+    if (options%has('check')) then
+      call print_given(mechanism, pictures%with_masses)
+      call print_start(mechanism, start)
+    end if
     if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine print_check
+
+  !> What a check can say of the data before the mechanism is put together, and where it cannot be.
+  subroutine print_given(mechanism, with_masses)
+    type(mechanism_type), intent(in) :: mechanism
+    logical, intent(in) :: with_masses         !< bodies count in this program
+
+    call print_dimensions(output_unit, mechanism)
+    call print_notes(output_unit, mechanism, with_masses)
+  end subroutine print_given
 
   !> The coordinates at the start.
   subroutine print_start(mechanism, start)

@@ -1,0 +1,228 @@
+"""What --check shows of beginners' mistakes: dimensions of links, odd axes and links with their places, notes.
+
+The dimensions are held against closed forms: the lengths of a four-bar that was laid out from them in any plane, and the
+lengths and twists of Denavit-Hartenberg parameters.
+
+usage: beginners.py MECH9K MECH9D
+"""
+import os
+import re
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import Checks, run
+
+DONE, STRUCTURE, ASSEMBLY = 0, 4, 5
+
+FOUR_BAR = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0.6,0,0 /
+&pair coordinate=4, links=1,4, kind='revolute', axis=0,0,1, point=0.9,0,0, moving_point=0,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 6.5 /
+"""
+
+SLIDER_CRANK = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, point=0,0.1,0, moving_point=0,0,0 /
+&initial coordinate=4, position=1.2 /
+&drive coordinate=1, kind='polynomial', coefficients=0.4, 10.0 /
+"""
+
+# all axes pass through the origin
+SPHERE = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0.3,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0.5,0.6,1, point=0.5,0.6,1 /
+&pair coordinate=4, links=1,4, kind='revolute', axis=0,0.7,1 /
+&drive coordinate=1, kind='polynomial', coefficients=0.4, 10.0 /
+"""
+
+# a rod with ball joints of three revolutes between two cranks
+ROD = """&structure cq=1, 4 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=1,0,0, point=0.2,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,1,0, point=0.2,0,0 /
+&pair coordinate=4, links=4,5, kind='revolute', axis=0,0,1, point=0.2,0,0 /
+&pair coordinate=5, links=5,6, kind='revolute', axis=1,0,0, point=0.3,0.5,0.5 /
+&pair coordinate=6, links=6,7, kind='revolute', axis=0,1,0, point=0.3,0.5,0.5 /
+&pair coordinate=7, links=7,8, kind='revolute', axis=0,0,1, point=0.3,0.5,0.5 /
+&pair coordinate=8, links=1,8, kind='revolute', axis=1,0,0, point=0.3,0.5,-0.1 /
+&initial coordinate=1, position=0, velocity={velocity} /
+&initial coordinate=4, position=0 /
+&body link={crank}, mass=1, centre=0.1,0,0, inertia=0,0,0.01,0,0,0 /
+&body link=8, mass=1, centre=0.3,0.5,0.2, inertia=0.01,0,0,0,0,0 /
+&body link=5, mass={rod}, centre=0.3,0.3,0.2, inertia={rod},{rod},{rod},0,0,0 /
+"""
+
+# text, exit code, the replacement that is the mistake, the line of the mistaken pair, words
+MISTAKES = [
+    (FOUR_BAR, ASSEMBLY, ('point=1,0,0', 'point=10,0,0'), 3,
+     'link 3 is 10 m long from pair 2 to pair 3, and the other links of the closed chain of pairs 1, 2, 3, 4 are 1.8 m long together'),
+    (FOUR_BAR, ASSEMBLY, ('point=0.9,0,0', 'point=900,0,0'), 5, 'link 1 is 900 m long from pair 4 to pair 1'),
+    (FOUR_BAR, ASSEMBLY, ('axis=0,0,1, point=1,0,0', 'axis=0,0.1,1, point=1,0,0'), 4,
+     'the axis of pair 3 is not parallel to the other axes of the closed chain of pairs 1, 2, 3, 4 (by 5.71 degrees)'),
+    (FOUR_BAR, ASSEMBLY, ('axis=0,0,1, point=0.9', 'axis=0,-1e-4,-1, point=0.9'), 5, 'the axis of pair 4 is not parallel'),
+    (FOUR_BAR, STRUCTURE, ('axis=0,0,1, point=0,0,0', 'axis=1,0,0, point=0,0,0'), 2,
+     'the axis of pair 1 is not parallel to the other axes of the closed chain of pairs 1, 2, 3, 4 (by 90 degrees)'),
+    (FOUR_BAR, ASSEMBLY, ('moving_point=0,0,0 /\n&pair coordinate=3', 'moving_point=0,0,0, moving_axis=0,1,0 /\n&pair coordinate=3'), 3,
+     'the axes of pairs 2, 3 are not parallel on link 3 (by 90 degrees)'),
+    (FOUR_BAR, ASSEMBLY, ('point=0.3,0,0,', 'point=0.3,0,0.1,'), 3,
+     'open by 0.1 m along its parallel axes, wherever it moves: see point and moving_point of pair 2;'),
+    (FOUR_BAR, ASSEMBLY, ("'revolute', axis=0,0,1, point=0.9", "'prismatic', axis=0,0,1, point=0.9"), 5,
+     'the slide of pair 4 is not at right angles to the other axes'),
+    (SLIDER_CRANK, ASSEMBLY, ('axis=1,0,0', 'axis=1,0,0.1'), 5, 'the slide of pair 4 is not at right angles to the other axes'),
+    (SLIDER_CRANK, STRUCTURE, ('axis=0,0,1, point=0.3', 'axis=0,1,0, point=0.3'), 3, 'the axis of pair 2 is not parallel'),
+    (SLIDER_CRANK, ASSEMBLY, ('point=0,0.1,0', 'point=0,0.1,0.05'), 5, 'open by 0.05 m along its parallel axes'),
+    (SPHERE, STRUCTURE, ('point=0.5,0.6,1', 'point=0.5,0.7,1'), 4,
+     'the axis of pair 3 misses the point in which the other axes of the closed chain of pairs 1, 2, 3, 4 meet by 0.0881 m'),
+]
+
+
+class Cases:
+    def __init__(self, mech9k, mech9d, folder):
+        self.mech9k, self.mech9d = os.path.abspath(mech9k), os.path.abspath(mech9d)
+        self.folder, self.checks = folder, Checks()
+
+    def check(self, program, text, code=DONE):
+        path = os.path.join(self.folder, 'case.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        done = run(program, path, '--check', folder=self.folder)
+        self.checks.true(done.returncode == code, f'exit code {code}', f'{done.returncode}\n{text}{done.stdout}{done.stderr}')
+        return done
+
+
+def table_of_links(printed):
+    """(link, pair, pair) -> axes, angle, points; None where there is a dash."""
+    found = re.findall(r'^ +(\d+)  (\d+) and (\d+) +(\S+) +(\S+) +(\S+)$', printed, re.M)
+    return {tuple(map(int, row[:3])): [None if word == '-' else float(word) for word in row[3:]] for row in found}
+
+
+def numbers(values):
+    return ','.join(repr(float(value)) for value in values)
+
+
+def lengths_of_links(s):
+    """A four-bar from its lengths, in any plane and place; an axis may point either way, a point lie anywhere on it."""
+    random = np.random.default_rng(12)
+    for unit, turn in (('rad', np.pi), ('deg', 180.0)):
+        n, e1 = np.linalg.qr(random.normal(size=(3, 2)))[0].T
+        origin, lengths = random.normal(size=3), random.uniform(1.0, 1.3, 4)
+        sides = iter((1, -1, 1, 1))
+
+        def end(length):
+            return origin + length * e1
+        text = f"&mechanism angle_unit='{unit}' /\n&structure cq=1 /\n"
+        for k, (links, at, moving) in enumerate((((1, 2), 0, 0), ((2, 3), lengths[1], 0), ((3, 4), lengths[2], lengths[3]),
+                                                 ((1, 4), lengths[0], 0)), 1):
+            text += (f"&pair coordinate={k}, links={links[0]},{links[1]}, kind='revolute', axis={numbers(next(sides) * 3 * n)}, "
+                     f'point={numbers(end(at))}, moving_point={numbers(end(moving))} /\n')
+        text += f"&drive coordinate=1, kind='polynomial', coefficients={turn / 3!r} /\n"
+        # pair 2 is reversed: its axes make half a turn with their neighbours
+        table = table_of_links(s.check(s.mech9k, text).stdout)
+        expected = {(1, 1, 4): (lengths[0], 0), (2, 1, 2): (lengths[1], turn), (3, 2, 3): (lengths[2], turn), (4, 3, 4): (lengths[3], 0)}
+        s.checks.equal(set(table), set(expected), 'the links and their pairs')
+        for key, (length, angle) in expected.items():
+            s.checks.near(table[key], [length, angle, length], 6e-6, f'{key}: six digits are printed')
+
+
+def twists(s):
+    """Denavit-Hartenberg parameters: a is the distance of skew axes, alpha their angle."""
+    parameters = [(0.7, 0.6, 0.2, 0.1), (0.4, 2.1, -0.3, 0.9), (0.0, np.pi / 2, 0.5, 0.0), (0.25, 0.0, 0.1, 0.3)]
+    text = '&structure cq=1,2,3,4,5 /\n'
+    for k in range(1, 6):
+        dh = parameters[k - 1] if k < 5 else (0.1, 0, 0, 0)
+        text += f"&pair coordinate={k}, links={k},{k + 1}, kind='revolute', dh={numbers(dh)} /\n"
+        text += f"&drive coordinate={k}, kind='polynomial', coefficients=0.2 /\n"
+    table = table_of_links(s.check(s.mech9k, text).stdout)
+    for k, (a, alpha, _, _) in enumerate(parameters, 1):
+        s.checks.near(table[k + 1, k, k + 1][:2], [a, alpha], 6e-6, f'the common normal and the twist of link {k + 1}')
+
+
+def other_links(s):
+    """Slides have no place; links with many pairs get the distances around; long lists are cut."""
+    table = table_of_links(s.check(s.mech9k, SLIDER_CRANK).stdout)
+    s.checks.near(table[1, 1, 4][:2], [0.1, np.pi / 2], 6e-6, 'the offset of the slide')
+    s.checks.true(table[1, 1, 4][2] is None and table[4, 3, 4][2] is None, 'the point of a slide may lie anywhere on it')
+    star = '&structure cq={} /\n'.format(','.join(str(k) for k in range(1, 61)))
+    for k in range(1, 61):
+        star += (f"&pair coordinate={k}, links=1,{k + 1}, kind='{'prismatic' if k < 3 else 'revolute'}', axis=0,0,1, point={k},0,0 /\n"
+                 f"&drive coordinate={k}, kind='polynomial', coefficients=0 /\n")
+    printed = s.check(s.mech9k, star).stdout
+    table = table_of_links(printed)
+    s.checks.equal(table[1, 1, 2], [None, 0.0, None], 'two slides have an angle and no distance')
+    s.checks.equal(table[1, 4, 5], [1.0, 0.0, 1.0], 'each pair of a star and the next one')
+    s.checks.true((1, 4, 6) not in table and table[1, 1, 60] == [59.0, 0.0, None], 'and the last one and the first')
+    s.checks.true(len(table) == 40 and 'and 20 lines more' in printed, 'forty lines at most', printed)
+
+
+def mistakes(s):
+    for text, code, (right, wrong), line, words in MISTAKES:
+        s.check(s.mech9k, text)
+        s.checks.equal(text.count(right), 1, f'{right} is there once')
+        done = s.check(s.mech9k, text.replace(right, wrong), code)
+        s.checks.true(words in done.stderr, f'says {words}', done.stderr)
+        s.checks.true(f'case.nml:{line}:1: ' in done.stderr, f'{words}: in line {line}', done.stderr)
+        s.checks.true('dimensions of the links' in done.stdout, 'the dimensions are shown where nothing can be assembled', done.stdout)
+    # dimensions that are known to few digits have axes that are nearly parallel
+    near = FOUR_BAR.replace('axis=0,0,1, point=1,0,0', 'axis=0,1e-7,1, point=1,0,0').replace('point=0.9,0,0', 'point=900,0,0')
+    done = s.check(s.mech9k, '&mechanism data_tolerance=1e-5 /\n' + near, ASSEMBLY)
+    s.checks.true('link 1 is 900 m long' in done.stderr and 'parallel' not in done.stderr, 'what is tolerated is not odd', done.stderr)
+
+
+def notes(s):
+    for coefficients, unit, words in (('0, 360', 'rad', 'the drive of coordinate 1 has the rate 360 rad/s, 57.3 turns a second'),
+                                      ('90, 1', 'rad', 'the drive of coordinate 1 has the angle 90 rad, more than a turn'),
+                                      ('0, 6.28', 'deg', 'the drive of coordinate 1 has the rate 6.28 degrees a second'),
+                                      ('0, -3.14159', 'deg', 'the rate -3.14159 degrees a second'),
+                                      ('0, 10', 'rad', None), ('1.2, 314.16', 'rad', None), ('0, 360', 'deg', None), ('0, 0', 'deg', None)):
+        text = f"&mechanism angle_unit='{unit}' /\n" + FOUR_BAR.replace('coefficients=0, 6.5', f'coefficients={coefficients}')
+        printed = s.check(s.mech9k, text).stdout
+        s.checks.equal('note:' in printed, words is not None, f'{coefficients} {unit}: a note where it is due')
+        s.checks.true(words is None or words in printed, f'says {words}', printed)
+    for values, words in ((dict(velocity=1, crank=2, rod=1), None),
+                          (dict(velocity=720, crank=2, rod=1), 'the start of coordinate 1 has the rate 720 rad/s'),
+                          (dict(velocity=1, crank=2, rod=0), 'note: link 5 has no mass, while others have')):
+        text = ROD.format(**values)
+        if values['rod'] == 0:
+            # a link of the ball joint has the mass instead, so that the spin has inertia
+            text += '&body link=6, mass=1, inertia=1,1,1,0,0,0 /\n'
+        done = s.check(s.mech9d, text)
+        s.checks.equal('note:' in done.stdout, words is not None, f'{values}: a note where it is due')
+        s.checks.true(words is None or words in done.stdout, f'says {words}', done.stdout)
+    printed = s.check(s.mech9d, ROD.format(velocity=1, crank=1, rod=1)).stdout
+    for words in ('note: link 1 is the frame, which does not move: its &body has no effect', 'note: link 2 has no mass'):
+        s.checks.true(words in printed, f'says {words}', printed)
+
+
+def overconstrained(s):
+    """A whole chain that moves although it is overconstrained is not idle: no two links at its ends stand still."""
+    for a, b in ((1.0, 1.5), (1.0, 1.2)):
+        twist = np.pi / 6
+        other = np.arcsin(b / a * np.sin(twist))
+        text = '&structure cq=1 /\n'
+        for k, (links, length, angle) in enumerate((((1, 2), a, twist), ((2, 3), b, other), ((3, 4), a, twist), ((4, 1), b, other)), 1):
+            text += f"&pair coordinate={k}, links={links[0]},{links[1]}, kind='revolute', dh={length!r},{float(angle)!r},0,0 /\n"
+        text += "&drive coordinate=1, kind='polynomial', coefficients=0.5 /\n&initial coordinate=2, position=3 /\n"
+        text += '&initial coordinate=3, position=-0.5 /\n&initial coordinate=4, position=-3 /\n'
+        printed = s.check(s.mech9k, text).stdout
+        s.checks.true('closed chain 1: 3 of its 6 equations redundant' in printed, 'Bennett', printed)
+        s.checks.true('idle' not in printed, 'the chain moves as a whole', printed)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        s = Cases(sys.argv[1], sys.argv[2], folder)
+        for case in (lengths_of_links, twists, other_links, mistakes, notes, overconstrained):
+            case(s)
+    s.checks.finish()
+
+
+if __name__ == '__main__':
+    main()
