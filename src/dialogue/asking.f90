@@ -51,6 +51,7 @@ contains
       call leave_out(conversation)
       return
     end select
+    if (question%kind /= ask_item .and. lower(line(:min(len(line), 8))) == 'default') line = ''
     if (question%is_new .and. any(lower(line(:min(len(line), 8))) == no_more)) line = ''
     if (question%kind == ask_item .and. line == '') then
       call take_default(conversation, default)
@@ -194,15 +195,15 @@ contains
     end if
   end subroutine take_item
 
-  !> Whether an answer makes more coordinates independent than the structure allows. What it hardly allows is refused
-  !> once: given again it is taken.
+  !> Whether an answer makes more or fewer coordinates independent than the structure allows. What it hardly allows is
+  !> refused once: given again it is taken.
   subroutine count_independent(conversation, text, problem)
     class(conversation_type), intent(inout) :: conversation
     character(len=*), intent(in) :: text                      !< the answer as a data file writes it
     character(len=:), allocatable, intent(inout) :: problem   !< empty where nothing speaks against it
     logical :: certain
 
-    call conversation%interview%excess(text, problem, certain)
+    call conversation%interview%miscount(text, problem, certain)
     if (problem == '' .or. certain) return
     if (text == conversation%doubted) problem = ''
     if (problem /= '') problem = problem//' If it is so here, give the same answer again.'

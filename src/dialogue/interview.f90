@@ -40,7 +40,7 @@ module mech9_interview
     procedure :: is_begun
     procedure :: leave_out
     procedure :: correct
-    procedure :: excess
+    procedure :: miscount
     procedure :: note
     procedure :: unnote
     procedure :: bookmark
@@ -223,10 +223,10 @@ contains
     if (self%return_to == '') self%return_to = here
   end subroutine correct
 
-  !> Why an answer to the question that is due makes too many coordinates independent; empty where it does not, or is about
-  !> something else. Each closed chain makes at least one coordinate dependent, and three unless its pairs are of a
+  !> Why an answer to the question that is due makes too many coordinates independent, or too few in open chains; empty where
+  !> it does not, or is about something else. Each closed chain makes at least one coordinate dependent, and three unless its pairs are of a
   !> special kind.
-  pure subroutine excess(self, answer, problem, certain)
+  pure subroutine miscount(self, answer, problem, certain)
     class(interview_type), intent(in) :: self
     character(len=*), intent(in) :: answer                     !< as a data file writes it
     character(len=:), allocatable, intent(out) :: problem
@@ -246,8 +246,10 @@ contains
       most = structure%n_coordinates - chains
       usual = max(1, structure%n_coordinates - 3*chains)
     end associate
-    certain = named > most
-    if (certain) then
+    certain = named > most .or. (chains == 0 .and. named < most)
+    if (chains == 0 .and. named < most) then
+      problem = 'Too few coordinates are independent: no chain is closed, and so all '//to_text(most)//' are.'
+    else if (certain) then
       problem = 'Too many coordinates are independent: '//to_text(named)//' are named, and '//to_text(most)//' can be at '// &
                 'most, since each closed chain makes at least one coordinate depend on the others.'
     else if (named > usual) then
@@ -255,7 +257,7 @@ contains
                 to_text(usual)//'. More can be only where a closed chain has slides alone, or turns and slides along one '// &
                 'line alone.'
     end if
-  end subroutine excess
+  end subroutine miscount
 
   !> Keep an answer to the question that is due, which then may have others after it.
   pure subroutine note(self, text)

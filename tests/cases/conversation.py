@@ -183,6 +183,12 @@ def structure_and_start(talks):
     with tempfile.TemporaryDirectory() as folder:
         done = talks.pipe(talks.mech9k, steps, 'too many independent coordinates', INTERRUPTED, folder=folder)
         talks.checks.true('dropped' not in done.stderr, 'drives of which nothing was entered go without a word', done.stderr)
+    # in open chains all coordinates are independent
+    arm = [('title', 'Arm'), ('links: ', '3'), ('coordinates: ', '2'), ('angle_unit', ''), ('[pairs]', 'default'),
+           ('links of pair 1', '1-2'), ('links of pair 2', '2-3'), ('cq: ', '1'), ('no chain is closed, and so all 2 are', '1 2'),
+           ('which of them', 'default'), ('Pair 1', 'quit')]
+    with tempfile.TemporaryDirectory() as folder:
+        talks.pipe(talks.mech9k, arm, 'too few independent coordinates', folder=folder)
     # what is seldom about the mechanism is not asked for, but can be given by its name wherever an answer can be changed
     steps = apart + [('link 6 is not connected', 'mechanism data_tolerance = 1e-6'), ('link 6 is not connected', 'list'),
                      ('data_tolerance 1e-6', 'quit')]
