@@ -4,7 +4,7 @@ module mech9_drawing
   use mech9_kinds, only: wp
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, facing_path, spring, in_thread
+  use mech9_scene, only: scene_type, item_type, facing_path, spring, in_thread, in_damper
   implicit none
   private
   public :: drawing_type, draw_frame, drawing_order, outline_of
@@ -99,7 +99,13 @@ contains
     real(wp), allocatable :: corners(:, :)        !< (2,n)
 
     if (item%shape == spring) then
-      corners = windings(drawing%xy(:, item%nodes(1)), drawing%xy(:, item%nodes(2)), item%style == in_thread, symbol)
+      associate (from => drawing%xy(:, item%nodes(1)), to => drawing%xy(:, item%nodes(2)), aside => symbol*item%shift(1))
+        if (item%style == in_damper) then
+          corners = damper(from, to, aside, symbol)
+        else
+          corners = windings(from, to, item%style == in_thread, aside, symbol)
+        end if
+      end associate
       return
     end if
     corners = drawing%xy(:, item%nodes)
@@ -138,11 +144,12 @@ contains
   end function coil_height
 
   !> A zigzag from one place to another: straight ends of a fifth of its length, of a thread none.
-  pure function windings(from, to, is_thread, symbol) result(corners)
-    real(wp), intent(in) :: from(2), to(2)
+  pure function windings(from, to, is_thread, aside, symbol) result(corners)
+    real(wp), intent(in) :: from(2), to(2)       !< its ends [px]
     logical, intent(in) :: is_thread
-    real(wp), intent(in) :: symbol
-    real(wp), allocatable :: corners(:, :)
+    real(wp), intent(in) :: aside                !< how far it lies to the side of the line between them [px]
+    real(wp), intent(in) :: symbol               !< size of symbols
+    real(wp), allocatable :: corners(:, :)       !< (2,n)
     real(wp) :: along(2), across(2), length, lead, at, side
     integer :: n, i
 
@@ -151,14 +158,39 @@ contains
     n = 2*coil_count(is_thread, length, symbol)
     allocate (corners(2, n + 3))
     across = 0.0_wp
-    if (length > 0.0_wp) across = [-along(2), along(1)]/length*coil_height(is_thread, symbol)
+    if (length > 0.0_wp) across = [-along(2), along(1)]/length
     lead = merge(0.0_wp, 0.2_wp, is_thread)
     corners(:, 1) = from
     corners(:, n + 3) = to
     do i = 0, n
       at = lead + (1.0_wp - 2.0_wp*lead)*i/n
       side = merge(0.0_wp, real(1 - 2*mod(i, 2), wp), i == 0 .or. i == n)
-      corners(:, i + 2) = from + at*along + side*across
+      corners(:, i + 2) = from + at*along + (aside + side*coil_height(is_thread, symbol))*across
     end do
   end function windings
+
+  !> A cup with a piston in it, each with its rod: lines by twos.
+  pure function damper(from, to, aside, symbol) result(corners)
+    real(wp), intent(in) :: from(2), to(2)       !< its ends [px]
+    real(wp), intent(in) :: aside                !< how far it lies to the side of the line between them [px]
+    real(wp), intent(in) :: symbol               !< size of symbols
+    real(wp) :: corners(2, 12)
+    !> Bottom and rim of the cup, and the piston, along the line.
+    real(wp), parameter :: bottom = 0.42_wp, rim = 0.66_wp, piston = 0.56_wp
+    real(wp), parameter :: places(12) = [0.0_wp, bottom, bottom, bottom, bottom, rim, bottom, rim, piston, piston, piston, 1.0_wp]
+    !> To which side, in halves of the cup's width.
+    real(wp), parameter :: sides(12) = [0.0_wp, 0.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -0.7_wp, 0.7_wp, &
+                                        0.0_wp, 0.0_wp]
+    real(wp), parameter :: half = 5.0_wp         !< of the cup's width [px]
+    real(wp) :: along(2), across(2)
+    integer :: i
+
+    along = to - from
+    across = 0.0_wp
+    if (norm2(along) > 0.0_wp) across = [-along(2), along(1)]/norm2(along)
+    do i = 1, size(places)
+      corners(:, i) = from + places(i)*along
+      if (i > 1 .and. i < size(places)) corners(:, i) = corners(:, i) + (aside + half*symbol*sides(i))*across
+    end do
+  end function damper
 end module mech9_drawing

@@ -39,17 +39,29 @@ function path(shape, n) {
   return shape == 1 || shape == 2 ? d + "Z" : d;
 }
 
-function windings(thread, [a, b]) {
+function windings(thread, [a, b], aside) {
   const x = xy[2*a], y = xy[2*a + 1], dx = xy[2*b] - x, dy = xy[2*b + 1] - y;
   const length = Math.hypot(dx, dy) || 1;
   const turns = 2*(thread ? Math.max(3, Math.min(60, Math.round(length/(6*film.symbol)))) : 10);
-  const height = (thread ? 3.5 : 6)*film.symbol/length, lead = thread ? 0 : 0.2;
+  const height = (thread ? 3.5 : 6)*film.symbol/length, lead = thread ? 0 : 0.2, shift = aside*film.symbol/length;
   let d = "M" + at(x, y);
   for (let i = 0; i <= turns; i++) {
-    const along = lead + (1 - 2*lead)*i/turns, side = i == 0 || i == turns ? 0 : height*(1 - 2*(i % 2));
+    const along = lead + (1 - 2*lead)*i/turns, side = shift + (i == 0 || i == turns ? 0 : height*(1 - 2*(i % 2)));
     d += "L" + at(x + along*dx - side*dy, y + along*dy + side*dx);
   }
   return d + "L" + at(x + dx, y + dy);
+}
+
+// a cup with a piston in it: places along the line by twos, each with its side
+const cup = [[0, 0], [0.42, 0], [0.42, -1], [0.42, 1], [0.42, -1], [0.66, -1], [0.42, 1], [0.66, 1], [0.56, -0.7], [0.56, 0.7],
+  [0.56, 0], [1, 0]];
+
+function damper([a, b], aside) {
+  const x = xy[2*a], y = xy[2*a + 1], dx = xy[2*b] - x, dy = xy[2*b + 1] - y, unit = film.symbol/(Math.hypot(dx, dy) || 1);
+  return cup.map(([along, side], i) => {
+    const s = along == 0 || along == 1 ? 0 : unit*(aside + 5*side);
+    return (i % 2 ? "L" : "M") + at(x + along*dx - s*dy, y + along*dy + s*dx);
+  }).join("");
 }
 
 // bodies from the farthest to the nearest, but none before those that it lies upon
@@ -78,7 +90,8 @@ function drawItem(g, item) {
   } else if (item.shape == 5) {
     g.setAttribute("transform", "translate(" + at(x, y) + ") scale(" + film.symbol + ")");
   } else {
-    const d = item.shape == 4 ? windings(item.thread, n) : path(item.shape, n);
+    const d = item.damper ? damper(n, item.shift[0])
+      : item.shape == 4 ? windings(item.thread, n, item.shift[0]) : path(item.shape, n);
     for (const line of g.children) line.setAttribute("d", d);
   }
 }

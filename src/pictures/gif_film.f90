@@ -9,11 +9,11 @@ module mech9_gif_film
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label, in_pin, in_cross, in_cam, &
+  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pin, in_cross, in_cam, &
                          as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
-                         as_input, as_leader
+                         as_input, as_leader, as_coil, as_cup, in_pairs
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
-  use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, colour_of, ink, edge
+  use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, colour_of, ink, edge, coil_corners, cup_corners
   use mech9_svg_film, only: duration_of
   use mech9_svg_picture, only: scale_length, axis_length, beyond_axis, shortest_axis
   use mech9_gnuplot, only: quoted, quoted_path, run_gnuplot, gnuplot_package
@@ -236,7 +236,7 @@ contains
         call script%polygon(corners, light, dark, edge)
       else if (item%shape == closed_path) then
         call script%polygon(band(corners, 0.5_wp*style%width*script%symbol), light, dark, edge)
-      else if (item%shape == segments .or. style%has_edge) then
+      else if (in_pairs(item) .or. style%has_edge) then
         do i = 1, size(corners, 2) - 1, 2
           call put_segment(style, corners(:, i:i + 1), light, dark, script)
         end do
@@ -317,6 +317,11 @@ contains
       call script%circle(at, 1.5_wp*s, ink, ink, 1.0_wp)
     case (as_leader)
       call script%polyline(reshape([at, at + s*item%shift], [2, 2]), thin, 0.8_wp)
+    case (as_coil)
+      call script%polyline(spread(at, 2, 41) + s*coil_corners(), ink, 1.4_wp)
+    case (as_cup)
+      call script%polyline(spread(at, 2, 15) + s*cup_corners(), ink, 1.4_wp)
+      call script%polyline(reshape([at, at - [0.0_wp, 14.0_wp*s]], [2, 2]), ink, 1.4_wp)
     case (as_free)
       call script%polygon(reshape([at(1), at(2) - 7*s, at(1) + 7*s, at(2), at(1), at(2) + 7*s, at(1) - 7*s, at(2)], [2, 4]), &
                           white, ink, 1.5_wp)

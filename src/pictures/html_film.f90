@@ -9,7 +9,7 @@ module mech9_html_film
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, label, in_thread
+  use mech9_scene, only: scene_type, label, spring, in_thread, in_damper
   use mech9_svg_picture, only: put_picture
   use mech9_film_page, only: put_page_style, put_picture_style, put_controls, put_script
   use mech9_page, only: page_type
@@ -149,7 +149,8 @@ contains
                       to_text(pack(item%above, item%above > 0), ',')//']')
         if (all(scene%node_link(item%nodes) == 1)) call page%put(', still: true')
         if (item%style == in_thread) call page%put(', thread: true')
-        if (item%shape == label) then
+        if (item%style == in_damper) call page%put(', damper: true')
+        if (item%shape == label .or. item%shape == spring) then
           call page%put(', shift: ['//decimal(item%shift(1))//', '//decimal(item%shift(2))//']')
         else
           call page%put(', shift: [0, 0]')

@@ -3,8 +3,9 @@
 module mech9_label_obstacles
   use mech9_kinds, only: wp
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, closed_path, segments, mark, in_trace, in_curve, in_guide, in_plate, &
-                         in_block, in_tube, in_pin, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free
+  use mech9_scene, only: scene_type, item_type, closed_path, segments, spring, mark, in_trace, in_curve, in_guide, in_plate, &
+                         in_block, in_tube, in_pin, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, &
+                         as_coil, as_cup
   use mech9_drawing, only: drawing_type
   use mech9_label_places, only: obstacles_type
   implicit none
@@ -14,9 +15,11 @@ module mech9_label_obstacles
   !> How far lines and marks reach to each side, at full size of symbols [px], and how bad it is to cover them, by the
   !> numbers of mech9_scene; zero: what is no obstacle.
   real(wp), parameter :: reach(*) = [1.0_wp, 1.0_wp, 1.0_wp, 5.0_wp, 0.0_wp, 4.7_wp, 8.7_wp, 7.2_wp, 6.2_wp, 0.0_wp, 6.5_wp, &
-                                     4.0_wp, 2.8_wp, 1.0_wp, 7.0_wp, 6.0_wp, 8.5_wp, 4.0_wp, 5.5_wp, 7.5_wp]
+                                     4.0_wp, 2.8_wp, 1.0_wp, 7.0_wp, 6.0_wp, 8.5_wp, 4.0_wp, 5.5_wp, 7.5_wp, &
+                                     0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 6.0_wp, 13.0_wp, 17.0_wp]
   real(wp), parameter :: weights(*) = [0.9_wp, 0.7_wp, 0.5_wp, 1.2_wp, 0.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.2_wp, 0.0_wp, 0.8_wp, &
-                                       0.8_wp, 1.2_wp, 0.7_wp, 0.8_wp, 1.5_wp, 1.5_wp, 1.5_wp, 1.5_wp, 1.5_wp]
+                                       0.8_wp, 1.2_wp, 0.7_wp, 0.8_wp, 1.5_wp, 1.5_wp, 1.5_wp, 1.5_wp, 1.5_wp, &
+                                       0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.8_wp, 0.7_wp, 0.7_wp]
   !> Lines of a page that are always there: title and foot.
   real(wp), parameter :: furniture = 2.0_wp
 
@@ -49,7 +52,7 @@ contains
     type(drawing_type), intent(in) :: drawing
     real(wp), intent(in) :: symbol                     !< size of symbols
     type(obstacles_type), intent(inout) :: obstacles
-    real(wp) :: half
+    real(wp) :: half, across(2)
     integer :: i, next
 
     if (item%style > size(reach)) return
@@ -65,10 +68,22 @@ contains
         if (item%shape == segments .and. mod(i, 2) == 0) cycle
         if (item%shape /= closed_path .and. i == size(item%nodes)) cycle
         next = 1 + mod(i, size(item%nodes))
-        call add_line(item, drawing%xy(:, item%nodes(i)), drawing%xy(:, item%nodes(next)), half, obstacles)
+        across = 0.0_wp
+        if (item%shape == spring) across = symbol*item%shift(1)*across_of(drawing%xy(:, item%nodes(i)), &
+                                                                          drawing%xy(:, item%nodes(next)))
+        call add_line(item, drawing%xy(:, item%nodes(i)) + across, drawing%xy(:, item%nodes(next)) + across, half, obstacles)
       end do
     end if
   end subroutine add_item
+
+  !> The direction across a line, of unit length; zero where it has no length.
+  pure function across_of(from, to) result(across)
+    real(wp), intent(in) :: from(2), to(2)             !< its ends [px]
+    real(wp) :: across(2)
+
+    across = [from(2) - to(2), to(1) - from(1)]
+    if (norm2(across) > 0.0_wp) across = across/norm2(across)
+  end function across_of
 
   !> A line of an item. The number of a link may stand on what it is made of.
   pure subroutine add_line(item, from, to, half, obstacles)
@@ -103,8 +118,9 @@ contains
     type(drawing_type), intent(in) :: drawing          !< of the first frame
     real(wp), intent(in) :: symbol                     !< size of symbols
     real(wp), intent(in) :: at(2)                      !< the place [px]
-    integer, parameter :: solid(*) = [in_block, in_pin, in_cross, as_ring, as_ball, as_dot, as_centre, as_free]
-    real(wp), parameter :: radii(*) = [12.0_wp, 11.0_wp, 8.0_wp, 6.0_wp, 8.5_wp, 4.0_wp, 5.5_wp, 7.5_wp]
+    integer, parameter :: solid(*) = [in_block, in_pin, in_cross, as_ring, as_ball, as_dot, as_centre, as_free, &
+                                   as_coil, as_cup]
+    real(wp), parameter :: radii(*) = [12.0_wp, 11.0_wp, 8.0_wp, 6.0_wp, 8.5_wp, 4.0_wp, 5.5_wp, 7.5_wp, 13.0_wp, 17.0_wp]
     real(wp), parameter :: near = 4.0_wp
     real(wp) :: middle(2)
     integer :: i, n

@@ -16,7 +16,7 @@ module mech9_pair_symbols
                          in_block, in_pin, in_pin_end, in_cross, in_thread, as_stand, as_ring, as_ball, as_free
   implicit none
   private
-  public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
+  public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_ground
 
   !> Nodes of pairs, and which pairs are one joint.
   type :: symbols_type
@@ -132,24 +132,27 @@ contains
         if (norm2(down) < 0.1_wp) cycle
         down = unit(down)
         if (dot_product(down, projection%view%up) > 1.0e-6_wp) down = -down
-        call add_ground(projection, ends, axis, down, scene)
+        call add_ground(projection, ends, axis, down, block_side, scene)
       end associate
     end do
   end subroutine add_guides
 
-  !> A hatched line beside a guide.
-  subroutine add_ground(projection, ends, axis, down, scene)
+  !> A hatched line of the frame, beside a guide or where a spring ends.
+  subroutine add_ground(projection, ends, axis, down, aside, scene)
     type(projection_type), intent(in) :: projection
-    real(wp), intent(in) :: ends(3, 2), axis(3), down(3)
+    real(wp), intent(in) :: ends(3, 2)              !< of the guide, in the system of link 1 [m]
+    real(wp), intent(in) :: axis(3)                 !< from the first to the second one, of unit length
+    real(wp), intent(in) :: down(3)                 !< across it, where the ground is, of unit length
+    real(wp), intent(in) :: aside                   !< distance of the line from the guide [px]
     type(scene_type), intent(inout) :: scene
     integer, parameter :: most_hatches = 200
     integer :: from, to, n, i
     integer, allocatable :: hatches(:)
     real(wp) :: step, start(3)
 
-    start = ends(:, 1) + projection%metres(block_side)*down
+    start = ends(:, 1) + projection%metres(aside)*down
     call scene%add_node(1, start, from)
-    call scene%add_node(1, ends(:, 2) + projection%metres(block_side)*down, to)
+    call scene%add_node(1, ends(:, 2) + projection%metres(aside)*down, to)
     call scene%add_item(open_path, in_ground, [from, to])
     n = max(1, min(most_hatches, nint(norm2(ends(:, 2) - ends(:, 1))/projection%metres(hatch_step))))
     step = norm2(ends(:, 2) - ends(:, 1))/n

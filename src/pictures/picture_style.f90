@@ -3,12 +3,12 @@
 !> The colours are those of Okabe and Ito, which people who see colours differently tell apart, each with a
 !> light tint; outlines are dark, so that pictures can be read in grey.
 module mech9_picture_style
-  use mech9_kinds, only: wp
+  use mech9_kinds, only: wp, pi
   use mech9_xml_text, only: decimal
-  use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader
+  use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader, in_damper, as_coil, as_cup
   implicit none
   private
-  public :: style_type, styles, dark_colours, light_colours, colour_of, ink, style_sheet, mark_svg
+  public :: style_type, styles, dark_colours, light_colours, colour_of, ink, style_sheet, mark_svg, coil_corners, cup_corners
 
   character(len=7), parameter :: ink = '#222222', ground = '#555555', paper = '#ffffff'
   !> Of links, by turns.
@@ -46,7 +46,7 @@ module mech9_picture_style
     style_type('cam', '', 0.5_wp, .true.), &
     style_type('stand'), style_type('ring'), style_type('ball'), style_type('dot'), style_type('centre'), &
     style_type('free'), style_type('name'), style_type('number'), style_type('coordinate'), &
-    style_type('input'), style_type('leader')]
+    style_type('input'), style_type('leader'), style_type('damper', ink, 1.4_wp), style_type('coil'), style_type('cup')]
 
   !> Width of an edge [px].
   real(wp), parameter, public :: edge = 1.2_wp
@@ -78,6 +78,7 @@ contains
     do i = 1, in_cam
       css = css//rule_of(styles(i), symbol)//nl
     end do
+    css = css//rule_of(styles(in_damper), symbol)//nl
     css = css//'.mech9 .plate.sheet path{fill-opacity:.85}.mech9 .end path{fill:#f2f2f2}'//nl
     do i = 1, size(dark_colours)
       css = css//colour_rules('.l'//achar(48 + i), dark_colours(i), light_colours(i))//nl
@@ -85,7 +86,7 @@ contains
     css = css//'.mech9 .pin .i,.mech9 .cross .i{stroke:#d0d0d0}.mech9 .trace path{stroke-opacity:.85}'//nl// &
           '.mech9 .k{fill:'//ink//';stroke:none}.mech9 .w{fill:'//paper//';stroke:'//ink//';stroke-width:1.5}'//nl// &
           '.mech9 .h{stroke:'//ground//';stroke-width:1}.mech9 .g{stroke:'//ink//';stroke-width:1.5;fill:#e8e8e8}'//nl// &
-          '.mech9 .e{stroke:#777;stroke-width:.8}'//nl
+          '.mech9 .e{stroke:#777;stroke-width:.8}.mech9 .s{stroke:'//ink//';stroke-width:1.4}'//nl
   end function style_sheet
 
   !> The rule of a style: of a band the edge, which is drawn first, and the inside.
@@ -141,8 +142,53 @@ contains
       svg = '<path class="w" style="fill:'//paper//'" d="M0 -7L7 0L0 7L-7 0Z"/><circle class="k" r="2"/>'
     case (as_leader)
       svg = '<path class="e" d="M0 0L'//decimal(direction(1))//' '//decimal(direction(2))//'"/>'
+    case (as_coil)
+      svg = '<path class="s" d="'//line_through(coil_corners())//'"/>'
+    case (as_cup)
+      svg = '<path class="s" d="M0 0V-14'//line_through(cup_corners())//'"/>'
     case default
       svg = ''
     end select
   end function mark_svg
+
+  !> A spiral spring around a joint [px].
+  pure function coil_corners() result(corners)
+    real(wp) :: corners(2, 41)
+    real(wp), parameter :: inner = 7.0_wp, outer = 13.0_wp, turns = 2.25_wp
+    real(wp) :: part, angle
+    integer :: i
+
+    do i = 1, size(corners, 2)
+      part = (i - 1.0_wp)/(size(corners, 2) - 1)
+      angle = 2.0_wp*pi*turns*part
+      corners(:, i) = (inner + part*(outer - inner))*[cos(angle), -sin(angle)]
+    end do
+  end function coil_corners
+
+  !> The cup of a damper that turns about a joint: a bow above it, closed on both sides [px].
+  pure function cup_corners() result(corners)
+    real(wp) :: corners(2, 15)
+    real(wp), parameter :: inner = 10.0_wp, outer = 17.0_wp, half = 0.35_wp*pi
+    real(wp) :: angle
+    integer :: i
+
+    do i = 1, size(corners, 2)
+      angle = 0.5_wp*pi + half*(1.0_wp - 2.0_wp*max(0.0_wp, min(12.0_wp, i - 2.0_wp))/12.0_wp)
+      corners(:, i) = outer*[cos(angle), -sin(angle)]
+    end do
+    corners(:, 1) = inner/outer*corners(:, 2)
+    corners(:, size(corners, 2)) = inner/outer*corners(:, size(corners, 2) - 1)
+  end function cup_corners
+
+  !> The data of a path through corners.
+  pure function line_through(corners) result(path)
+    real(wp), intent(in) :: corners(:, :)         !< (2,n) [px]
+    character(len=:), allocatable :: path
+    integer :: i
+
+    path = ''
+    do i = 1, size(corners, 2)
+      path = path//merge('M', 'L', i == 1)//decimal(corners(1, i))//' '//decimal(corners(2, i))
+    end do
+  end function line_through
 end module mech9_picture_style

@@ -9,7 +9,7 @@ module mech9_scene
   public :: open_path, closed_path, facing_path, segments, spring, mark, label
   public :: in_trace, in_curve, in_guide, in_ground, in_hatch, in_plate, in_block, in_tube, in_pin, in_pin_end, in_spring, &
             in_thread, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
-            as_coordinate, as_input, as_leader
+            as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_pairs
 
   !> What an item is made of. A facing path is a flat outline that is drawn only where its front, round which
   !> it runs counterclockwise, is turned to the viewer. Segments join each odd node to the next one.
@@ -19,7 +19,8 @@ module mech9_scene
   integer, parameter :: in_trace = 1, in_curve = 2, in_guide = 3, in_ground = 4, in_hatch = 5, in_plate = 6, in_block = 7, &
                         in_tube = 8, in_pin = 9, in_pin_end = 10, in_spring = 11, in_thread = 12, in_cross = 13, in_cam = 14, &
                         as_stand = 15, as_ring = 16, as_ball = 17, as_dot = 18, as_centre = 19, as_free = 20, &
-                        as_name = 21, as_number = 22, as_coordinate = 23, as_input = 24, as_leader = 25
+                        as_name = 21, as_number = 22, as_coordinate = 23, as_input = 24, as_leader = 25, &
+                        in_damper = 26, as_coil = 27, as_cup = 28
 
   !> One thing to draw.
   type :: item_type
@@ -30,7 +31,7 @@ module mech9_scene
     integer :: above(4) = 0                   !< items that it lies upon, whatever their depth
     character(len=:), allocatable :: text     !< of a label; of a joint the names of its coordinates
     !> Of a label: where it stands from its node, to the right and down [px]; of a stand its direction, of a leading line
-    !> its end, likewise.
+    !> its end, also to the right and down. Of a spring or damper first: how far it lies aside of the line between its nodes.
     real(wp) :: shift(2) = 0.0_wp
   end type item_type
 
@@ -49,6 +50,13 @@ module mech9_scene
   end type scene_type
 
 contains
+
+  !> Whether the corners of an item belong together by twos, each pair a line of its own.
+  pure logical function in_pairs(item)
+    type(item_type), intent(in) :: item
+
+    in_pairs = item%shape == segments .or. item%style == in_damper
+  end function in_pairs
 
   !> One more point of a link.
   pure subroutine add_node(self, link, at, node)

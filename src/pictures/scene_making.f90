@@ -1,6 +1,6 @@
 !> From a mechanism and its film to a scene: paths and guides, links, springs, pairs, points and labels.
 !> Uses kinds, mechanism, spring_load, film, pair_axes, skeleton, projection, scene, scene_paths, link_shapes,
-!> pair_symbols, scene_labels.
+!> pair_symbols, spring_symbols, scene_labels.
 module mech9_scene_making
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
@@ -9,11 +9,12 @@ module mech9_scene_making
   use mech9_pair_axes, only: free, turning
   use mech9_skeleton, only: skeleton_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, open_path, closed_path, segments, spring, mark, in_plate, in_tube, &
-                         in_spring, in_cam, as_dot, as_centre
+  use mech9_scene, only: scene_type, open_path, closed_path, segments, mark, in_plate, in_tube, &
+                         in_cam, as_dot, as_centre
   use mech9_scene_paths, only: add_paths, add_curves
   use mech9_link_shapes, only: distinct_points, find_shape
   use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
+  use mech9_spring_symbols, only: add_springs
   use mech9_scene_labels, only: add_labels
   implicit none
   private
@@ -62,7 +63,7 @@ contains
       if (shapes(link) == 0) call add_shape(skeleton, symbols, link, .false., scene, outlines(link), shapes(link))
       call add_reach(skeleton, symbols, cams, link, scene, outlines(link), shapes(link))
     end do
-    call add_springs(mechanism, shapes, scene)
+    call add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
     scene%last_sorted = scene%n_items
     call add_points(mechanism, with_masses, nodes, scene)
@@ -220,22 +221,6 @@ contains
       end do
     end associate
   end subroutine add_reach
-
-  subroutine add_springs(mechanism, shapes, scene)
-    type(mechanism_type), intent(in) :: mechanism
-    integer, intent(in) :: shapes(:)
-    type(scene_type), intent(inout) :: scene
-    integer :: i, from, to
-
-    do i = 1, size(mechanism%loads)
-      select type (load => mechanism%loads(i)%load)
-      type is (spring_load_type)
-        call scene%add_node(load%links(1), load%positions(:, 1), from)
-        call scene%add_node(load%links(2), load%positions(:, 2), to)
-        call scene%add_item(spring, in_spring, [from, to], above=shapes(load%links))
-      end select
-    end do
-  end subroutine add_springs
 
   !> Points and mass centres.
   subroutine add_points(mechanism, with_masses, nodes, scene)

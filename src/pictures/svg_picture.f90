@@ -7,7 +7,7 @@ module mech9_svg_picture
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, segments, mark, label
+  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pairs
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, colour_of, style_sheet, mark_svg
   use mech9_page, only: page_type
@@ -166,7 +166,7 @@ contains
     allocate (character(len=24*size(corners, 2) + 1) :: path)
     used = 0
     do i = 1, size(corners, 2)
-      starts = i == 1 .or. (item%shape == segments .and. mod(i, 2) == 1)
+      starts = i == 1 .or. (in_pairs(item) .and. mod(i, 2) == 1)
       corner = merge('M', 'L', starts)//decimal(corners(1, i))//' '//decimal(corners(2, i))
       length = len_trim(corner)
       path(used + 1:used + length) = corner(:length)

@@ -126,11 +126,53 @@ SCREW = """&mechanism title='screw jack', links=4, coordinates=4 /
 """
 
 
+# a load of every kind that is drawn: on three coordinates, and between points of which three are fixed
+LOADS = """&mechanism title='springs and dampers', links=5, coordinates=5 /
+&structure cq=1,5 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=1,0.2,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=2,0.8,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, point=2,0.8,0 /
+&pair coordinate=5, links=1,5, kind='revolute', axis=0,0,1, point=2.5,-0.8,0 /
+&body link=2, mass=1, centre=0.5,0.1,0, inertia=1,1,1,0,0,0 /
+&body link=3, mass=1, centre=1.5,0.5,0, inertia=1,1,1,0,0,0 /
+&body link=4, mass=1, centre=2,0.8,0, inertia=1,1,1,0,0,0 /
+&body link=5, mass=1, centre=2.5,-1.2,0, inertia=1,1,1,0,0,0 /
+&load kind='spring', links=1,2, position=0.2,1.3,0, second_position=0.6,0.12,0, stiffness=50, free_length=1 /
+&load kind='spring', links=1,3, position=1.1,1.4,0, second_position=1.3,0.38,0, damping=5 /
+&load kind='spring', links=1,5, position=1.5,-1.3,0, second_position=2.5,-1.2,0, stiffness=40, free_length=0.9, damping=5 /
+&load kind='coordinate', coordinate=1, stiffness=3 /
+&load kind='coordinate', coordinate=5, damping=3 /
+&load kind='coordinate', coordinate=3, force=3 /
+&load kind='coordinate', coordinate=4, stiffness=30, damping=3 /
+&initial coordinate=1, position=0 /
+&initial coordinate=5, position=0 /
+&time end=0.5, intervals=10 /
+"""
+
+
+def check_fixed_end(checks, programs, folder):
+    """The hatched line at the fixed end of a spring goes through that end, and across the spring."""
+    nml, path = os.path.join(folder, 'loads.nml'), os.path.join(folder, 'loads.svg')
+    done = run(f'{programs}/mech9d', nml, '--no-write', '--quiet', '--sketch', path)
+    checks.equal(done.returncode, 0, 'springs and dampers are drawn')
+    svg = ElementTree.parse(path).getroot()
+    lines = {name: [corners_of(group.find(SVG + 'path').get('d')) for group in svg.iter(SVG + 'g')
+                    if (group.get('class') or '').split()[:1] == [name]] for name in ('spring', 'ground')}
+    ends = lines['spring'][0][[0, -1]]
+    near = min(lines['ground'], key=lambda wall: np.hypot(*(wall.mean(axis=0) - ends[0])))
+    checks.near(near.mean(axis=0), ends[0], PX, 'the wall is at the fixed end')
+    checks.near((near[1] - near[0]) @ (ends[1] - ends[0]) / np.hypot(*(near[1] - near[0])), 0, 4 * PX, 'and across the spring')
+
+
 def check_symbols(checks, programs, folder):
     """How many of which symbols: what the pairs of each mechanism are says how many there must be."""
     screw = os.path.join(folder, 'screw.nml')
     with open(screw, 'w', encoding='utf-8') as file:
         file.write(SCREW)
+    loads = os.path.join(folder, 'loads.nml')
+    with open(loads, 'w', encoding='utf-8') as file:
+        file.write(LOADS)
     path = os.path.join(folder, 'symbols.svg')
     for program, data, expected in (
             # six legs: universal joint (two bars of a cross), tube and rod, ball
@@ -138,11 +180,13 @@ def check_symbols(checks, programs, folder):
             # two universal joints between two shafts
             ('mech9k', example('double_hooke'), {'cross': 4, 'pin': 2, 'ball': 0}),
             # three pairs at E, two at A, one each at O, F, B, G, H; the spring
-            ('mech9d', example('andrews'), {'ring': 7, 'stand': 3, 'spring': 1, 'centre': 7}),
+            ('mech9d', example('andrews'), {'ring': 7, 'stand': 3, 'spring': 1, 'ground': 1, 'centre': 7}),
             # crank, pin, and the block with the other pin on a guide of the frame
             ('mech9k', example('slider_crank'), {'ring': 3, 'block': 1, 'guide': 1, 'ground': 1, 'hatch': 1, 'stand': 1}),
             # four single hinges, none parallel to another
             ('mech9k', example('bennett'), {'pin': 4, 'ring': 0, 'stand': 2}),
+            # a wall for each of three fixed ends and that of the spring on the slide, whose guide has its ground besides
+            ('mech9d', loads, {'spring': 3, 'damper': 3, 'coil': 1, 'cup': 1, 'ground': 5, 'block': 1}),
             ('mech9k', screw, {'thread': 1, 'block': 2, 'pin': 1, 'guide': 1})):
         if not os.path.exists(f'{programs}/{program}'):
             continue
@@ -475,6 +519,7 @@ def main():
         check_symbols(checks, programs, folder)
         check_far_point(checks, programs, folder)
         if os.path.exists(f'{programs}/mech9d'):
+            check_fixed_end(checks, programs, folder)
             check_bricard(checks, programs, folder)
             check_page(checks, programs, folder, 'mech9d', 'double_pendulum', {'A', 'B'})
         check_page(checks, programs, folder, 'mech9k', 'rsur', {'O', 'A', 'B', 'C'})
