@@ -22,6 +22,10 @@ module mech9_closing
   public :: close_conversation, write_data_file
 
   character(len=7), parameter :: ends(4) = [character(len=7) :: 'both', 'save', 'run', 'neither']
+  character(len=*), parameter :: ends_help = &
+    'Answer save, run, both or neither. save writes your answers as a data file, whose name is asked for, and ends. run '// &
+    'computes the motion, and what you typed stays in its draft. both writes the data file and then runs it. neither ends, '// &
+    'and what you typed stays in its draft. back returns to the summary.'
 
 contains
 
@@ -101,7 +105,7 @@ contains
       if (line == '') line = 'both'
       if (line == 'back') return
       if (any(ends == line)) exit
-      call conversation%say('Answer save, run, both or neither; back returns to the summary.')
+      call conversation%say(ends_help)
     end do
     saved = .false.
     if (line == 'both' .or. line == 'save') then
@@ -207,7 +211,12 @@ contains
     if (agreed) return
     words(1)%text = 'yes'
     words(2)%text = 'no'
-    call conversation%listen('  '//path//' exists; overwrite it [no]: ', words, line)
-    if (conversation%state == going) agreed = yes_or_no(line) == 'yes'
+    do
+      call conversation%listen('  '//path//' exists; overwrite it [no]: ', words, line)
+      if (conversation%state /= going) return
+      if (line /= '?') exit
+      call conversation%say('yes puts your answers in the place of what stands in this file; no asks for another name.')
+    end do
+    agreed = yes_or_no(line) == 'yes'
   end subroutine agree_to_overwrite
 end module mech9_closing

@@ -255,7 +255,8 @@ def edited_files(talks):
         talks.pipe(talks.mech9d, [('all is right', 'quit')], 'quit', arguments=('--edit', 'p.nml'), folder=folder)
         talks.checks.equal(sorted(os.listdir(folder)), ['p.nml'], 'nothing changed, nothing kept')
         steps = [('title [', 'P'), *[(p, a) for p, a in scripts.PENDULUM_TO_THE_END[1:]], ('all is right', ''), ('[both]', 'save'),
-                 ('data file [p.nml]', ''), ('exists; overwrite it [no]', ''), ('data file [p.nml]', 'q.nml')]
+                 ('data file [p.nml]', ''), ('exists; overwrite it [no]', '?'), ('no asks for another name', ''),
+                 ('data file [p.nml]', '?'), ('The name of the file', 'q.nml')]
         talks.pipe(talks.mech9d, steps, 'a file that exists', folder=folder)
         talks.checks.true(text_of(os.path.join(folder, 'p.nml')) == text, 'it is as it was')
 
@@ -335,7 +336,7 @@ def gravity(talks):
 
 def unsaved_runs(talks):
     """The end of a conversation says which file holds what was run, and what was changed since."""
-    to_run = [*scripts.PENDULUM_TO_THE_END, ('all is right', ''), ('[both]', 'run')]
+    to_run = [*scripts.PENDULUM_TO_THE_END, ('all is right', ''), ('[both]', '?'), ('save writes your answers', 'run')]
     draft = 'simple_pendulum.draft.nml'
     with tempfile.TemporaryDirectory() as folder:
         steps = [*to_run, ('run or done [done]', 'done'), ('No data file is saved; what was typed is kept in ' + draft, '')]
