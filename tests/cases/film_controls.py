@@ -250,6 +250,18 @@ def check_telephone(page):
     browser.call('Emulation.setTouchEmulationEnabled', enabled=False)
 
 
+def check_title(checks, browser, folder, program):
+    """A title full of signs is one in the page and in the name of an image, and nothing in it is run."""
+    title, path = '</title></script><script>alert(1)</script> & "x" `y` $z', os.path.join(folder, 'title.html')
+    done = run(program, os.path.join(TREE, 'examples/fig1/fig1.nml'), '--quiet', '--no-write', '--animate', path,
+               '--set', f"mechanism.title='{title}'")
+    checks.equal(done.returncode, 0, f'any title: the page is made; {done.stderr}')
+    page = Page(browser, checks, path)
+    checks.equal(browser.value('[document.title, document.querySelector("h1").textContent]'), [title] * 2, 'it stands as it is')
+    page.press('ArrowRight')
+    checks.equal((page.frame(), browser.errors), (1, []), 'and the page works')
+
+
 def check_film(checks, browser, folder, program, name):
     """All of it for a mechanism; the page says no error, and asks for nothing."""
     path, table = os.path.join(folder, name + '.html'), os.path.join(folder, name + '.dat')
@@ -286,6 +298,7 @@ def main():
         try:
             check_film(checks, browser, folder, mech9k, 'fig1')
             check_film(checks, browser, folder, mech9d, 'bricard')
+            check_title(checks, browser, folder, mech9k)
         finally:
             browser.close()
     checks.finish()

@@ -39,15 +39,17 @@ def check_loads(checks, browser, page, frames, length):
         browser.open(page)
         browser.value(f'void (document.getElementById("speed").value = "{speed}")')
         time, frame = browser.value(LOOK)
-        turns = 0.0
-        for _ in range(3):
+        turns, judged = 0.0, 0
+        while judged < 3:
             browser.value(WAIT.format(80))
             later, shown = browser.value(LOOK)
-            due = frames * speed * (later - time) / 1000 / length
-            turns += due
-            # both frames are whole numbers, rounded down
-            off = (shown - frame - due + frames / 2) % frames - frames / 2
-            checks.true(abs(off) <= 1.001, f'{why}: the frame that is due', f'{frame} was followed by {shown} after {later - time} ms')
+            if later - time < 1000:          # longer, and the page may have taken it for a pause
+                due = frames * speed * (later - time) / 1000 / length
+                turns, judged = turns + due, judged + 1
+                # both frames are whole numbers, rounded down
+                off = (shown - frame - due + frames / 2) % frames - frames / 2
+                checks.true(abs(off) <= 1.001, f'{why}: the frame that is due',
+                            f'{frame} was followed by {shown} after {later - time} ms')
             time, frame = later, shown
         checks.true(turns > 0.3, f'{why}: time has passed', turns)
         checks.equal(browser.errors, [], f'{why}: nothing on the console')
