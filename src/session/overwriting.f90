@@ -67,7 +67,7 @@ contains
 
     last = size(files)
     do i = 1, last - 1
-      if (.not. same_place(places(i), places(last)) .or. follow_each_other(files([i, last]), places(i))) cycle
+      if (.not. same_place(places(i), places(last)) .or. follow_each_other(files(i), files(last), places(i))) cycle
       if (files(i)%path == files(last)%path) then
         call raise(err, exit_usage, files(i)%what//' and '//files(last)%what//" cannot both be '"//files(i)%path//"'")
       else
@@ -79,13 +79,14 @@ contains
   end subroutine refuse_output
 
   !> Whether two results in one place stand there one behind the other: on standard output itself, or in a pipe, which
-  !> loses nothing, where one of them goes through standard output.
-  pure logical function follow_each_other(files, place)
-    type(written_file_type), intent(in) :: files(2)
-    type(file_place_type), intent(in) :: place
+  !> loses nothing, where one of them goes through standard output. Two arguments: a list of them, put together for the
+  !> call, would leak (gfortran 12).
+  pure logical function follow_each_other(first, second, place)
+    type(written_file_type), intent(in) :: first, second   !< the results
+    type(file_place_type), intent(in) :: place             !< where both stand
     logical :: on_standard_output(2)
 
-    on_standard_output = [files(1)%path == standard_output_path, files(2)%path == standard_output_path]
+    on_standard_output = [first%path == standard_output_path, second%path == standard_output_path]
     follow_each_other = all(on_standard_output) .or. (is_fifo(place) .and. any(on_standard_output))
   end function follow_each_other
 
