@@ -43,6 +43,7 @@ foreach(program mech9k mech9d)
       DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME ${program})
   endif()
 endforeach()
+install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}")
 install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 # .smod: users' submodules need those of their hooks
 install(DIRECTORY "${PROJECT_BINARY_DIR}/modules/" DESTINATION "${modules_dir}"

@@ -20,7 +20,7 @@ contains
   pure subroutine read_numeral(text, numeral)
     character(len=*), intent(in) :: text         !< without blanks around it
     type(numeral_type), intent(out) :: numeral
-    character(len=len(text)) :: plain
+    character(len=:), allocatable :: plain       ! of any length: the stack may be too small for it
     integer :: point_free, mantissa_end, exponent, magnitude
 
     if (is_not_finite(text)) then

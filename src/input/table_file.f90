@@ -104,7 +104,7 @@ contains
   !> Whether a line holds names of columns: none of its words begins as a number does, or means one that is not finite.
   pure logical function are_names(line)
     character(len=*), intent(in) :: line
-    character(len=len(line)) :: rest
+    character(len=:), allocatable :: rest
     integer :: at
 
     are_names = .false.

@@ -25,6 +25,8 @@ contains
 
   !> Written and expected numbers; the compiler's own constants are the oracle.
   subroutine numerals()
+    ! more digits than a stack holds
+    call number_is('0.25'//repeat('0', 20000000), 0.25_wp, whole=.false.)
     call number_is('12', 12.0_wp, .true.)
     call number_is('-7', -7.0_wp, .true.)
     call number_is('+0', 0.0_wp, .true.)

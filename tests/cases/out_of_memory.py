@@ -1,0 +1,92 @@
+"""Where the system has no memory left, a program says so in one line and ends with code 8, wherever that happens; a small
+stack is enough for a large mechanism.
+
+usage: out_of_memory.py MECH9K MECH9D PROGRAM_D    PROGRAM_D: mech9d with a user's force
+"""
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import TREE, Checks
+from n_four_bar import data_file
+
+DONE, FILE = 0, 8
+PENDULUM = os.path.join(TREE, 'examples', 'double_pendulum', 'double_pendulum.nml')
+MEBIBYTE = 1 << 20
+# windows of the ladder, and steps between the least memory and enough
+WINDOWS, LIMITS = 400, 14
+
+
+def run(words, limit=None, stack=None):
+    """A program under limits of its memory and its stack [bytes]."""
+    def limits():
+        if limit:
+            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+        if stack:
+            resource.setrlimit(resource.RLIMIT_STACK, (stack, stack))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors='replace', timeout=120,
+                          preexec_fn=limits)
+
+
+def ladder(folder, program):
+    """A row of four-bar linkages, driven for mech9k."""
+    path = os.path.join(folder, program + '.nml')
+    text = data_file(WINDOWS, 0.1)
+    if program == 'mech9k':
+        text = text.replace('&initial coordinate=1, position=0, velocity=-1 /',
+                            "&drive coordinate=1, kind='polynomial', coefficients=0, -1 /")
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text)
+    return path
+
+
+def least_that_does(words):
+    """The least limit, to a mebibyte, under which a command is done."""
+    low, high = 0, 4096 * MEBIBYTE
+    while high - low > MEBIBYTE:
+        middle = (low + high) // 2
+        if run(words, middle).returncode == DONE:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+def check_between(checks, why, program, words):
+    """Limits between what a program needs to tell its version and what a run needs: none ends it without a word."""
+    least, enough = least_that_does([program, '--version']), least_that_does([program, *words])
+    checks.true(enough > least + MEBIBYTE, f'{why}: the run needs memory', (least, enough))
+    refused = 0
+    for i in range(1, LIMITS):
+        limit = least + (enough - least) * i // LIMITS
+        done = run([program, *words], limit)
+        if done.returncode == DONE:   # how much is enough depends on where the system puts it
+            continue
+        refused += 1
+        checks.equal(done.returncode, FILE, f'{why}, {limit // 1024} KiB: exit code; {done.stderr[:400]}')
+        checks.true(done.stderr.startswith('out of memory: ') and done.stderr.count('\n') == 1, f'{why}, {limit // 1024} KiB: one line',
+                    done.stderr[:400])
+    checks.true(refused > LIMITS // 2, f'{why}: most limits are too low', refused)
+
+
+def main():
+    mech9k, mech9d, users = map(os.path.abspath, sys.argv[1:4])
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as folder:
+        options = ['--quiet', '--table', os.path.join(folder, 't.dat'), '--set', 'time.intervals=2']
+        paths = {name: ladder(folder, name) for name in ('mech9k', 'mech9d')}
+        check_between(checks, 'mech9k', mech9k, [paths['mech9k'], *options])
+        check_between(checks, 'mech9k --check', mech9k, [paths['mech9k'], '--check'])
+        check_between(checks, 'mech9d --check', mech9d, [paths['mech9d'], '--check'])
+        check_between(checks, "a user's program", users, [paths['mech9d'], '--structure'])
+        for program, path in ((mech9k, paths['mech9k']), (mech9d, PENDULUM)):
+            done = run([program, path, *options], stack=128 * 1024)
+            checks.equal(done.returncode, DONE, f'{os.path.basename(program)} with a small stack; {done.stderr[:400]}')
+    checks.finish()
+
+
+main()
