@@ -29,6 +29,8 @@ module mech9_label_places
   type :: label_type
     type(spot_type), allocatable :: spots(:)
     integer :: owner = 0                              !< link whose own lines do not count; 0: all count
+    logical :: of_place = .true.                      !< it names a place, so that it must not stand nearer to another one
+    real(wp) :: at(2) = 0.0_wp                        !< that place [px]
     integer :: chosen = 1                             !< its spot
   end type label_type
 
@@ -135,7 +137,8 @@ contains
     if (size(labels) > most_labels) return
     do i = 1, size(labels)
       do j = 1, size(labels(i)%spots)
-        labels(i)%spots(j)%cost = labels(i)%spots(j)%cost + covered(obstacles, page, labels(i)%spots(j), labels(i)%owner)
+        labels(i)%spots(j)%cost = labels(i)%spots(j)%cost + mistakable(labels, i, labels(i)%spots(j)) &
+                                  + covered(obstacles, page, labels(i)%spots(j), labels(i)%owner)
       end do
       labels(i)%chosen = 0
     end do
@@ -158,6 +161,33 @@ contains
       if (.not. moved) exit
     end do
   end subroutine place_labels
+
+  !> What it costs that a label would be taken for that of another place, which is as near.
+  pure real(wp) function mistakable(labels, own, spot)
+    type(label_type), intent(in) :: labels(:)
+    integer, intent(in) :: own                   !< the label that would stand there
+    type(spot_type), intent(in) :: spot
+    real(wp), parameter :: mistaken = 16.0_wp, with_line = 4.0_wp, nearer = 4.0_wp, same = 3.0_wp
+    integer :: i
+
+    mistakable = 0.0_wp
+    if (.not. labels(own)%of_place) return
+    do i = 1, size(labels)
+      if (i == own .or. .not. labels(i)%of_place) cycle
+      if (norm2(labels(i)%at - labels(own)%at) < same) cycle
+      if (distance(labels(i)%at, spot) > distance(labels(own)%at, spot) + nearer) cycle
+      mistakable = merge(with_line, mistaken, leads(spot))
+      return
+    end do
+  end function mistakable
+
+  !> The distance of a place from a label [px].
+  pure real(wp) function distance(place, spot)
+    real(wp), intent(in) :: place(2)             !< [px]
+    type(spot_type), intent(in) :: spot
+
+    distance = norm2(max(0.0_wp, spot%low - place, place - spot%high))
+  end function distance
 
   !> How much of what is drawn a spot covers, in px of a bar.
   pure real(wp) function covered(obstacles, page, spot, owner)

@@ -97,7 +97,8 @@ contains
     entry%style = as_name
     entry%node = node
     entry%text = name
-    associate (at => drawing%xy(:, node))
+    label%at = drawing%xy(:, node)
+    associate (at => label%at)
       label%spots = spots_around(at, clear_radius(scene, drawing, projection%symbol, at), &
                                  [name_letter*len(name), name_height], to_left=.false.)
     end associate
@@ -128,7 +129,8 @@ contains
     entry%n_pairs = n
     entry%style = as_coordinate
     entry%node = symbols%node(joint)
-    associate (at => drawing%xy(:, entry%node))
+    label%at = drawing%xy(:, entry%node)
+    associate (at => label%at)
       clear = clear_radius(scene, drawing, projection%symbol, at)
       label%spots = spots_around(at, clear, [sum(widths(:n)) + between*(n - 1), coordinate_height], to_left=.true.)
       if (n == 1) return
@@ -158,6 +160,7 @@ contains
     entry%text = to_text(link)
     size_of_box = [number_letter*len(entry%text), number_height]
     label%owner = link
+    label%of_place = .false.
     if (shape(1) == 0) then
       entry%node = shape(2)
       associate (at => drawing%xy(:, entry%node))

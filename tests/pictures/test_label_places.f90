@@ -18,6 +18,7 @@ program test_label_places
   call several(test)
   call surrounded(test)
   call own_link(test)
+  call neighbours(test)
   call test%finish()
 
 contains
@@ -137,11 +138,34 @@ contains
     end do
   end subroutine own_link
 
+  !> Two joints side by side, at any angle: each name stands nearer to its own joint than to the other one.
+  subroutine neighbours(test)
+    type(tester_type), intent(inout) :: test
+    type(obstacles_type) :: obstacles
+    type(label_type) :: labels(2)
+    real(wp) :: middle(2)
+    integer :: degrees, i
+
+    do degrees = 0, 345, 15
+      labels(1) = named(at)
+      labels(2) = named(at + 22.0_wp*[cos(degrees*pi/180), sin(degrees*pi/180)])
+      call place_labels(obstacles, page, labels)
+      do i = 1, 2
+        associate (spot => labels(i)%spots(labels(i)%chosen))
+          middle = 0.5_wp*(spot%low + spot%high)
+        end associate
+        call test%is_true(norm2(middle - labels(i)%at) < norm2(middle - labels(3 - i)%at), &
+                          'each at its own joint, the other one at '//to_text(degrees)//' degrees')
+      end do
+    end do
+  end subroutine neighbours
+
   !> A label with the spots of a name.
   function named(place) result(label)
     real(wp), intent(in) :: place(2)             !< the joint [px]
     type(label_type) :: label
 
+    label%at = place
     label%spots = spots_around(place, ring, box, to_left=.true.)
   end function named
 
