@@ -2,7 +2,7 @@
 !> Uses lapack, transformation, mechanism, the kinematics floor.
 module mech9_coordinate_choice
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_error, only: error_type, raise, exit_structure, exit_assembly, exit_singular
   use mech9_text, only: to_text
   use mech9_lapack, only: dgeqp3
   use mech9_transformation, only: transform
@@ -76,8 +76,8 @@ contains
     end associate
   end subroutine add_closure
 
-  !> The same mechanism and state in other independent coordinates. Fails with exit_singular where the
-  !> state cannot be carried over.
+  !> The same mechanism and state in other independent coordinates. Fails with exit_singular where these cannot serve or the
+  !> state cannot be carried over, and with the code of the failure where a pair or the program itself fails.
   subroutine with_independent(mechanism, state, independent, needs, new_mechanism, new_plan, new_state, err)
     type(mechanism_type), intent(in) :: mechanism
     type(state_type), intent(in) :: state             !< closed, with rates of all coordinates
@@ -94,7 +94,7 @@ contains
     call transform(new_mechanism%structure, new_mechanism%vectors)
     call make_plan(new_mechanism, state%q, new_plan, new_state, err, needs=needs)
     if (allocated(err)) then
-      err%code = exit_singular
+      if (err%code == exit_structure .or. err%code == exit_assembly) err%code = exit_singular
       return
     end if
     ! chains that nobody followed so far close where they can

@@ -33,12 +33,12 @@ contains
     if (size(dynamics%acting) == 0) return
     call show_state(plan, dynamics, state, work%view)
     call work%sum%clear()
-    work%view%fault => fault
+    call work%view%note_faults_in(fault)
     do i = 1, size(dynamics%acting)
       call mechanism%loads(dynamics%acting(i))%load%apply(work%view, work%sum, err)
       if (allocated(err)) exit
     end do
-    work%view%fault => null()
+    call work%view%note_no_faults()
   end subroutine collect_loads
 
   !> Q_p (25) of what the loads exert.

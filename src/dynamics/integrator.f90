@@ -24,7 +24,7 @@ module mech9_integrator
   type :: integration_statistics_type
     integer(long) :: steps = 0                  !< accepted
     integer(long) :: rate_evaluations = 0       !< all of them: for differences, too
-    integer(long) :: jacobian_evaluations = 0   !< asked of the system
+    integer(long) :: jacobian_evaluations = 0   !< by an implicit method: asked of the system, or by differences of its rate
     integer(long) :: error_test_failures = 0    !< steps made again because of their error
     integer(long) :: convergence_failures = 0   !< implicit steps made again
     integer(long) :: refusals = 0               !< trials that the system refused
@@ -298,7 +298,7 @@ contains
     call self%stepper%counts(counts)
     statistics%steps = self%steps
     statistics%rate_evaluations = self%box%rate_evaluations
-    statistics%jacobian_evaluations = self%box%jacobian_evaluations
+    statistics%jacobian_evaluations = counts%jacobian_evaluations
     statistics%error_test_failures = counts%error_test_failures
     statistics%convergence_failures = counts%convergence_failures
     statistics%refusals = self%box%refusals

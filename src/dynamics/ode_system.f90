@@ -11,7 +11,7 @@ module mech9_ode_system
   type, abstract :: ode_system_type
     !> Whether `settle` is to be called after each accepted step.
     logical :: settles = .false.
-    !> Whether `jacobian` can be called; otherwise methods that need it take differences.
+    !> Whether `jacobian` can be called; otherwise methods that need it take differences, as for the motion of a mechanism.
     logical :: has_jacobian = .false.
   contains
     procedure(rate_interface), deferred :: rate

@@ -19,6 +19,7 @@ module mech9_stepper
   type :: stepper_counts_type
     integer(long) :: error_test_failures = 0
     integer(long) :: convergence_failures = 0
+    integer(long) :: jacobian_evaluations = 0  !< of the system's own Jacobian, or of differences of its rate
     integer :: last_order = 0
     real(wp) :: last_step = 0.0_wp             !< [s]
   end type stepper_counts_type

@@ -13,7 +13,7 @@ module mech9_sundials_multistep
   use fcvode_mod, only: FCVodeCreate, FCVodeFree, FCVodeInit, FCVodeReInit, FCVode, FCVodeSVtolerances, &
     FCVodeSetUserData, FCVodeSetLinearSolver, FCVodeSetNonlinearSolver, FCVodeSetJacFn, FCVodeSetMaxHnilWarns, &
     FCVodeSetMaxErrTestFails, FCVodeSetMaxConvFails, FCVodeSetInitStep, FCVodeSetMaxStep, FCVodeSetStopTime, &
-    FCVodeGetNonlinearSystemData, FCVodeGetDky, FCVodeGetCurrentStep, FCVodeGetLastStep, FCVodeGetLastOrder, &
+    FCVodeGetNonlinearSystemData, FCVodeGetDky, FCVodeGetCurrentStep, FCVodeGetLastStep, FCVodeGetNumJacEvals, FCVodeGetLastOrder, &
     FCVodeGetNumErrTestFails, FCVodeGetNumStepSolveFails, &
     CV_ADAMS, CV_BDF, CV_ONE_STEP, CV_SUCCESS, CV_TSTOP_RETURN, CV_TOO_MUCH_ACC, CV_ERR_FAILURE, CV_CONV_FAILURE, &
     CV_LSETUP_FAIL, CV_LSOLVE_FAIL, CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, &
@@ -296,6 +296,11 @@ contains
     counts%error_test_failures = self%earlier%error_test_failures + int(number(1), long)
     flag = FCVodeGetNumStepSolveFails(self%memory, number)
     counts%convergence_failures = self%earlier%convergence_failures + int(number(1), long)
+    counts%jacobian_evaluations = self%earlier%jacobian_evaluations
+    if (associated(self%linear) .and. abs(self%last_step) > 0.0_wp) then   ! counted anew from the first step after a restart
+      flag = FCVodeGetNumJacEvals(self%memory, number)
+      counts%jacobian_evaluations = counts%jacobian_evaluations + int(number(1), long)
+    end if
     flag = FCVodeGetLastStep(self%memory, h)
     counts%last_step = h(1)
     flag = FCVodeGetLastOrder(self%memory, order)

@@ -3,7 +3,8 @@
 module mech9_sundials_runge_kutta
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_associated, c_int, c_long, c_double, c_loc, c_funloc
   use mech9_kinds, only: wp, long
-  use mech9_integration_methods, only: integration_method_type
+  use mech9_integration_methods, only: integration_method_type, prince_dormand_table, dormand_prince_table, verner_table, &
+    fehlberg_table, kutta_merson_table
   use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand
   use mech9_step_choice, only: next_step_length, safety
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
@@ -13,7 +14,7 @@ module mech9_sundials_runge_kutta
   use mech9_sundials_system, only: system_box_type, evaluate_rate, settle_step
   use farkode_mod, only: FARKodeButcherTable_Create, FARKodeButcherTable_Free, ARK_SUCCESS, ARK_TSTOP_RETURN, &
     ARK_ONE_STEP, ARK_ERR_FAILURE, ARK_TOO_MUCH_ACC, ARK_RHSFUNC_FAIL, ARK_FIRST_RHSFUNC_ERR, ARK_REPTD_RHSFUNC_ERR, &
-    ARK_UNREC_RHSFUNC_ERR, ARK_POSTPROCESS_STEP_FAIL, ARK_MEM_FAIL, &
+    ARK_UNREC_RHSFUNC_ERR, ARK_POSTPROCESS_STEP_FAIL, ARK_MEM_FAIL, ARK_ILL_INPUT, &
     ARKODE_DORMAND_PRINCE_7_4_5, ARKODE_VERNER_8_5_6, ARKODE_FEHLBERG_13_7_8
   use farkode_erkstep_mod, only: FERKStepCreate, FERKStepFree, FERKStepReset, FERKStepEvolve, FERKStepSVtolerances, &
     FERKStepSetUserData, FERKStepSetTableNum, FERKStepSetTable, FERKStepSetInterpolantDegree, &
@@ -102,22 +103,25 @@ contains
     call FN_VDestroy(absolute)
   end subroutine set_tolerances
 
+  !> Give SUNDIALS the coefficients. A method whose table is not known is refused.
   subroutine set_table(self, method, flag)
     type(runge_kutta_type), intent(inout) :: self
     type(integration_method_type), intent(in) :: method
-    integer(c_int), intent(out) :: flag
+    integer(c_int), intent(out) :: flag              !< ARK_SUCCESS when all is well
 
-    select case (method%name)
-    case ('dormand-prince')
-      flag = FERKStepSetTableNum(self%memory, ARKODE_DORMAND_PRINCE_7_4_5)
-    case ('verner')
-      flag = FERKStepSetTableNum(self%memory, ARKODE_VERNER_8_5_6)
-    case ('fehlberg')
-      flag = FERKStepSetTableNum(self%memory, ARKODE_FEHLBERG_13_7_8)
-    case ('prince-dormand')
+    select case (method%table)
+    case (prince_dormand_table)
       call set_own_table(self, prince_dormand(), flag)
-    case default
+    case (dormand_prince_table)
+      flag = FERKStepSetTableNum(self%memory, ARKODE_DORMAND_PRINCE_7_4_5)
+    case (verner_table)
+      flag = FERKStepSetTableNum(self%memory, ARKODE_VERNER_8_5_6)
+    case (fehlberg_table)
+      flag = FERKStepSetTableNum(self%memory, ARKODE_FEHLBERG_13_7_8)
+    case (kutta_merson_table)
       call set_own_table(self, kutta_merson(), flag)
+    case default
+      flag = ARK_ILL_INPUT
     end select
   end subroutine set_table
 

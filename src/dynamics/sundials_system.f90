@@ -22,7 +22,6 @@ module mech9_sundials_system
     logical :: broken = .false.                !< it was one that a smaller step does not help
     integer(long) :: failed_at = 0             !< rate evaluations up to it
     integer(long) :: rate_evaluations = 0
-    integer(long) :: jacobian_evaluations = 0
     integer(long) :: refusals = 0              !< failures that a smaller step may help
     !> Whether the rate after settling is taken from the last stage, of the same time and nearly the same y.
     logical :: reuses_last_rate = .false.
@@ -99,7 +98,6 @@ contains
     ! SUNDIALS 6 gives the first entry only
     call c_f_pointer(c_loc(entries(1)), columns, [n, n])
     call c_f_pointer(c_loc(columns(1, 1)), entries, [n*n])
-    box%jacobian_evaluations = box%jacobian_evaluations + 1
     call box%system%jacobian(t, y_values, ydot_values, columns, box%err)
     if (.not. allocated(box%err)) call must_be_finite(entries, 'Jacobian', box%err)
     answer = answer_to(box, t)

@@ -20,7 +20,7 @@ module mech9_load_reader
 contains
 
   !> All loads, in the order of the file. Links and coordinates that they name must be there.
-  pure subroutine read_loads(document, n_links, pairs, angle_unit, parameters, loads, diagnostics)
+  subroutine read_loads(document, n_links, pairs, angle_unit, parameters, loads, diagnostics)
     type(document_type), intent(in) :: document
     integer, intent(in) :: n_links                           !< 0 where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)             !< size 0 where they are not known

@@ -126,7 +126,7 @@ contains
   end function drives_of_chains
 
   !> Take the state, complete with its accelerations, as the place of departure with nothing known before it.
-  !> The Jacobians of all blocks must be on trial (see judge) or unchanged.
+  !> The Jacobians of all blocks must be on trial (see mech9_watch) or unchanged.
   pure subroutine settle(follower)
     type(follower_type), intent(inout) :: follower
 

@@ -80,7 +80,7 @@ contains
   end subroutine find_rank_alone
 
   !> A plan of one loop alone: its base frame is frame 0 and all its coordinates are unknown.
-  pure function loop_alone(plan, closure) result(loop)
+  function loop_alone(plan, closure) result(loop)
     type(plan_type), intent(in) :: plan
     type(closure_type), intent(in) :: closure
     type(plan_type) :: loop

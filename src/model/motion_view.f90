@@ -28,6 +28,8 @@ module mech9_motion_view
     !> Where wrong numbers of links are noted while loads are collected: `state` cannot be changed by its readers.
     type(call_fault_type), pointer :: fault => null()
   contains
+    procedure :: note_faults_in
+    procedure :: note_no_faults
     procedure :: position
     procedure :: velocity
     procedure :: turned
@@ -95,6 +97,21 @@ contains
     turned = 0.0_wp
     if (self%has_link(link, 'state%turned')) turned = self%links(link)%fixed_components(vector)
   end function turned
+
+  !> From now on, until `note_no_faults`, wrong numbers of links are noted in `fault`, which must live as long.
+  subroutine note_faults_in(self, fault)
+    class(motion_view_type), intent(inout) :: self
+    type(call_fault_type), intent(inout), target :: fault
+
+    self%fault => fault
+  end subroutine note_faults_in
+
+  !> Wrong numbers of links are not noted any more.
+  subroutine note_no_faults(self)
+    class(motion_view_type), intent(inout) :: self
+
+    self%fault => null()
+  end subroutine note_no_faults
 
   !> Whether a link exists. If not, the call is noted where faults are kept.
   logical function has_link(self, link, procedure)

@@ -93,7 +93,8 @@ contains
     call facts%add('absolute_tolerance', mechanism%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
     call facts%add('steps', counts%steps, 'steps of the integrator')
     call facts%add('evaluations', counts%rate_evaluations, 'evaluations of the accelerations')
-    call facts%add('jacobian_evaluations', counts%jacobian_evaluations, 'evaluations of their derivatives')
+    call facts%add('jacobian_evaluations', counts%jacobian_evaluations, &
+                   'Jacobians of the equations of motion, by differences (bdf)')
     call facts%add('error_test_failures', counts%error_test_failures, 'steps made again for their error')
     call facts%add('convergence_failures', counts%convergence_failures, 'steps made again that did not converge')
     call facts%add('refusals', counts%refusals, 'steps made again for what they met')

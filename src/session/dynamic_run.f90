@@ -19,6 +19,7 @@ module mech9_dynamic_run
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_between_steps, only: between_steps_type
   use mech9_side_steps, only: side_steps_type, begin_integration
+  use mech9_ode_system, only: is_recoverable
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_columns, only: kinematic_columns
   use mech9_closure_guard, only: check_closure
@@ -371,7 +372,8 @@ contains
     call self%aside%close()
   end subroutine stop_integrator
 
-  !> Go on in better conditioned independent coordinates, if there are any.
+  !> Go on in better conditioned independent coordinates, if there are any. Where the others cannot serve, the motion goes on
+  !> in the present ones; any other failure ends it.
   subroutine change_coordinates(self, changed, err)
     class(dynamic_run_type), intent(inout) :: self
     logical, intent(out) :: changed
@@ -388,7 +390,7 @@ contains
     ! the state of the last accepted step, with the rates of all coordinates
     call self%system%settle(self%t, self%y, failure)
     if (.not. allocated(failure)) call self%system%present(failure)
-    if (allocated(failure)) return
+    if (gives_up(failure, err)) return
     call best_independent(self%system%plan, self%system%state, independent)
     if (all(independent .eqv. self%system%mechanism%structure%independent)) then
       self%look_below = self%system%conditioning()/worth_it
@@ -396,9 +398,10 @@ contains
     end if
     call with_independent(self%system%mechanism, self%system%state, independent, self%needs, mechanism, plan, state, &
                           failure)
-    if (allocated(failure)) return
+    if (gives_up(failure, err)) return
     allocate (other)
     call set_motion_system(mechanism, plan, state, other, failure)
+    ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
     if (allocated(failure)) return
     if (other%conditioning() < worth_it*self%system%conditioning()) then
       self%look_below = self%system%conditioning()/worth_it
@@ -414,6 +417,16 @@ contains
     changed = .true.
     call self%start_integrator(err)
   end subroutine change_coordinates
+
+  !> Whether there is a failure. One that has nothing to do with the choice of coordinates is handed on.
+  logical function gives_up(failure, err)
+    type(error_type), allocatable, intent(inout) :: failure   !< of trying other coordinates
+    type(error_type), allocatable, intent(inout) :: err       !< that ends the motion
+
+    gives_up = allocated(failure)
+    if (.not. gives_up) return
+    if (.not. is_recoverable(failure)) call move_alloc(failure, err)
+  end function gives_up
 
   !> One more event. By hand: an array constructor of them would leak (gfortran 12).
   pure subroutine add_event(events, t, independent)

@@ -23,12 +23,12 @@ DATA = os.path.join(REFERENCE, 'dynamics_fig1.nml')
 
 
 def end_of(mech9d, method, tolerance):
-    """All coordinates and rates after one second, and the steps it took."""
+    """All coordinates and rates after one second, the steps it took and the Jacobians."""
     table, report = table_and_report(
         mech9d, DATA, '--set', f'solver.method={method}', '--set', f'solver.relative_tolerance={tolerance:g}',
         '--set', f'solver.absolute_tolerance={tolerance:g}', '--set', 'time.intervals=1')
     names = [name for name in table if name.lstrip('d')[0] == 'q' and not name.startswith('ddq')]
-    return np.array([table[name][-1] for name in names]), report['steps']
+    return np.array([table[name][-1] for name in names]), report['steps'], report['jacobian_evaluations']
 
 
 def main():
@@ -41,12 +41,14 @@ def main():
     checks.true(np.max(np.abs(truth - ends['dormand-prince'][-1][0])) < 1e-9, 'two methods end at one motion',
                 np.abs(truth - ends['dormand-prince'][-1][0]))
     for method, runs in ends.items():
-        errors = [float(np.max(np.abs(end - truth) / np.maximum(1, np.abs(truth)))) for end, _ in runs]
-        steps = [count for _, count in runs]
+        errors = [float(np.max(np.abs(end - truth) / np.maximum(1, np.abs(truth)))) for end, _, _ in runs]
+        steps = [count for _, count, _ in runs]
         print(method, ' '.join(f'{error:.1e}/{count}' for error, count in zip(errors, steps)))
         # an error in a step is about the tolerance; over the hundreds of steps of this motion they add up
         checks.true(all(error <= 2e3 * tolerance for error, tolerance in zip(errors, TOLERANCES)),
                     f'{method}: errors are of the size of the tolerance', errors)
+        checks.true(all((jacobians > 0) == (method == 'bdf') for _, _, jacobians in runs),
+                    f'{method}: Jacobians are counted where the method takes them', [run[2] for run in runs])
         checks.true(errors[-1] <= 1e-9, f'{method} comes to the same motion', errors)
         if method in ORDERS:
             first = TOLERANCES.index(1e-7)

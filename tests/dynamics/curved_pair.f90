@@ -2,7 +2,7 @@
 !> Uses kinds, error, rotation, pair.
 module mech9_curved_pair
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_data
   use mech9_rotation, only: about_axis
   use mech9_pair, only: pair_type, kind_name_length, pair_motion_type, screw_factors_type
   implicit none
@@ -12,6 +12,7 @@ module mech9_curved_pair
   !> At q = 0 both links coincide.
   type, extends(pair_type) :: curved_pair_type
     real(wp) :: axis(3) = [0.0_wp, 0.6_wp, 0.8_wp]   !< unit vector
+    logical :: broken = .false.                      !< it has no value anywhere
   contains
     procedure :: evaluate
     procedure :: as_screw
@@ -28,6 +29,10 @@ contains
     type(pair_motion_type), intent(out) :: motion
     type(error_type), allocatable, intent(out) :: err
 
+    if (self%broken) then
+      call raise(err, exit_data, 'this pair has no value')
+      return
+    end if
     motion%pose%r = about_axis(self%axis, q + 0.2_wp*sin(q))
     motion%pose%p = [0.3_wp*sin(q), 0.1_wp - 0.1_wp*cos(q), 0.1_wp*q**2]
     motion%w = (1.0_wp + 0.2_wp*cos(q))*self%axis

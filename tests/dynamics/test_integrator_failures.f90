@@ -2,7 +2,10 @@
 program test_integrator_failures
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_internal, exit_data, exit_singular, exit_integrator
-  use mech9_integration_methods, only: integration_methods
+  use mech9_integration_methods, only: integration_method_type, integration_methods, runge_kutta, no_table
+  use mech9_stepper, only: refused
+  use mech9_sundials_system, only: system_box_type
+  use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_integration_problems, only: explosion_type, obstacle_type, rotation_type, orbit_type, &
     orbit_start, integrate
@@ -20,6 +23,7 @@ program test_integrator_failures
     call check_accuracy(test, trim(integration_methods(i)%name))
   end do
   call check_settings(test)
+  call check_tables(test)
   call test%finish()
 
 contains
@@ -198,6 +202,32 @@ contains
     call test%no_error(err, 'no method named: the first one is taken')
     call integrator%destroy()
   end subroutine check_settings
+
+  !> Each Runge-Kutta method has a table of its own. A method without one is refused, not taken for another.
+  subroutine check_tables(test)
+    type(tester_type), intent(inout) :: test
+    type(integration_method_type) :: method
+    type(system_box_type), pointer :: box
+    type(orbit_type), target :: orbit
+    type(runge_kutta_type) :: stepper
+    integer :: i, outcome
+
+    do i = 1, size(integration_methods)
+      associate (row => integration_methods(i))
+        call test%is_true((row%family == runge_kutta) .eqv. (row%table /= no_table), row%name//' has a table if it needs one')
+        call test%is_true(row%table == no_table .or. count(integration_methods%table == row%table) == 1, &
+                          row%name//' does not share its table')
+      end associate
+    end do
+    method = integration_methods(1)
+    method%table = no_table
+    allocate (box)
+    box%system => orbit
+    call new_runge_kutta(method, box, 1.0e-6_wp, spread(1.0e-6_wp, 1, 4), 0.0_wp, orbit_start(0.5_wp), stepper, outcome)
+    call test%is_true(outcome == refused, 'a method without a table is refused')
+    call stepper%close()
+    deallocate (box)
+  end subroutine check_tables
 
   !> Check that a message holds some words (trailing blanks do not count).
   subroutine check_words(test, err, words, why, any_of)

@@ -1,0 +1,69 @@
+!> Other independent coordinates: which failures mean that they cannot serve, and which are something else.
+program test_coordinate_choice
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_data, exit_singular
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_needs, only: needs_type, needs_of_results
+  use mech9_coordinate_choice, only: with_independent
+  use mech9_curved_pair, only: curved_pair_type
+  use mech9_sample_mechanisms, only: four_bar
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  type(mechanism_type) :: mechanism
+
+  call new_four_bar(mechanism)
+  call choose([.false., .true., .false., .false.], 0, 'another coordinate serves')
+  call choose([.true., .true., .false., .false.], exit_singular, 'two of one degree of freedom cannot serve')
+  call break_pair(mechanism)
+  call choose([.false., .true., .false., .false.], exit_data, 'a pair without a value is no matter of the choice')
+  call test%finish()
+
+contains
+
+  !> A crank and a rocker.
+  subroutine new_four_bar(mechanism)
+    type(mechanism_type), intent(out) :: mechanism
+
+    call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], mechanism)
+  end subroutine new_four_bar
+
+  !> Take other independent coordinates at the start of the unbroken four-bar.
+  subroutine choose(independent, code, why)
+    logical, intent(in) :: independent(:)      !< (M)
+    integer, intent(in) :: code                !< of the failure; 0: none
+    character(len=*), intent(in) :: why
+    type(mechanism_type) :: whole, other_mechanism
+    type(plan_type) :: plan, other_plan
+    type(state_type) :: state, other_state
+    type(needs_type) :: needs
+    type(error_type), allocatable :: err
+
+    call new_four_bar(whole)
+    call make_plan(whole, whole%initial_position, plan, state, err)
+    call test%no_error(err, 'a four-bar')
+    needs = needs_of_results(whole)
+    call with_independent(mechanism, state, independent, needs, other_mechanism, other_plan, other_state, err)
+    if (code == 0) then
+      call test%no_error(err, why)
+    else
+      call test%has_error(err, code, why)
+    end if
+  end subroutine choose
+
+  !> Put a pair in the place of the third one whose procedure has no value anywhere.
+  subroutine break_pair(mechanism)
+    type(mechanism_type), intent(inout) :: mechanism
+    type(curved_pair_type) :: broken
+
+    broken%broken = .true.
+    broken%coordinate = mechanism%pairs(3)%pair%coordinate
+    broken%reference = mechanism%pairs(3)%pair%reference
+    broken%moving = mechanism%pairs(3)%pair%moving
+    deallocate (mechanism%pairs(3)%pair)
+    allocate (mechanism%pairs(3)%pair, source=broken)
+  end subroutine break_pair
+end program test_coordinate_choice
