@@ -6,6 +6,7 @@ Where things stand is asked of the browser; what they must show stands in the ta
 """
 import glob
 import os
+import re
 import struct
 import sys
 import tempfile
@@ -144,7 +145,7 @@ def check_zoom(page):
 
 def check_drag(page, planar):
     """A planar mechanism is moved, a spatial one turned; with shift or the middle button the other way."""
-    name = 'q6' if planar else page.browser.value('document.querySelector("[data-joint]").dataset.joint')
+    name = page.browser.value('document.querySelector("[data-joint]").dataset.joint')
     page.press('0')
     start, view = page.joint(name), page.browser.value('film.view')
     for modifiers, button in ((0, 'left'), (SHIFT, 'left'), (0, 'middle')):
@@ -262,11 +263,41 @@ def check_title(checks, browser, folder, program):
     checks.equal((page.frame(), browser.errors), (1, []), 'and the page works')
 
 
+# every item as the file has it, before the script draws it anew: places of marks and labels, corners of lines
+WRITTEN = """
+  new MutationObserver((found, watch) => {
+    const last = document.querySelector('svg.mech9 #axes');
+    if (last && !window.written) { window.written = window.items_now(); watch.disconnect(); }
+  }).observe(document, {childList: true, subtree: true});
+  window.items_now = () => Object.fromEntries([...document.querySelectorAll('#scene > g')].map(g => [g.dataset.i,
+    g.hasAttribute('transform') ? g.getAttribute('transform') : g.firstElementChild.getAttribute('d')]));
+"""
+
+
+def check_same_picture(checks, browser, path, name):
+    """The script draws the first frame as the program has drawn it."""
+    browser.resize(1280, 860, still=True)
+    browser.open(path, before=WRITTEN)
+    written, drawn = browser.value('window.written'), browser.value('window.items_now()')
+    if not checks.true(bool(written) and set(written) == set(drawn), f'{name}: an element for each item'):
+        return
+    worst = 0.0
+    for number, words in written.items():
+        both = [re.findall(r'-?[\d.]+', text) for text in (words, drawn[number])]
+        if 'translate' in words:
+            both = [numbers[:2] for numbers in both]
+        if checks.equal(len(both[0]), len(both[1]), f'{name}: item {number} has as many corners'):
+            worst = max([worst] + [abs(float(a) - float(b)) for a, b in zip(*both)])
+    # steps of 1e-5 of the width, quaternions of 1e-5, and two decimals; across a short spring its direction counts more
+    checks.true(worst < 0.1, f'{name}: the page is drawn as the program draws', f'{worst} px apart')
+
+
 def check_film(checks, browser, folder, program, name):
     """All of it for a mechanism; the page says no error, and asks for nothing."""
     path, table = os.path.join(folder, name + '.html'), os.path.join(folder, name + '.dat')
     done = run(program, os.path.join(TREE, 'examples', name, name + '.nml'), '--quiet', '--table', table, '--animate', path)
     checks.equal(done.returncode, 0, f'{name}: the page is made')
+    check_same_picture(checks, browser, path, name)
     page = Page(browser, checks, path)
     if name == 'fig1':
         check_steps(page)
@@ -274,7 +305,7 @@ def check_film(checks, browser, folder, program, name):
         check_zoom(page)
         check_image(page)
         check_names(page)
-    check_drag(page, name == 'fig1')
+    check_drag(page, name != 'bricard')
     checks.equal(browser.errors, [], f'{name}: nothing on the console')
     checks.true(all(one.startswith(('file:', 'data:', 'blob:')) for one in browser.requests), f'{name}: nothing from elsewhere',
                 browser.requests)
@@ -298,6 +329,7 @@ def main():
         try:
             check_film(checks, browser, folder, mech9k, 'fig1')
             check_film(checks, browser, folder, mech9d, 'bricard')
+            check_film(checks, browser, folder, mech9d, 'andrews')
             check_title(checks, browser, folder, mech9k)
         finally:
             browser.close()
