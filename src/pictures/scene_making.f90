@@ -255,7 +255,8 @@ contains
     shown(1, :) = shapes
     do i = 1, scene%n_items
       associate (item => scene%items(i))
-        if (item%style == in_cam .and. shown(1, item%link) == 0) shown(1, item%link) = i
+        if (item%style /= in_cam) cycle
+        if (shown(1, item%link) == 0) shown(1, item%link) = i
       end associate
     end do
     do i = 1, size(outlines)
