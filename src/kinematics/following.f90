@@ -14,7 +14,8 @@ module mech9_following
   use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
     solve_rates, solve_motion
-  use mech9_departure, only: departure_type, new_departure, begin_at, depart_from, predict
+  use mech9_departure, only: departure_type, new_departure, begin_at, depart_from, aim_at, predict, &
+    know_accelerations
   use mech9_watch, only: watch_type, new_watch, watch_step, keep, nearness, is_near
   implicit none
   private
@@ -54,6 +55,7 @@ module mech9_following
     logical :: with_accelerations = .true.        !< at every position, not only near singular ones
     real(wp) :: reach = huge(1.0_wp)              !< a step that will probably be accepted [s]
     real(wp) :: goal = 0.0_wp                     !< time towards which it went last [s]
+    real(wp) :: correction = 0.0_wp               !< of the last trial's prediction, in units of the coordinates
     integer :: creeping = 0                       !< steps towards it that went nearly nowhere
     integer(long) :: steps = 0                    !< taken
     integer(long) :: halvings = 0                 !< steps refused
@@ -244,6 +246,8 @@ contains
     call set_inputs(mechanism, follower%state%t, follower%state%q, follower%state%dq, follower%state%ddq, err)
     no_drive = allocated(err)
     if (no_drive) return
+    follower%correction = 0.0_wp
+    call aim_at(follower%state%t, follower%departure)
     do b = 1, min(size(plan%blocks), follower%last_block)
       refused_by = b
       associate (block => plan%blocks(b), work => follower%work(b))
@@ -251,6 +255,7 @@ contains
         ! to the last digit: what chains that are closed enough leave open is large beside a singular position
         call close_block(plan, block, follower%state, work, newton, err, 1)
         follower%iterations = follower%iterations + newton%iterations
+        follower%correction = max(follower%correction, newton%correction)
         ! a pair may have no pose where a step that is too long leads
         if (allocated(err) .or. .not. newton%converged) worst = 4.0_wp
         if (worst > 1.0_wp) return
@@ -312,7 +317,7 @@ contains
 
     follower%steps = follower%steps + 1
     follower%state%known = merge(acceleration_known, velocity_known, complete)
-    call depart_from(follower%state, plan%unit_of, complete, follower%departure)
+    call depart_from(follower%state, plan%unit_of, complete, follower%correction, follower%departure)
     call keep(follower%work, follower%watches)
   end subroutine accept
 
@@ -327,7 +332,7 @@ contains
       call solve_motion(plan, plan%blocks(b), follower%state, follower%work(b))
     end do
     follower%state%known = acceleration_known
-    follower%departure%ddq = follower%state%ddq
+    call know_accelerations(follower%state%ddq, follower%departure)
   end subroutine add_accelerations
 
   !> After a step that was given up: the coordinates of the last position again.

@@ -1,5 +1,5 @@
 !> Looking ahead where a block comes near a singular position: does the motion end there, or go through?
-!> Uses kinds, error, mechanism, plan, following.
+!> Uses kinds, error, mechanism, plan, departure, following.
 !>
 !> A scout follows the branch down to a small distance. At a dead point the rates of the block grow
 !> without bound, as 1/sqrt(T - t); two positions of the scout then give T far better than Newton's method
@@ -12,6 +12,7 @@ module mech9_special_position
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
+  use mech9_departure, only: acceleration_of
   use mech9_following, only: follower_type, step_towards
   implicit none
   private
@@ -138,7 +139,7 @@ contains
     k = fastest_of(plan, follower, b)
     if (.not. stuck .and. (speed <= fast_away*usual .or. abs(follower%departure%q(k)) < far_away*plan%unit_of(k))) return
     if (.not. follows_power_law(plan, follower, b)) return
-    associate (q => follower%departure%q(k), dq => follower%departure%dq(k), ddq => follower%departure%ddq(k))
+    associate (q => follower%departure%q(k), dq => follower%departure%dq(k), ddq => acceleration_of(follower%departure, k))
       ! x'/x'' is (T - t)/(p + 1), and x/x' is (T - t)/p
       finding = finding_type(escape, b, follower%departure%t + 1.0_wp/(ddq/dq - dq/q), k)
     end associate
@@ -177,7 +178,7 @@ contains
         if (step%coordinate == k .and. (.not. step%is_screw .or. abs(step%turn) > 0.0_wp)) return
       end associate
     end do
-    associate (q => follower%departure%q(k), dq => follower%departure%dq(k), ddq => follower%departure%ddq(k))
+    associate (q => follower%departure%q(k), dq => follower%departure%dq(k), ddq => acceleration_of(follower%departure, k))
       if (abs(q) < far*plan%unit_of(k) .or. .not. q*dq > 0.0_wp .or. .not. dq*ddq > 0.0_wp) return
       quotient = (q/dq)*(ddq/dq)
       follows = quotient > power_law(1) .and. quotient < power_law(2)
@@ -213,7 +214,7 @@ contains
 
     k = fastest_of(plan, follower, b)
     t = follower%departure%t
-    associate (dq => follower%departure%dq(k), ddq => follower%departure%ddq(k))
+    associate (dq => follower%departure%dq(k), ddq => acceleration_of(follower%departure, k))
       if (abs(ddq) > 0.0_wp) t = t + 0.5_wp*dq/ddq
     end associate
   end function time_of_dead_point

@@ -53,15 +53,16 @@ contains
     real(wp), intent(in) :: h        !< [s], may be negative
     real(wp) :: rate                 !< [rad/s or m/s]
     real(wp) :: terms(0:highest), sizes(0:highest + 1)
-    integer :: k
+    integer :: k, last
 
     rate = 0.0_wp
+    last = max(min(highest, size(self%coefficients) - 1), 0)
     if (size(self%coefficients) > highest + 1) then
       call find_terms(self%coefficients, .true., max(abs(t), abs(t + h)), highest + 1, sizes)
       rate = (highest + 1)*sizes(highest + 1)
     end if
-    call find_terms(self%coefficients, .false., t, highest, terms)
-    do k = highest, 1, -1
+    call find_terms(self%coefficients, .false., t, last, terms)
+    do k = last, 1, -1
       rate = rate*abs(h) + k*abs(terms(k))
     end do
   end function greatest_rate

@@ -11,7 +11,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import REFERENCE, Checks, run, table_and_report, table_of, text_of, without_drives
+from mech9_cases import REFERENCE, TREE, Checks, run, table_and_report, table_of, text_of, without_drives
 
 FIVE_BAR = os.path.join(REFERENCE, 'dynamics_fivebar.nml')
 LOOSE = ('--set', 'time.end=5', '--set', 'time.intervals=1', '--set', 'solver.relative_tolerance=1e-5')
@@ -227,6 +227,17 @@ def test_constants(case):
               'constant poses')
 
 
+def test_predictions(case):
+    """Positions alone are predicted as well as with accelerations: no more iterations of Newton's method but at the start."""
+    for name in 'slider_crank', 'fig1', 'rsur', 'jansen_leg', 'whitworth':
+        path = os.path.join(TREE, 'examples', name, f'{name}.nml')
+        for intervals in 60, 100, 1000:
+            whole, less = (table_and_report(case.kinematics, path, '--set', f'time.intervals={intervals}', '--set',
+                                            f'output.derivatives={d}')[1]['newton_iterations'] for d in (2, 0))
+            # at the start accelerations are known at one position, from the second one on at two
+            case.checks.true(less <= 1.05*whole + 10, f'{name}, {intervals} positions', [less, whole])
+
+
 def test_open_chains(case):
     """An open chain needs no equations, and no frames where none of its points is recorded."""
     report = table_and_report(case.kinematics, case.file(ARMS + "&point name='P', link=3, position=1,0,0 /"))[1]
@@ -345,6 +356,7 @@ def main():
         test_derivatives(case)
         test_frames(case)
         test_constants(case)
+        test_predictions(case)
         test_open_chains(case)
         test_dynamics(case)
         test_changed_coordinates(case)

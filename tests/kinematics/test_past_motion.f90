@@ -1,0 +1,148 @@
+!> Predictions from past positions and rates: exact for polynomials up to the degree that so many of them determine.
+program test_past_motion
+  use mech9_kinds, only: wp
+  use mech9_past_motion, only: past_motion_type, new_past_motion, forget_motion, take_motion, judge_past, weigh_past, &
+    predict_from_past, acceleration_from_past
+  use mech9_testing, only: tester_type
+  implicit none
+  !> Sums of some ten terms of order one, times weights of some hundred where the times lie unevenly.
+  real(wp), parameter :: round_off = 1.0e-12_wp
+  real(wp), parameter :: even(5) = [0.0_wp, 0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp]
+  real(wp), parameter :: uneven(5) = [0.0_wp, 0.13_wp, 0.2_wp, 0.32_wp, 0.4_wp]
+  real(wp), parameter :: clustered(5) = [0.0_wp, 0.1_wp, 0.1_wp + 1.0e-9_wp, 0.3_wp, 0.4_wp]
+  type(tester_type) :: test
+
+  call check_degree(even, .false., 0.5_wp, 5, 'five rates')
+  call check_degree(uneven, .false., 0.47_wp, 5, 'five rates at uneven times')
+  call check_degree(-uneven, .false., -0.52_wp, 5, 'five rates backwards')
+  call check_degree(even(:3), .false., 0.3_wp, 3, 'three rates')
+  call check_degree(even, .true., 0.5_wp, 7, 'positions and rates')
+  call check_degree(uneven, .true., 0.45_wp, 7, 'positions and rates at uneven times')
+  call check_degree(even(:2), .true., 0.2_wp, 3, 'two positions and rates')
+  ! of two times that nearly coincide the earlier ones are not used
+  call check_degree(clustered, .false., 0.5_wp, 3, 'clustered times')
+  call check_degree(clustered, .true., 0.5_wp, 5, 'clustered times, with positions')
+  ! far beyond the last step: by the mean slope of the rates
+  call check_degree([0.0_wp, 0.3_wp, 0.300001_wp], .true., 0.5_wp, 2, 'far beyond')
+  ! back over the turning point, from which only two times are kept
+  call check_degree([0.0_wp, 0.1_wp, 0.2_wp, 0.3_wp, 0.25_wp], .false., 0.2_wp, 2, 'turned back')
+  call check_even_steps()
+  call check_choice()
+  call test%finish()
+
+contains
+
+  !> A polynomial with all powers up to one.
+  pure real(wp) function value(degree, t)
+    integer, intent(in) :: degree
+    real(wp), intent(in) :: t
+    integer :: i
+
+    value = 0.0_wp
+    do i = 0, degree
+      value = value + (1.0_wp + 0.3_wp*i)*t**i
+    end do
+  end function value
+
+  !> Its derivative of some order.
+  pure real(wp) function derivative(degree, order, t)
+    integer, intent(in) :: degree, order
+    real(wp), intent(in) :: t
+    integer :: i, k
+    real(wp) :: factor
+
+    derivative = 0.0_wp
+    do i = order, degree
+      factor = 1.0_wp + 0.3_wp*i
+      do k = 0, order - 1
+        factor = factor*(i - k)
+      end do
+      derivative = derivative + factor*t**(i - order)
+    end do
+  end function derivative
+
+  !> Take positions and rates of a polynomial.
+  subroutine take(past, degree, times)
+    type(past_motion_type), intent(inout) :: past
+    integer, intent(in) :: degree
+    real(wp), intent(in) :: times(:)
+    integer :: i
+
+    do i = 1, size(times)
+      call take_motion(past, times(i), [value(degree, times(i)), -value(degree, times(i))], &
+                       [derivative(degree, 1, times(i)), -derivative(degree, 1, times(i))])
+    end do
+  end subroutine take
+
+  !> A prediction is exact for polynomials of a degree, and not for the next.
+  subroutine check_degree(times, with_positions, t, degree, why)
+    real(wp), intent(in) :: times(:)
+    logical, intent(in) :: with_positions
+    real(wp), intent(in) :: t                  !< of the prediction
+    integer, intent(in) :: degree
+    character(len=*), intent(in) :: why
+    type(past_motion_type) :: past
+    real(wp) :: q(2)
+    integer :: d, last
+
+    last = size(times)
+    do d = 0, degree + 1
+      past = new_past_motion(2)
+      call take(past, d, times)
+      if (with_positions) call judge_past(past, abs(t - times(last)), 1.0_wp)
+      call weigh_past(past, t - times(last))
+      q = 7.0_wp
+      call predict_from_past(past, [2], q)
+      call test%near(q(1), 7.0_wp, 0.0_wp, why//': other coordinates are left')
+      if (d <= degree) then
+        call test%near(q(2), -value(d, t), round_off, why//': exact')
+      else
+        call test%is_true(abs(q(2) + value(d, t)) > 1.0e-9_wp, why//': of no higher degree')
+      end if
+    end do
+    ! rates at times that are not too close give the acceleration, too
+    if (minval(abs(times(2:) - times(:last - 1))) < 0.01_wp .or. times(last) < times(last - 1)) return
+    past = new_past_motion(2)
+    call take(past, last, times)
+    call test%near(acceleration_from_past(past, 1), derivative(last, 2, times(last)), 1.0e-11_wp, why//': acceleration')
+  end subroutine check_degree
+
+  !> Weights are shared by even steps, also where round-off makes them uneven; not by others.
+  subroutine check_even_steps()
+    type(past_motion_type) :: past
+    real(wp) :: t, q(2), h
+    integer :: i
+
+    past = new_past_motion(2)
+    h = 0.01_wp
+    t = 0.0_wp
+    do i = 1, 60
+      if (i > 5) then
+        call weigh_past(past, h)
+        call predict_from_past(past, [1, 2], q)
+        call test%near(q(1), value(5, t + h), 1.0e-14_wp, 'step after step')
+      end if
+      t = t + h
+      call take(past, 5, [t])
+      if (i == 30) h = 0.004_wp
+      h = h*(1.0_wp + 1.0e-13_wp)
+    end do
+    call forget_motion(past)
+    call test%is_true(past%count == 0, 'all is forgotten')
+  end subroutine check_even_steps
+
+  !> Positions are used from a long step on that rates did not predict, until steps are half as long.
+  subroutine check_choice()
+    type(past_motion_type) :: past
+
+    past = new_past_motion(2)
+    call judge_past(past, 0.1_wp, 1.0e-12_wp)
+    call test%is_true(.not. past%with_positions, 'rates alone do')
+    call judge_past(past, 0.1_wp, 1.0e-8_wp)
+    call test%is_true(past%with_positions, 'rates alone do not')
+    call judge_past(past, 0.06_wp, 1.0e-16_wp)
+    call test%is_true(past%with_positions, 'a step that is not much shorter')
+    call judge_past(past, 0.04_wp, 1.0e-16_wp)
+    call test%is_true(.not. past%with_positions, 'a step half as long')
+  end subroutine check_choice
+end program test_past_motion
