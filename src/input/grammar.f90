@@ -197,7 +197,8 @@ module mech9_grammar
                   'prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
                   'the integrator; bdf for stiff motions', '''adams'''), &
     item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0 and <1', '', '', &
-                  'error allowed in a step, relative to the coordinates and their rates', '1e-8', seldom=.true.), &
+                  'error allowed in each step, relative to coordinates and rates; it adds up: docs/accuracy.md tells how far', &
+                  '1e-8', seldom=.true.), &
     item_row_type('solver', 'absolute_tolerance', 'real', 1, 1, '', optional, '1e-10', '>0', '', '', &
                   'error allowed in a step, in rad, m and their rates', '1e-10', seldom=.true.), &
     item_row_type('solver', 'maximum_steps', 'integer', 1, 1, '', optional, '1000000', '>=1', '', '', &
