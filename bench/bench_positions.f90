@@ -12,10 +12,10 @@ program bench_positions
   use mech9_state, only: state_type
   use mech9_needs, only: needs_type, needs_of_results, leave_out
   use mech9_tracking, only: tracker_type, start_tracking, advance
-  use mech9_motion, only: point_motion
   use mech9_kinematic_run, only: assemble_start
   use mech9_closed_four_bar, only: four_bar_position, four_bar_motion
   use mech9_bench_support, only: read_data_file, stop_at, median, argument
+  use mech9_frame_motion, only: point_motion
   implicit none
   call run()
 contains
@@ -114,7 +114,9 @@ contains
     do i = 1, mechanism%time%intervals
       call advance(mechanism, plan, tracker, mechanism%time%time(i), err)
       if (allocated(err)) exit
-      call point_motion(plan, tracker%state, mechanism%points(size(mechanism%points)), positions(:, i))
+      associate (point => mechanism%points(size(mechanism%points)))
+        call point_motion(plan, tracker%state, point%link, point%position, positions(:, i))
+      end associate
     end do
     time = seconds() - begin
     call stop_at(err, mechanism%title)
@@ -136,12 +138,12 @@ contains
     call start_tracking(mechanism, plan, start, mechanism%time%start, tracker, err)
     call stop_at(err, mechanism%title)
     associate (point => mechanism%points(size(mechanism%points)))
-      call point_motion(plan, tracker%state, point, motions(:, 1, 0), motions(:, 2, 0), motions(:, 3, 0))
+      call point_motion(plan, tracker%state, point%link, point%position, motions(:, 1, 0), motions(:, 2, 0), motions(:, 3, 0))
       begin = seconds()
       do i = 1, mechanism%time%intervals
         call advance(mechanism, plan, tracker, mechanism%time%time(i), err)
         if (allocated(err)) exit
-        call point_motion(plan, tracker%state, point, motions(:, 1, i), motions(:, 2, i), motions(:, 3, i))
+        call point_motion(plan, tracker%state, point%link, point%position, motions(:, 1, i), motions(:, 2, i), motions(:, 3, i))
       end do
       time = seconds() - begin
     end associate

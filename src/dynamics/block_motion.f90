@@ -5,17 +5,17 @@ module mech9_block_motion
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_least_squares, only: least_squares_type, nearly_dependent
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, acceleration_known
+  use mech9_state, only: state_type
   use mech9_planar_motion, only: planar_motion_type
   use mech9_planar_closure, only: planar_bias_rates
-  use mech9_motion, only: spread_velocities, spread_accelerations
-  use mech9_closure, only: closure_rates
   use mech9_solver, only: block_work_type, factorize_block
   use mech9_tracking, only: words_of_block
   use mech9_dynamics_plan, only: dynamics_plan_type
   use mech9_jacobian, only: jacobian_type, find_jacobian, noise_of_rates
   use mech9_planar_block, only: planar_block_type, fill_columns, add_earlier, move_frames
   use mech9_lagrange_work, only: lagrange_work_type
+  use mech9_frame_motion, only: spread_velocities, spread_accelerations
+  use mech9_block_equations, only: block_rates
   implicit none
   private
   public :: move_block
@@ -124,7 +124,7 @@ contains
       k = block%coordinates(i)
       state%ddq(k) = -work%change(i)*plan%unit_of(k)
     end do
-    call spread_accelerations(plan, block%first_step, block%last_step, state)
+    call spread_accelerations(plan, block, block%last_step, state)
   end subroutine move_in_plane
 
   !> In general: from what is expected, which stays where the equations say no more than noise.
@@ -138,7 +138,7 @@ contains
     associate (block => plan%blocks(b))
       call find_jacobian(plan, dynamics, block, state, work%expected_b, work%blocks(b), work%jacobian)
       call find_rates(plan, dynamics, block, work%jacobian%b, state%dq)
-      call spread_velocities(plan, block%first_step, block%last_step, state)
+      call spread_velocities(plan, block, state)
       call find_bias(plan, block, work%expected_ddq, state, work%blocks(b))
     end associate
   end subroutine move_as_expected
@@ -174,7 +174,7 @@ contains
     integer :: i, k
 
     if (size(block%unknowns) == 0) then
-      call spread_accelerations(plan, block%first_step, block%last_step, state)
+      call spread_accelerations(plan, block, block%last_step, state)
       return
     end if
     scale = 0.0_wp
@@ -183,14 +183,14 @@ contains
       state%ddq(k) = expected(k)
       scale = max(scale, (state%dq(k)/plan%unit_of(k))**2)
     end do
-    call spread_accelerations(plan, block%first_step, block%last_step, state)
-    call closure_rates(plan, block, state, acceleration_known, work%right)
+    call spread_accelerations(plan, block, block%last_step, state)
+    call block_rates(plan, block, 2, state, work%right)
     work%right = -work%right
     call work%equations%solve(work%right, work%change, noise=noise_of_rates*scale)
     do i = 1, size(block%unknowns)
       k = block%coordinates(i)
       state%ddq(k) = state%ddq(k) + work%change(i)*plan%unit_of(k)
     end do
-    call spread_accelerations(plan, block%first_step, block%last_step, state)
+    call spread_accelerations(plan, block, block%last_step, state)
   end subroutine find_bias
 end module mech9_block_motion

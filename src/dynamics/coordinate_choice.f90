@@ -9,7 +9,6 @@ module mech9_coordinate_choice
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_closure, only: closure_column
   use mech9_needs, only: needs_type
   use mech9_planning, only: make_plan
   implicit none
@@ -50,28 +49,19 @@ contains
     independent(pivot(:dependent)) = .false.
   end subroutine best_independent
 
-  !> The rows of one closure: over both ways back from it to where they meet.
+  !> The rows of one closure: the derivatives by all coordinates of its loop.
   pure subroutine add_closure(plan, state, c, row, a)
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
     integer, intent(in) :: c, row
     real(wp), intent(inout) :: a(:, :)
-    real(wp) :: sign
-    integer :: up, down, s, k
+    integer :: i, s
 
-    associate (closure => plan%closures(c))
-      up = closure%closing
-      down = closure%target
-      do while (up /= down)
-        s = max(up, down)
-        k = plan%steps(s)%coordinate
-        sign = merge(1.0_wp, -1.0_wp, up > down)
-        if (up > down) then
-          up = plan%steps(s)%parent
-        else
-          down = plan%steps(s)%parent
-        end if
-        call closure_column(plan, c, s, sign, state, a(row + 1:row + closure%rank, k))
+    associate (loop => plan%closures(c)%loop)
+      do i = 1, size(loop%steps)
+        s = loop%steps(i)
+        call plan%constraints(c)%item%column(plan, s, loop%signs(i), state, &
+                                             a(row + 1:row + plan%closures(c)%rank, plan%steps(s)%coordinate))
       end do
     end associate
   end subroutine add_closure

@@ -7,9 +7,9 @@ module mech9_energy
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion, only: link_motion
   use mech9_dynamics_plan, only: dynamics_plan_type
   use mech9_planar_lagrange, only: planar_kinetic_energy
+  use mech9_frame_motion, only: link_motion
   implicit none
   private
   public :: kinetic_energy, potential_energy

@@ -9,10 +9,10 @@ module mech9_generalized_forces
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion, only: link_motion
   use mech9_dynamics_plan, only: dynamics_plan_type
   use mech9_planar_lagrange, only: add_link_force
   use mech9_lagrange_work, only: lagrange_work_type
+  use mech9_frame_motion, only: link_motion
   implicit none
   private
   public :: collect_loads, collect_forces, torque_on_frame, show_state

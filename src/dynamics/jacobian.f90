@@ -6,11 +6,11 @@ module mech9_jacobian
   use mech9_rotation, only: cross
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_closure, only: reduced_screw
   use mech9_planar_closure, only: planar_difference
   use mech9_solver, only: block_work_type
   use mech9_dynamics_plan, only: dynamics_plan_type
   use mech9_planar_lagrange, only: spread_columns
+  use mech9_spatial_closure, only: reduced_screw
   implicit none
   private
   public :: jacobian_type, new_jacobian, find_jacobian, noise_of_rates

@@ -19,7 +19,6 @@ module mech9_lagrange
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion, only: spread_velocities, spread_accelerations
   use mech9_dynamics_plan, only: dynamics_plan_type, frame_body_type
   use mech9_lagrange_work, only: lagrange_work_type
   use mech9_block_motion, only: move_block
@@ -27,6 +26,7 @@ module mech9_lagrange
   use mech9_planar_lagrange, only: add_inertia, planar_wrench
   use mech9_articulated_bodies, only: solve_open_chains
   use mech9_planar_articulated, only: solve_in_plane
+  use mech9_frame_motion, only: spread_all_accelerations, spread_all_velocities
   implicit none
   private
   public :: find_motion, find_equations, complete_accelerations
@@ -109,8 +109,8 @@ contains
 
     found = .false.
     state%ddq = 0.0_wp
-    call spread_velocities(plan, 1, plan%n_coordinates, state)
-    call spread_accelerations(plan, 1, plan%n_coordinates, state)
+    call spread_all_velocities(plan, state)
+    call spread_all_accelerations(plan, state)
     call collect_loads(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
     do i = 1, size(dynamics%loaded)
@@ -212,7 +212,7 @@ contains
 
     if (dynamics%open_chains) then
       state%ddq = work%accelerations
-      call spread_accelerations(plan, 1, plan%n_coordinates, state)
+      call spread_all_accelerations(plan, state)
       return
     end if
     do s = 1, plan%n_coordinates
@@ -221,6 +221,6 @@ contains
                                               + work%jacobian%b(e)*work%accelerations(dynamics%column(e))
       end do
     end do
-    call spread_accelerations(plan, 1, plan%n_coordinates, state)
+    call spread_all_accelerations(plan, state)
   end subroutine complete_accelerations
 end module mech9_lagrange

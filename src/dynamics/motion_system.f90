@@ -11,7 +11,6 @@ module mech9_motion_system
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type, acceleration_known
-  use mech9_composition, only: place_frames
   use mech9_solver, only: newton_outcome_type, close_block
   use mech9_planning, only: chain_names
   use mech9_ode_system, only: ode_system_type
@@ -20,6 +19,7 @@ module mech9_motion_system
   use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
   use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
   use mech9_generalized_forces, only: show_state
+  use mech9_frame_motion, only: place_all
   implicit none
   private
   public :: motion_system_type, set_motion_system
@@ -102,7 +102,7 @@ contains
     integer :: i, m
 
     call take(self, t, y)
-    call place_frames(self%plan, 1, self%plan%n_coordinates, self%state, err)
+    call place_all(self%plan, self%state, err)
     if (allocated(err)) return
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
@@ -215,7 +215,7 @@ contains
     type(error_type), allocatable, intent(out) :: err
 
     call take(self, t, y)
-    call place_frames(self%plan, 1, self%plan%n_coordinates, self%state, err)
+    call place_all(self%plan, self%state, err)
     if (.not. allocated(err)) call self%present(err)
   end subroutine move_to
 

@@ -9,6 +9,7 @@ module mech9_planar_block
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type
   use mech9_planar_plan, only: planar_step_type
+  use mech9_planar_formulas, only: step_column, step_velocity, step_acceleration
   use mech9_planar_lagrange, only: carry_columns
   implicit none
   private
@@ -42,7 +43,7 @@ contains
     integer, intent(in) :: column(:), place_of(:)
     type(planar_block_type), intent(out) :: flat
     type(loop_part_type) :: part
-    integer :: c, i, from_here, from_there
+    integer :: c, i
 
     allocate (flat%unknowns(0), flat%independent(0), flat%earlier(0))
     associate (block => plan%blocks(b))
@@ -51,10 +52,9 @@ contains
         do c = block%first_closure, block%last_closure
           part%row = 3*(c - block%first_closure)
           part%base = plan%closures(c)%base
-          do i = 1, size(plan%closures(c)%path%steps)
-            part%frame = plan%closures(c)%path%steps(i)
-            part%weight = plan%closures(c)%path%signs(i)
-            if (part%frame < block%first_step) cycle
+          do i = 1, size(plan%closures(c)%part%steps)
+            part%frame = plan%closures(c)%part%steps(i)
+            part%weight = plan%closures(c)%part%signs(i)
             if (plan%steps(part%frame)%dependent) then
               part%column = place_among(block%unknowns, part%frame)
               call append(flat%unknowns, part)
@@ -63,28 +63,16 @@ contains
               call append(flat%independent, part)
             end if
           end do
-          from_here = origin_of(plan, plan%closures(c)%closing, part%base, block%first_step)
-          from_there = origin_of(plan, plan%closures(c)%target, part%base, block%first_step)
-          ! what moves both ends alike opens nothing
-          if (from_here == from_there) cycle
-          call list_columns(plan, from_here, 1.0_wp, first, column, columns, part, flat%earlier)
-          call list_columns(plan, from_there, -1.0_wp, first, column, columns, part, flat%earlier)
+          associate (stems => plan%closures(c)%part%stems)
+            ! a motion that both ends share opens nothing
+            if (stems(1) == stems(2)) cycle
+            call list_columns(plan, stems(1), 1.0_wp, first, column, columns, part, flat%earlier)
+            call list_columns(plan, stems(2), -1.0_wp, first, column, columns, part, flat%earlier)
+          end associate
         end do
       end associate
     end associate
   end subroutine list_loops
-
-  !> The frame of an earlier block, or the base of the loop, from which an end of a loop is reached.
-  pure integer function origin_of(plan, frame, base, first_step) result(origin)
-    type(plan_type), intent(in) :: plan
-    integer, intent(in) :: frame, base
-    integer, intent(in) :: first_step                     !< of the block
-
-    origin = frame
-    do while (origin /= base .and. origin >= first_step)
-      origin = plan%steps(origin)%parent
-    end do
-  end function origin_of
 
   !> A part for each column of a frame of an earlier block.
   pure subroutine list_columns(plan, frame, sign, first, column, columns, part, parts)
@@ -136,25 +124,14 @@ contains
     real(wp), intent(in) :: length                !< of the mechanism [m]
     integer, intent(in) :: rows, columns
     real(wp), intent(out) :: matrix(rows, columns)
-    real(wp) :: w, per_length
-    integer :: i, s, row, j
+    integer :: i, s, row
 
-    per_length = 1.0_wp/length
     matrix = 0.0_wp
     do i = 1, n
       s = parts(i)%frame
       row = parts(i)%row
-      j = parts(i)%column
-      if (steps(s)%turns) then
-        w = parts(i)%weight*steps(s)%turn
-        matrix(row + 1, j) = w
-        w = w*per_length
-        matrix(row + 2, j) = w*(f(4, s) - f(4, parts(i)%base))
-        matrix(row + 3, j) = w*(f(3, parts(i)%base) - f(3, s))
-      else
-        matrix(row + 2, j) = parts(i)%weight*slide(1, s)
-        matrix(row + 3, j) = parts(i)%weight*slide(2, s)
-      end if
+      call step_column(steps(s), parts(i)%weight, f(:, s), slide(:, s), f(3:4, parts(i)%base), 1.0_wp/length, &
+                       matrix(row + 1:row + 3, parts(i)%column))
     end do
   end subroutine fill_columns
 
@@ -193,7 +170,7 @@ contains
     real(wp), intent(in) :: b(n_b), dq(m)
     real(wp), intent(in) :: f(4, 0:m), slide(2, m)
     real(wp), intent(inout) :: columns(3, n_b), v(3, 0:m), a(3, 0:m)
-    real(wp) :: x, y, w, alpha, rate, coriolis
+    real(wp) :: x, y, rate
     integer :: s, p
 
     do s = first, last
@@ -201,21 +178,8 @@ contains
       x = f(3, s) - f(3, p)
       y = f(4, s) - f(4, p)
       rate = dq(steps(s)%coordinate)
-      w = v(1, p)
-      alpha = a(1, p)
-      v(1, s) = w + steps(s)%turn*rate
-      v(2, s) = v(2, p) - w*y
-      v(3, s) = v(3, p) + w*x
-      a(1, s) = alpha
-      a(2, s) = a(2, p) - alpha*y - w**2*x
-      a(3, s) = a(3, p) + alpha*x - w**2*y
-      if (.not. steps(s)%turns) then
-        coriolis = 2.0_wp*w*rate
-        v(2, s) = v(2, s) + rate*slide(1, s)
-        v(3, s) = v(3, s) + rate*slide(2, s)
-        a(2, s) = a(2, s) - coriolis*slide(2, s)
-        a(3, s) = a(3, s) + coriolis*slide(1, s)
-      end if
+      call step_velocity(steps(s), rate, x, y, slide(:, s), v(:, p), v(:, s))
+      call step_acceleration(steps(s), rate, 0.0_wp, x, y, slide(:, s), v(1, p), a(:, p), a(:, s))
       if (carries(s)) &
         call carry_columns(n_b, entries(s), entries(s + 1) - 1, parent_entry, steps(s), slide(:, s), x, y, b, columns)
     end do

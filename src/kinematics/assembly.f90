@@ -10,9 +10,9 @@ module mech9_assembly
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_composition, only: place_frames
-  use mech9_closure, only: closure_errors, closure_jacobian, closing_error
   use mech9_solver, only: block_work_type, newton_outcome_type, close_block, apply_change, closed_enough
+  use mech9_frame_motion, only: place_frames
+  use mech9_block_equations, only: block_jacobian, block_residual
   implicit none
   private
   public :: assemble_block, assembly_outcome_type
@@ -81,7 +81,7 @@ contains
     end do
     outcome = assembly_outcome_type(restarts=restarts)
     state%q(block%coordinates) = nearest
-    call place_frames(plan, block%first_step, block%last_step, state, err)
+    call place_frames(plan, block, state, err)
     if (allocated(err)) return
     call find_worst(plan, block, state, outcome)
   end subroutine assemble_block
@@ -180,7 +180,7 @@ contains
     integer :: i, m
 
     m = block%equations
-    call closure_jacobian(plan, block, state, work%column_of, damped%a(:m, :))
+    call block_jacobian(plan, block, state, work%column_of, damped%a(:m, :))
     damped%a(m + 1:, :) = 0.0_wp
     do i = 1, size(block%unknowns)
       damped%a(m + i, i) = sqrt(damping)
@@ -203,9 +203,9 @@ contains
     type(error_type), allocatable, intent(out) :: err
 
     lack = huge(lack)
-    call place_frames(plan, block%first_step, block%last_step, state, err)
+    call place_frames(plan, block, state, err)
     if (allocated(err)) return
-    call closure_errors(plan, block, state, work%right)
+    call block_residual(plan, block, state, work%right)
     lack = norm2(work%right)
   end subroutine measure
 
@@ -220,7 +220,7 @@ contains
 
     outcome%gap = 0.0_wp
     do c = block%first_closure, block%last_closure
-      gap = closing_error(plan, c, state)
+      gap = plan%constraints(c)%item%gap(plan, state)
       if (gap > outcome%gap .or. outcome%worst_closure == 0) then
         outcome%gap = gap
         outcome%worst_closure = c
@@ -248,6 +248,6 @@ contains
         changed = .true.
       end associate
     end do
-    if (changed) call place_frames(plan, block%first_step, block%last_step, state, err)
+    if (changed) call place_frames(plan, block, state, err)
   end subroutine unwind
 end module mech9_assembly

@@ -5,6 +5,7 @@
 !> its loop that belong to other chains, and those that place the links its loop stands on. Chains
 !> that need each other, directly or around, are a block; blocks come in the order of these needs.
 module mech9_blocks
+  use mech9_tree_paths, only: find_loop, split_loops
   use mech9_plan, only: plan_type, step_type, closure_type, block_type
   use mech9_chain_matching, only: loop_lists_type, match_chains
   use mech9_strong_components, only: graph_type, strong_components
@@ -31,6 +32,7 @@ contains
     call sort_plan(plan, block_of_step, block_of_closure)
     do s = 1, n_blocks
       call count_block(plan, plan%blocks(s))
+      call split_loops(plan%blocks(s), plan)
     end do
   end subroutine make_blocks
 
@@ -58,12 +60,12 @@ contains
     allocate (loops%first(loops%n_chains + 1))
     loops%first(1) = 1
     do c = 1, loops%n_chains
-      loops%first(c + 1) = loops%first(c) + count(plan%steps(plan%closures(c)%path%steps)%dependent)
+      loops%first(c + 1) = loops%first(c) + count(plan%steps(plan%closures(c)%loop%steps)%dependent)
     end do
     allocate (loops%unknowns(loops%first(loops%n_chains + 1) - 1))
     n = 0
     do c = 1, loops%n_chains
-      associate (steps => plan%closures(c)%path%steps)
+      associate (steps => plan%closures(c)%loop%steps)
         do i = size(steps), 1, -1
           if (.not. plan%steps(steps(i))%dependent) cycle
           n = n + 1
@@ -114,7 +116,7 @@ contains
     needs%n = m + size(plan%closures)
     n = 2*m
     do c = 1, size(plan%closures)
-      n = n + size(plan%closures(c)%path%steps)
+      n = n + size(plan%closures(c)%loop%steps)
     end do
     allocate (needs%first(needs%n + 1), needs%heads(n))
     n = 0
@@ -125,8 +127,8 @@ contains
     end do
     do c = 1, size(plan%closures)
       needs%first(m + c) = n + 1
-      do s = 1, size(plan%closures(c)%path%steps)
-        call add(plan%closures(c)%path%steps(s))
+      do s = 1, size(plan%closures(c)%loop%steps)
+        call add(plan%closures(c)%loop%steps(s))
       end do
     end do
     needs%first(needs%n + 1) = n + 1
@@ -153,8 +155,8 @@ contains
       if (owner(s) == 0) block_of_step(s) = huge(s)
     end do
     do c = 1, size(plan%closures)
-      do i = 1, size(plan%closures(c)%path%steps)
-        s = plan%closures(c)%path%steps(i)
+      do i = 1, size(plan%closures(c)%loop%steps)
+        s = plan%closures(c)%loop%steps(i)
         if (owner(s) == 0) block_of_step(s) = min(block_of_step(s), block_of_closure(c))
       end do
     end do
@@ -242,9 +244,8 @@ contains
       associate (closure => closures(order(c)))
         closure%closing = place(closure%closing)
         closure%target = place(closure%target)
-        closure%base = place(closure%base)
-        closure%path%steps = place(closure%path%steps)
       end associate
+      call find_loop(plan%steps, closures(order(c)))
     end do
     call move_alloc(closures, plan%closures)
   end subroutine renumber_closures

@@ -153,8 +153,8 @@ contains
 
     has_moved = block%last_closure < block%first_closure
     do c = block%first_closure, block%last_closure
-      do i = 1, size(plan%closures(c)%path%steps)
-        k = plan%steps(plan%closures(c)%path%steps(i))%coordinate
+      do i = 1, size(plan%closures(c)%loop%steps)
+        k = plan%steps(plan%closures(c)%loop%steps(i))%coordinate
         has_moved = has_moved .or. abs(state%q(k) - start%q(k)) > moved*plan%unit_of(k)
       end do
     end do
@@ -168,6 +168,8 @@ contains
     type(block_type) :: block
     integer :: i
 
+    block%whole_loops = .true.
+    block%arithmetic = 1
     block%first_step = 1
     block%last_step = last_step
     block%first_closure = 1

@@ -14,10 +14,11 @@ module mech9_finite_motion
   use mech9_lapack, only: dgesvd
   use mech9_random, only: random_type
   use mech9_rotation, only: cross
-  use mech9_plan, only: plan_type, block_type
-  use mech9_planar_plan, only: planar_plan_type
-  use mech9_state, only: state_type, new_state
-  use mech9_closure, only: closure_jacobian, closure_errors, reduced_screw
+  use mech9_plan, only: plan_type, block_type, new_state
+  use mech9_state, only: state_type
+  use mech9_arithmetics, only: set_in_space
+  use mech9_spatial_closure, only: reduced_screw
+  use mech9_block_equations, only: block_residual, block_jacobian
   use mech9_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_assembly, only: assemble_block, assembly_outcome_type
   use mech9_elsewhere, only: free_block
@@ -76,7 +77,7 @@ contains
     moves = plan%blocks%equations <= unknowns_of(plan%blocks)
     if (all(moves)) return
     spatial = plan
-    spatial%planar = planar_plan_type()
+    call set_in_space(spatial)
     home = new_state(spatial)
     home%q = start%q
     allocate (nearest(size(plan%blocks)))
@@ -169,7 +170,7 @@ contains
     type(state_type), intent(in) :: state
     type(block_work_type), intent(inout) :: work
 
-    call closure_errors(plan, block, state, work%right)
+    call block_residual(plan, block, state, work%right)
     call work%equations%solve(work%right, work%change)
     is_least = maxval(abs(work%change)) <= settled
   end function is_least
@@ -216,7 +217,7 @@ contains
 
     has_moved = .false.
     do c = block%first_closure, block%last_closure
-      associate (k => plan%steps(plan%closures(c)%path%steps)%coordinate)
+      associate (k => plan%steps(plan%closures(c)%loop%steps)%coordinate)
         has_moved = has_moved .or. any(abs(state%q(k) - home%q(k)) > finite*plan%unit_of(k))
       end associate
     end do
@@ -286,11 +287,11 @@ contains
     m = plan%blocks(b)%equations
     n = unknowns_of(plan%blocks(b))
     allocate (a(m, n), u(m, m), s(n), vt(n, n), scratch(20*(m + n)), columns(m, 6*plan%n_coordinates))
-    call closure_jacobian(plan, plan%blocks(b), state, work%column_of, a)
+    call block_jacobian(plan, plan%blocks(b), state, work%column_of, a)
     call dgesvd('A', 'N', m, n, a, m, s, u, m, vt, n, scratch, size(scratch), info)
     rank = count(s > regular*s(1))
     if (info /= 0 .or. rank < n) return
-    call closure_errors(plan, plan%blocks(b), state, work%right)
+    call block_residual(plan, plan%blocks(b), state, work%right)
     call dimension_columns(plan, plan%blocks(b), state, columns)
     gaps = matmul(work%right, u(:, n + 1:))
     effects = matmul(transpose(u(:, n + 1:)), columns)
@@ -310,10 +311,10 @@ contains
     row = 0
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c), place => state%p(:, plan%closures(c)%closing))
-        do i = 1, size(closure%path%steps)
-          s = closure%path%steps(i)
+        do i = 1, size(closure%loop%steps)
+          s = closure%loop%steps(i)
           do j = 1, 3
-            w = closure%path%signs(i)*state%r(:, j, plan%steps(s)%parent)
+            w = closure%loop%signs(i)*state%r(:, j, plan%steps(s)%parent)
             v = cross(w, place - state%p(:, s))
             call reduced_screw(plan, closure, state, w, v, place, columns(row + 1:row + closure%rank, 6*s - 6 + j))
             v = plan%length*w

@@ -11,6 +11,7 @@ module mech9_following
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
+  use mech9_tree_paths, only: mark_path
   use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
     solve_rates, solve_motion
@@ -106,23 +107,18 @@ contains
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     integer, allocatable :: drives(:)
-    logical :: marked(0:plan%n_coordinates), drives_chain(size(mechanism%drives))
-    integer :: b, c, i, s
+    logical :: marked(plan%n_coordinates), drives_chain(size(mechanism%drives))
+    integer :: b, c, i
 
     marked = .false.
     do b = 1, size(plan%blocks)
       do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
-        do i = 1, 2
-          s = merge(plan%closures(c)%closing, plan%closures(c)%target, i == 1)
-          do while (s > 0)
-            marked(plan%steps(s)%coordinate) = .true.
-            s = plan%steps(s)%parent
-          end do
-        end do
+        call mark_path(plan%steps, plan%closures(c)%closing, marked)
+        call mark_path(plan%steps, plan%closures(c)%target, marked)
       end do
     end do
     do i = 1, size(mechanism%drives)
-      drives_chain(i) = marked(mechanism%drives(i)%drive%coordinate)
+      drives_chain(i) = marked(plan%step_of(mechanism%drives(i)%drive%coordinate))
     end do
     drives = pack([(i, i=1, size(mechanism%drives))], drives_chain)
   end function drives_of_chains

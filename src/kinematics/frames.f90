@@ -11,11 +11,12 @@ module mech9_frames
   use mech9_pair, only: screw_factors_type
   use mech9_structural_vectors, only: chain_type, chains_of
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type, step_type, closure_type, path_type
+  use mech9_plan, only: plan_type, step_type, closure_type
+  use mech9_tree_paths, only: find_loop, distance_between
   use mech9_plan_size, only: find_size, find_units
   implicit none
   private
-  public :: lay_out_frames, find_loop
+  public :: lay_out_frames
 
   !> As many further frames of a link are remembered: the latest.
   integer, parameter :: most_remembered = 3
@@ -141,7 +142,7 @@ contains
         if (i > 0 .and. frames_a(i) == 0) exit
         do j = 0, most_remembered
           if (j > 0 .and. frames_b(j) == 0) exit
-          distance = distance_of(plan, frames_a(i), frames_b(j), least)
+          distance = distance_between(plan%steps, frames_a(i), frames_b(j), least)
           if (distance >= least) cycle
           least = distance
           frame_a = frames_a(i)
@@ -152,25 +153,6 @@ contains
       most = 8*most
     end do
   end subroutine nearest_frames
-
-  !> Steps between two frames, counted up to `most`.
-  pure integer function distance_of(plan, frame_a, frame_b, most) result(distance)
-    type(plan_type), intent(in) :: plan
-    integer, intent(in) :: frame_a, frame_b, most
-    integer :: a, b
-
-    a = frame_a
-    b = frame_b
-    distance = 0
-    do while (a /= b .and. distance < most)
-      distance = distance + 1
-      if (a > b) then
-        a = plan%steps(a)%parent
-      else
-        b = plan%steps(b)%parent
-      end if
-    end do
-  end function distance_of
 
   !> The frame by which a link is known.
   pure subroutine make_first(link, frame, plan, layout)
@@ -250,48 +232,6 @@ contains
     closure%closing = closing
     closure%target = target
     closure%in_target = compose(layout%link_in(target), inverse(layout%link_in(closing)))
-    call find_loop(plan, closure)
+    call find_loop(plan%steps, closure)
   end subroutine make_closure
-
-  !> The whole loop of a closure as its path, and the base of the loop.
-  pure subroutine find_loop(plan, closure)
-    type(plan_type), intent(in) :: plan
-    type(closure_type), intent(inout) :: closure    !< its frames `closing` and `target` are set
-    integer :: n
-
-    n = 0
-    call walk_loop(plan, closure, n)
-    if (allocated(closure%path%steps)) deallocate (closure%path%steps, closure%path%signs)
-    allocate (closure%path%steps(n), closure%path%signs(n))
-    call walk_loop(plan, closure, n, closure%path)
-  end subroutine find_loop
-
-  !> Walk both ends of a loop back until they meet in its base, counting the steps, and on a second
-  !> walk writing them down from the base outwards.
-  pure subroutine walk_loop(plan, closure, n, path)
-    type(plan_type), intent(in) :: plan
-    type(closure_type), intent(inout) :: closure
-    integer, intent(inout) :: n                     !< steps of the loop
-    type(path_type), intent(inout), optional :: path  !< of size n
-    integer :: up, down, taken
-
-    up = closure%closing
-    down = closure%target
-    taken = 0
-    do while (up /= down)
-      taken = taken + 1
-      ! frames are numbered outwards: the larger number steps back
-      if (present(path)) then
-        path%steps(n - taken + 1) = max(up, down)
-        path%signs(n - taken + 1) = merge(1.0_wp, -1.0_wp, up > down)
-      end if
-      if (up > down) then
-        up = plan%steps(up)%parent
-      else
-        down = plan%steps(down)%parent
-      end if
-    end do
-    closure%base = up
-    n = taken
-  end subroutine walk_loop
 end module mech9_frames

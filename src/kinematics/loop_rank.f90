@@ -8,8 +8,9 @@ module mech9_loop_rank
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
-  use mech9_plan, only: plan_type, closure_type, block_type
-  use mech9_state, only: state_type, new_state
+  use mech9_plan, only: plan_type, closure_type, block_type, new_state
+  use mech9_state, only: state_type
+  use mech9_arithmetics, only: set_in_space
   use mech9_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_assembly, only: assemble_block, assembly_outcome_type
   implicit none
@@ -35,11 +36,11 @@ contains
     integer :: c, n
 
     do c = 1, size(plan%closures)
-      n = size(plan%closures(c)%path%steps)
+      n = size(plan%closures(c)%loop%steps)
       plan%closures(c)%offers = min(plan%closures(c)%rank, n)
       if (plan%closures(c)%rank <= never_overconstrained .or. n > longest_loop) cycle
       call find_rank_alone(loop_alone(plan, plan%closures(c)), &
-                           guess(plan%steps(plan%closures(c)%path%steps)%coordinate), plan%closures(c)%offers)
+                           guess(plan%steps(plan%closures(c)%loop%steps)%coordinate), plan%closures(c)%offers)
     end do
   end subroutine find_offers
 
@@ -86,28 +87,31 @@ contains
     type(plan_type) :: loop
     integer :: i, k, n
 
-    n = size(closure%path%steps)
+    n = size(closure%loop%steps)
     loop%n_coordinates = n
     loop%length = plan%length
     loop%data_tolerance = plan%data_tolerance
-    loop%steps = plan%steps(closure%path%steps)
+    loop%steps = plan%steps(closure%loop%steps)
     loop%unit_of = plan%unit_of(loop%steps%coordinate)
     allocate (loop%pairs(n))
     do i = 1, n
       k = loop%steps(i)%coordinate
       if (.not. loop%steps(i)%is_screw) allocate (loop%pairs(i)%pair, source=plan%pairs(k)%pair)
       loop%steps(i)%coordinate = i
-      loop%steps(i)%parent = place_of(loop%steps(i)%parent, closure%path%steps)
+      loop%steps(i)%parent = place_of(loop%steps(i)%parent, closure%loop%steps)
       loop%steps(i)%dependent = .true.
     end do
     loop%closures = [closure]
     loop%closures(1)%base = 0
-    loop%closures(1)%closing = place_of(closure%closing, closure%path%steps)
-    loop%closures(1)%target = place_of(closure%target, closure%path%steps)
-    loop%closures(1)%path%steps = [(i, i=1, n)]
+    loop%closures(1)%closing = place_of(closure%closing, closure%loop%steps)
+    loop%closures(1)%target = place_of(closure%target, closure%loop%steps)
+    loop%closures(1)%loop%steps = [(i, i=1, n)]
+    loop%closures(1)%loop%stems = 0
+    loop%closures(1)%part = loop%closures(1)%loop
     allocate (loop%blocks(1))
     loop%blocks(1) = block_type(first_step=1, last_step=n, first_closure=1, last_closure=1, chains=[1], &
                                 equations=closure%rank, unknowns=[(i, i=1, n)], coordinates=[(i, i=1, n)])
+    call set_in_space(loop)
   end function loop_alone
 
   !> Place of a frame in a list of frames; 0 where it is not there.

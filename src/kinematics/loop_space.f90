@@ -6,10 +6,9 @@ module mech9_loop_space
   use mech9_random, only: random_type
   use mech9_rotation, only: cross
   use mech9_screw, only: generated_algebra
-  use mech9_plan, only: plan_type, closure_type
-  use mech9_state, only: state_type, new_state
-  use mech9_composition, only: place_frames
-  use mech9_closure, only: loop_screw
+  use mech9_plan, only: plan_type, closure_type, new_state
+  use mech9_state, only: state_type
+  use mech9_spatial_closure, only: loop_screw
   implicit none
   private
   public :: find_loop_spaces
@@ -38,10 +37,11 @@ contains
       ! a user pair may not have a pose just anywhere
       if (plan%steps(plan%step_of(k))%is_screw) state%q(k) = guess(k) + plan%unit_of(k)*random%symmetric()
     end do
-    call place_frames(plan, 1, plan%n_coordinates, state, err)
+    call plan%arithmetics(1)%kind%place(plan, 1, plan%n_coordinates, state, err)
     if (allocated(err)) return
     do c = 1, size(plan%closures)
       call find_space(plan, state, plan%closures(c))
+      plan%constraints(c)%item%equations = plan%closures(c)%rank
     end do
   end subroutine find_loop_spaces
 
@@ -49,14 +49,14 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: state
     type(closure_type), intent(inout) :: closure
-    real(wp) :: screws(6, 2*size(closure%path%steps))
+    real(wp) :: screws(6, 2*size(closure%loop%steps))
     integer :: i, n, s
     real(wp) :: within
 
     within = max(tolerance, inexact*plan%data_tolerance)
     n = 0
-    do i = 1, size(closure%path%steps)
-      s = closure%path%steps(i)
+    do i = 1, size(closure%loop%steps)
+      s = closure%loop%steps(i)
       n = n + 1
       screws(:, n) = loop_screw(plan, closure, state, state%axis_w(:, s), state%axis_v(:, s), state%p(:, s))
       screws(:, n) = screws(:, n)/norm2(screws(:, n))

@@ -6,8 +6,8 @@ module mech9_mobility
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_closure, only: closure_jacobian
   use mech9_elsewhere, only: free_block
+  use mech9_block_equations, only: block_jacobian
   implicit none
   private
   public :: find_motions, choose_coordinates, shares_of, moves_least
@@ -46,7 +46,7 @@ contains
     allocate (a(m, n), vt(n, n), s(min(m, n)), work(16*(m + n) + 64), source=0.0_wp)
     rank = 0
     if (n > 0) then
-      if (block%equations > 0) call closure_jacobian(plan, block, state, column_of, a)
+      if (block%equations > 0) call block_jacobian(plan, block, state, column_of, a)
       call dgesvd('N', 'A', m, n, a, m, s, u, 1, vt, n, work, size(work), info)
       rank = count(s > max(rank_tolerance, inexact*plan%data_tolerance)*max(s(1), tiny(s)))
     end if

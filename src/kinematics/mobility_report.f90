@@ -9,11 +9,10 @@ module mech9_mobility_report
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_motion, only: step_screw
-  use mech9_frames, only: find_loop
-  use mech9_closure, only: closure_jacobian
   use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
   use mech9_elsewhere, only: elsewhere_type, go_elsewhere
+  use mech9_frame_motion, only: step_screw
+  use mech9_block_equations, only: block_jacobian
   implicit none
   private
   public :: mobility_report_type, idle_type, report_mobility
@@ -50,20 +49,17 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start          !< assembled
     type(mobility_report_type), intent(out) :: report
-    type(plan_type) :: whole
     type(elsewhere_type) :: elsewhere
     type(state_type) :: state
     integer :: c
 
-    whole = plan
     allocate (report%dimensions(plan%n_coordinates), source=0)
     do c = 1, size(plan%closures)
-      call find_loop(whole, whole%closures(c))
-      associate (loop => plan%steps(whole%closures(c)%path%steps)%coordinate)
+      associate (loop => plan%steps(plan%closures(c)%loop%steps)%coordinate)
         report%dimensions(loop) = max(report%dimensions(loop), plan%closures(c)%rank)
       end associate
     end do
-    call go_elsewhere(whole, whole%blocks, start, elsewhere, report%general)
+    call go_elsewhere(plan, plan%blocks, start, elsewhere, report%general)
     state = start
     if (report%general) state = elsewhere%state
     report%by_count = plan%n_coordinates - sum(plan%closures%rank)
@@ -107,7 +103,7 @@ contains
     real(wp) :: a(block%equations, size(block%unknowns))
     integer :: c, rows, rank, before
 
-    call closure_jacobian(plan, block, state, column_of, a)
+    call block_jacobian(plan, block, state, column_of, a)
     rows = 0
     before = 0
     do c = block%first_closure, block%last_closure

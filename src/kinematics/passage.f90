@@ -12,14 +12,12 @@ module mech9_passage
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, velocity_known, acceleration_known
-  use mech9_composition, only: place_frames
-  use mech9_closure, only: closure_errors, closure_rates
-  use mech9_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, &
-    apply_change
-  use mech9_motion, only: spread_velocities, spread_accelerations
+  use mech9_state, only: state_type, acceleration_known
+  use mech9_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, apply_change
   use mech9_watch, only: watch_type, factorize_trial
   use mech9_following, only: follower_type, settle, step_towards, set_inputs
+  use mech9_frame_motion, only: place_frames, spread_velocities, spread_accelerations
+  use mech9_block_equations, only: block_rates, block_residual
   implicit none
   private
   public :: passage_type, build_passage, position_within, land_near, walk
@@ -232,7 +230,7 @@ contains
     if (allocated(err)) return
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))
-        call place_frames(plan, block%first_step, block%last_step, state, err)
+        call place_frames(plan, block, state, err)
         if (allocated(err)) return
         call factorize_trial(plan, block, state, work(b), watches(b))
         if (size(block%unknowns) > 0 .and. watches(b)%trial_pivot < near*watches(b)%largest_pivot) then
@@ -264,10 +262,10 @@ contains
     integer :: i
 
     do i = 1, 2
-      call closure_errors(plan, block, state, work%right)
+      call block_residual(plan, block, state, work%right)
       call solve_where_determined(work, watch)
       call apply_change(plan, block, work%change, state)
-      call place_frames(plan, block%first_step, block%last_step, state, err)
+      call place_frames(plan, block, state, err)
       if (allocated(err)) return
     end do
   end subroutine close_where_determined
@@ -281,16 +279,16 @@ contains
     type(watch_type), intent(in) :: watch
 
     associate (k => block%coordinates)
-      call spread_velocities(plan, block%first_step, block%last_step, state)
-      call closure_rates(plan, block, state, velocity_known, work%right)
+      call spread_velocities(plan, block, state)
+      call block_rates(plan, block, 1, state, work%right)
       call solve_where_determined(work, watch)
       state%dq(k) = state%dq(k) + work%change*plan%unit_of(k)
-      call spread_velocities(plan, block%first_step, block%last_step, state)
-      call spread_accelerations(plan, block%first_step, block%last_step, state)
-      call closure_rates(plan, block, state, acceleration_known, work%right)
+      call spread_velocities(plan, block, state)
+      call spread_accelerations(plan, block, block%last_step, state)
+      call block_rates(plan, block, 2, state, work%right)
       call solve_where_determined(work, watch)
       state%ddq(k) = state%ddq(k) + work%change*plan%unit_of(k)
-      call spread_accelerations(plan, block%first_step, block%last_step, state)
+      call spread_accelerations(plan, block, block%last_step, state)
     end associate
   end subroutine move_where_determined
 

@@ -8,7 +8,7 @@ module mech9_planar_chain
   use mech9_plan, only: plan_type, block_type
   use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
   use mech9_planar_motion, only: planar_motion_type, find_accelerations
-  use mech9_planar_closure, only: move_to_base, stem_difference
+  use mech9_planar_formulas, only: step_column, step_velocity, add_rate, add_swing, stem_difference, rows_at_base
   implicit none
   private
   public :: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
@@ -44,14 +44,14 @@ contains
     chain%coordinates = block%coordinates
     chain%units = plan%unit_of(block%coordinates)
     allocate (chain%signs(block%first_step:block%last_step), source=0.0_wp)
-    associate (path => plan%closures(chain%closure)%path)
-      chain%stems = path%stems
-      do i = 1, size(path%steps)
-        s = path%steps(i)
+    associate (part => plan%closures(chain%closure)%part)
+      chain%stems = part%stems
+      do i = 1, size(part%steps)
+        s = part%steps(i)
         if (s < block%first_step) return
-        chain%signs(s) = path%signs(i)
+        chain%signs(s) = part%signs(i)
       end do
-      chain%given = pack(path%steps, .not. plan%steps(path%steps)%dependent)
+      chain%given = pack(part%steps, .not. plan%steps(part%steps)%dependent)
     end associate
     chain%used = .true.
   end function new_planar_chain
@@ -109,22 +109,11 @@ contains
     real(wp), intent(in) :: signs(first:last), per_length, f(4, 0:m), slide(2, m)
     type(planar_step_type), intent(in) :: steps(m)
     real(wp), intent(out) :: jacobian(3, 3)
-    real(wp) :: w
     integer :: j, s
 
     do j = 1, 3
       s = unknowns(j)
-      if (steps(s)%turns) then
-        w = signs(s)*steps(s)%turn
-        jacobian(1, j) = w
-        w = w*per_length
-        jacobian(2, j) = w*(f(4, s) - f(4, base))
-        jacobian(3, j) = w*(f(3, base) - f(3, s))
-      else
-        jacobian(1, j) = 0.0_wp
-        jacobian(2, j) = signs(s)*slide(1, s)
-        jacobian(3, j) = signs(s)*slide(2, s)
-      end if
+      call step_column(steps(s), signs(s), f(:, s), slide(:, s), f(3:4, base), per_length, jacobian(:, j))
     end do
   end subroutine fill
 
@@ -139,7 +128,7 @@ contains
     real(wp), intent(out) :: swing(2)               !< as the loop would open if it only kept the velocities
     real(wp) :: opening(3)
 
-    call stem_difference(m, chain%stems, f(3:4, closure%closing), f, v, opening(1), opening(2), opening(3))
+    call stem_difference(m, chain%stems, f(3:4, closure%closing), f, v, opening)
     call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, dq, opening)
     call close_rates(chain, closure, per_length, inverse, m, f, opening, dq)
     call find_velocities(first, last_moved, signs, m, steps, f, slide, dq, v, swing)
@@ -156,7 +145,7 @@ contains
     real(wp), intent(inout) :: ddq(m), a(3, 0:m)
     real(wp) :: opening(3)
 
-    call stem_difference(m, chain%stems, f(3:4, closure%closing), f, a, opening(1), opening(2), opening(3))
+    call stem_difference(m, chain%stems, f(3:4, closure%closing), f, a, opening)
     call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, ddq, opening)
     ! what the target carries along swings about it
     opening(2) = opening(2) + swing(1) + v(1, closure%target)**2*(f(3, closure%closing) - f(3, closure%target))
@@ -171,21 +160,11 @@ contains
     real(wp), intent(in) :: signs(first:last), place(2), f(4, 0:m), slide(2, m), rates(m)
     type(planar_step_type), intent(in) :: steps(m)
     real(wp), intent(inout) :: opening(3)
-    real(wp) :: rate
     integer :: i, s
 
     do i = 1, n
       s = given(i)
-      rate = signs(s)*rates(steps(s)%coordinate)
-      if (steps(s)%turns) then
-        rate = rate*steps(s)%turn
-        opening(1) = opening(1) + rate
-        opening(2) = opening(2) - rate*(place(2) - f(4, s))
-        opening(3) = opening(3) + rate*(place(1) - f(3, s))
-      else
-        opening(2) = opening(2) + rate*slide(1, s)
-        opening(3) = opening(3) + rate*slide(2, s)
-      end if
+      call add_rate(steps(s), signs(s)*rates(steps(s)%coordinate), f(:, s), slide(:, s), place, opening)
     end do
   end subroutine add_given
 
@@ -199,7 +178,7 @@ contains
     real(wp) :: rows(3)
     integer :: j
 
-    call move_to_base(closure, per_length, m, f, opening(1), opening(2), opening(3), rows)
+    call rows_at_base(closure, per_length, m, f, opening, rows)
     do j = 1, 3
       rates(chain%coordinates(j)) = -chain%units(j)*(inverse(j, 1)*rows(1) + inverse(j, 2)*rows(2) + inverse(j, 3)*rows(3))
     end do
@@ -212,28 +191,17 @@ contains
     type(planar_step_type), intent(in) :: steps(m)
     real(wp), intent(inout) :: v(3, 0:m)
     real(wp), intent(out) :: swing(2)
-    real(wp) :: w, x, y, rate, square, coriolis
+    real(wp) :: x, y, rate
     integer :: i, p
 
     swing = 0.0_wp
     do i = first, last
       p = steps(i)%parent
       rate = dq(steps(i)%coordinate)
-      w = v(1, p)
       x = f(3, i) - f(3, p)
       y = f(4, i) - f(4, p)
-      v(1, i) = w + steps(i)%turn*rate
-      v(2, i) = v(2, p) - w*y
-      v(3, i) = v(3, p) + w*x
-      square = signs(i)*w**2
-      swing(1) = swing(1) - square*x
-      swing(2) = swing(2) - square*y
-      if (steps(i)%turns) cycle
-      v(2, i) = v(2, i) + rate*slide(1, i)
-      v(3, i) = v(3, i) + rate*slide(2, i)
-      coriolis = 2.0_wp*signs(i)*w*rate
-      swing(1) = swing(1) - coriolis*slide(2, i)
-      swing(2) = swing(2) + coriolis*slide(1, i)
+      call step_velocity(steps(i), rate, x, y, slide(:, i), v(:, p), v(:, i))
+      call add_swing(steps(i), signs(i), rate, x, y, slide(:, i), v(1, p), swing)
     end do
   end subroutine find_velocities
 end module mech9_planar_chain

@@ -8,6 +8,7 @@ module mech9_planar_motion
   use mech9_sine_cosine, only: cosines_and_sines
   use mech9_rotation, only: turn_on
   use mech9_planar_plan, only: planar_plan_type, planar_step_type
+  use mech9_planar_formulas, only: step_velocity, step_acceleration
   implicit none
   private
   public :: planar_motion_type, new_planar_motion, place_in_plane, nudge_in_plane, planar_velocities, planar_accelerations, &
@@ -123,19 +124,11 @@ contains
     type(planar_step_type), intent(in) :: steps(m)
     real(wp), intent(in) :: dq(m), f(4, 0:m), slide(2, m)
     real(wp), intent(inout) :: v(3, 0:m)
-    real(wp) :: w, rate
     integer :: i, p
 
     do i = first, last
       p = steps(i)%parent
-      rate = dq(steps(i)%coordinate)
-      w = v(1, p)
-      v(1, i) = w + steps(i)%turn*rate
-      v(2, i) = v(2, p) - w*(f(4, i) - f(4, p))
-      v(3, i) = v(3, p) + w*(f(3, i) - f(3, p))
-      if (steps(i)%turns) cycle
-      v(2, i) = v(2, i) + rate*slide(1, i)
-      v(3, i) = v(3, i) + rate*slide(2, i)
+      call step_velocity(steps(i), dq(steps(i)%coordinate), f(3, i) - f(3, p), f(4, i) - f(4, p), slide(:, i), v(:, p), v(:, i))
     end do
   end subroutine find_velocities
 
@@ -156,22 +149,12 @@ contains
     type(planar_step_type), intent(in) :: steps(m)
     real(wp), intent(in) :: dq(m), ddq(m), f(4, 0:m), slide(2, m), v(3, 0:m)
     real(wp), intent(inout) :: a(3, 0:m)
-    real(wp) :: x, y, w, alpha, coriolis
     integer :: i, p
 
     do i = first, last
       p = steps(i)%parent
-      x = f(3, i) - f(3, p)
-      y = f(4, i) - f(4, p)
-      w = v(1, p)
-      alpha = a(1, p)
-      a(1, i) = alpha + steps(i)%turn*ddq(steps(i)%coordinate)
-      a(2, i) = a(2, p) - alpha*y - w**2*x
-      a(3, i) = a(3, p) + alpha*x - w**2*y
-      if (steps(i)%turns) cycle
-      coriolis = 2.0_wp*w*dq(steps(i)%coordinate)
-      a(2, i) = a(2, i) + ddq(steps(i)%coordinate)*slide(1, i) - coriolis*slide(2, i)
-      a(3, i) = a(3, i) + ddq(steps(i)%coordinate)*slide(2, i) + coriolis*slide(1, i)
+      call step_acceleration(steps(i), dq(steps(i)%coordinate), ddq(steps(i)%coordinate), f(3, i) - f(3, p), &
+                             f(4, i) - f(4, p), slide(:, i), v(1, p), a(:, p), a(:, i))
     end do
   end subroutine find_accelerations
 

@@ -9,13 +9,15 @@ module mech9_planning
   use mech9_error, only: error_type, raise, exit_structure
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, new_state
+  use mech9_plan, only: plan_type, block_type, new_state
+  use mech9_state, only: state_type
   use mech9_needs, only: needs_type, leave_out
   use mech9_frames, only: lay_out_frames
+  use mech9_arithmetics, only: set_in_space, set_in_plane
   use mech9_planar_layout, only: lay_out_in_plane
   use mech9_loop_space, only: find_loop_spaces
   use mech9_loop_rank, only: find_offers
+  use mech9_tree_paths, only: split_loops
   use mech9_blocks, only: make_blocks, count_block
   use mech9_random, only: random_type
   use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
@@ -55,6 +57,7 @@ contains
     logical :: spatial
 
     call lay_out_frames(mechanism, plan)
+    call set_in_space(plan)
     state = new_state(plan)
     state%q = start
     call find_loop_spaces(plan, start, err)
@@ -62,14 +65,16 @@ contains
     call find_offers(plan, start)
     call propose_blocks(plan, state, err)
     if (allocated(err)) return
+    call set_in_space(plan)
     if (present(needs)) call leave_out(plan, needs)
     spatial = .false.
     if (present(in_space)) spatial = in_space
-    if (.not. spatial) call lay_out_in_plane(plan)
-    if (plan%planar%used) then
-      state = new_state(plan)
-      state%q = start
+    if (.not. spatial) then
+      call lay_out_in_plane(plan)
+      call set_in_plane(plan)
     end if
+    state = new_state(plan)
+    state%q = start
     call settle_blocks(plan, state, elsewhere, err)
     if (allocated(err)) return
     call check_inputs(plan, state, elsewhere, err)
@@ -79,7 +84,6 @@ contains
     if (allocated(err)) return
     if (present(needs)) call leave_out(plan, needs)
     call find_constants(plan)
-    call trim_paths(plan)
   end subroutine make_plan
 
   !> Blocks by structure and ranks of the loops. An error says that they cannot determine all
@@ -129,6 +133,7 @@ contains
         blocks(n)%last_step = plan%blocks(b)%last_step
         blocks(n)%last_closure = plan%blocks(b)%last_closure
         call count_block(plan, blocks(n))
+        call split_loops(blocks(n), plan)
       end if
       call settle_block(plan, blocks(:n), state, elsewhere, complete, err)
       if (allocated(err)) return
@@ -294,41 +299,11 @@ contains
       associate (block => plan%blocks(b))
         block%is_constant = size(block%unknowns) > 0
         do c = block%first_closure, block%last_closure
-          associate (loop => plan%steps(plan%closures(c)%path%steps))
+          associate (loop => plan%steps(plan%closures(c)%loop%steps))
             block%is_constant = block%is_constant .and. all(loop%is_screw) .and. .not. any(abs(loop%turn) > 0.0_wp)
           end associate
         end do
       end associate
     end do
   end subroutine find_constants
-
-  !> In time only a block's own steps move against its closures.
-  subroutine trim_paths(plan)
-    type(plan_type), intent(inout) :: plan
-    integer :: b, c
-    logical, allocatable :: own(:)
-
-    do b = 1, size(plan%blocks)
-      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
-        associate (path => plan%closures(c)%path)
-          own = path%steps >= plan%blocks(b)%first_step
-          path%signs = pack(path%signs, own)
-          path%steps = pack(path%steps, own)
-          path%stems = [stem_of(plan, plan%closures(c)%closing, plan%blocks(b)%first_step), &
-                        stem_of(plan, plan%closures(c)%target, plan%blocks(b)%first_step)]
-        end associate
-      end do
-    end do
-  end subroutine trim_paths
-
-  !> The frame before step `first` from which a frame is reached.
-  pure integer function stem_of(plan, frame, first) result(stem)
-    type(plan_type), intent(in) :: plan
-    integer, intent(in) :: frame, first
-
-    stem = frame
-    do while (stem >= first)
-      stem = plan%steps(stem)%parent
-    end do
-  end function stem_of
 end module mech9_planning

@@ -5,11 +5,10 @@ module mech9_solver
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, velocity_known, acceleration_known
-  use mech9_composition, only: place_frames, nudge_frames
-  use mech9_closure, only: closure_errors, closure_jacobian, closure_rates
+  use mech9_state, only: state_type
   use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
-  use mech9_motion, only: spread_velocities, spread_accelerations
+  use mech9_frame_motion, only: place_frames, nudge_frames, spread_velocities, spread_accelerations
+  use mech9_block_equations, only: block_jacobian, block_rates, block_residual
   implicit none
   private
   public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, solve_motion
@@ -92,12 +91,12 @@ contains
     least = 0
     if (present(at_least)) least = at_least
     previous = 0.0_wp
-    call place_frames(plan, block%first_step, block%last_step, state, err)
+    call place_frames(plan, block, state, err)
     if (allocated(err)) return
     work%count%frames_placed = work%count%frames_placed + steps_of(block)
     outcome%converged = size(block%unknowns) == 0
     do while (.not. outcome%converged)
-      call closure_errors(plan, block, state, work%right)
+      call block_residual(plan, block, state, work%right)
       lack = maxval(abs(work%right))
       outcome%converged = lack <= closed_enough .and. outcome%iterations >= least
       if (outcome%converged) return
@@ -114,9 +113,9 @@ contains
       else
         work%count%frames_placed = work%count%frames_placed + steps_of(block)
         if (size_of_change <= small_turn) then
-          call nudge_frames(plan, block%first_step, block%last_step, block%unknowns, work%change, state, err)
+          call nudge_frames(plan, block, work%change, state, err)
         else
-          call place_frames(plan, block%first_step, block%last_step, state, err)
+          call place_frames(plan, block, state, err)
         end if
       end if
       if (allocated(err)) return
@@ -138,7 +137,7 @@ contains
     if (work%chain%used) then
       call chain_jacobian(plan%planar, work%chain, state%planar, work%jacobian)
     else
-      call closure_jacobian(plan, block, state, work%column_of, work%jacobian)
+      call block_jacobian(plan, block, state, work%column_of, work%jacobian)
     end if
     call work%equations%factorize(work%jacobian)
     work%count%factorizations = work%count%factorizations + 1
@@ -198,11 +197,11 @@ contains
     if (present(remainder)) remainder = 0.0_wp
     call clear_at(size(block%unknowns), block%coordinates, state%dq)
     if (block%equations == 0) then
-      call spread_velocities(plan, block%first_step, block%last_step, state)
+      call spread_velocities(plan, block, state)
       work%count%frames_moved = work%count%frames_moved + steps_of(block)
       return
     end if
-    call closure_rates(plan, block, state, velocity_known, work%right)
+    call block_rates(plan, block, 1, state, work%right)
     work%right = -work%right
     if (present(remainder)) then
       call work%equations%solve(work%right, work%change, remainder)
@@ -210,7 +209,7 @@ contains
       call work%equations%solve(work%right, work%change)
     end if
     call add_at(size(work%change), block%coordinates, work%change, plan%unit_of, state%dq)
-    call spread_velocities(plan, block%first_step, block%last_step, state)
+    call spread_velocities(plan, block, state)
     work%count%frames_moved = work%count%frames_moved + steps_of(block)
   end subroutine solve_rates
 
@@ -247,12 +246,12 @@ contains
     last = min(block%last_step, block%last_moved)
     call clear_at(size(block%unknowns), block%coordinates, state%ddq)
     if (size(block%unknowns) > 0) then
-      call closure_rates(plan, block, state, acceleration_known, work%right)
+      call block_rates(plan, block, 2, state, work%right)
       work%right = -work%right
       call work%equations%solve(work%right, work%change)
       call add_at(size(work%change), block%coordinates, work%change, plan%unit_of, state%ddq)
     end if
-    call spread_accelerations(plan, block%first_step, last, state)
+    call spread_accelerations(plan, block, last, state)
     work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
   end subroutine solve_accelerations
 

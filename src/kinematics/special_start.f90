@@ -11,12 +11,12 @@ module mech9_special_start
   use mech9_hermite, only: build_hermite
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, velocity_known, acceleration_known
-  use mech9_closure, only: closure_jacobian, closure_rates
+  use mech9_state, only: state_type
   use mech9_solver, only: block_work_type
-  use mech9_motion, only: spread_velocities, spread_accelerations
   use mech9_following, only: follower_type
   use mech9_passage, only: passage_type, land_near, walk
+  use mech9_frame_motion, only: spread_velocities, spread_accelerations
+  use mech9_block_equations, only: block_jacobian, block_rates
   implicit none
   private
   public :: ways_type, find_ways, start_passage
@@ -60,14 +60,14 @@ contains
     ways%unclear = n - rank /= 1
     if (ways%unclear) return
     call set_rates(plan, block, 0.0_wp*s, state)
-    call closure_rates(plan, block, state, velocity_known, right)
+    call block_rates(plan, block, 1, state, right)
     ways%dead = norm2(matmul(right, u(:, n:))) > nothing*max(norm2(right), tiny(s))
     if (ways%dead) return
     particular = -matmul(matmul(right, u(:, :rank))/s(:rank), vt(:rank, :))
     ! the quadratic from three of its values: at -1, 0 and 1
     do i = 1, 3
       call set_rates(plan, block, particular + (i - 2)*vt(n, :), state)
-      call closure_rates(plan, block, state, acceleration_known, terms(:, i))
+      call block_rates(plan, block, 2, state, terms(:, i))
     end do
     call find_roots(matmul(transpose(u(:, n:)), terms), ways%count, roots, ways%unclear)
     do i = 1, ways%count
@@ -87,7 +87,7 @@ contains
     real(wp) :: a(size(u, 1), size(s)), scratch(20*(size(u, 1) + size(s)))
     integer :: info
 
-    call closure_jacobian(plan, block, state, work%column_of, a)
+    call block_jacobian(plan, block, state, work%column_of, a)
     call dgesvd('A', 'A', size(a, 1), size(s), a, size(a, 1), s, u, size(a, 1), vt, size(s), scratch, size(scratch), info)
   end subroutine decompose
 
@@ -104,8 +104,8 @@ contains
       state%dq(k) = rates(i)*plan%unit_of(k)
       state%ddq(k) = 0.0_wp
     end do
-    call spread_velocities(plan, block%first_step, block%last_step, state)
-    call spread_accelerations(plan, block%first_step, block%last_step, state)
+    call spread_velocities(plan, block, state)
+    call spread_accelerations(plan, block, block%last_step, state)
   end subroutine set_rates
 
   !> Real roots of the quadratic with these values at -1, 0 and 1, in the direction in which it is largest.

@@ -1,11 +1,10 @@
-!> The state of motion of a mechanism and what is known of it. Uses kinds, plan, planar_motion.
+!> The state of motion of a mechanism.
 module mech9_state
   use mech9_kinds, only: wp
-  use mech9_plan, only: plan_type
-  use mech9_planar_motion, only: planar_motion_type, new_planar_motion
+  use mech9_planar_motion, only: planar_motion_type
   implicit none
   private
-  public :: state_type, new_state, nothing_known, position_known, velocity_known, acceleration_known
+  public :: state_type, nothing_known, position_known, velocity_known, acceleration_known
 
   !> How far a state is worked out.
   integer, parameter :: nothing_known = 0
@@ -36,29 +35,4 @@ module mech9_state
     real(wp), allocatable :: a(:, :)             !< (3,0:M) acceleration of the origin [m/s^2]
     type(planar_motion_type) :: planar           !< of the frames, where the plan is planar
   end type state_type
-
-contains
-
-  !> A state with room for all frames of a plan, everything zero and nothing known.
-  pure function new_state(plan) result(state)
-    type(plan_type), intent(in) :: plan
-    type(state_type) :: state
-    integer :: m, i
-
-    m = plan%n_coordinates
-    allocate (state%q(m), state%dq(m), state%ddq(m), source=0.0_wp)
-    if (plan%planar%used) then
-      state%planar = new_planar_motion(m)
-      return
-    end if
-    allocate (state%r(3, 3, 0:m), state%p(3, 0:m), source=0.0_wp)
-    allocate (state%angle(m), state%turn(2, m), source=0.0_wp)
-    state%turn(1, :) = 1.0_wp
-    allocate (state%axis_w(3, m), state%axis_v(3, m), source=0.0_wp)
-    allocate (state%axis_w_rate(3, m), state%axis_v_rate(3, m), source=0.0_wp)
-    allocate (state%omega(3, 0:m), state%v(3, 0:m), state%alpha(3, 0:m), state%a(3, 0:m), source=0.0_wp)
-    do i = 1, 3
-      state%r(i, i, :) = 1.0_wp
-    end do
-  end function new_state
 end module mech9_state

@@ -11,18 +11,17 @@ module mech9_tracking
   use mech9_state, only: state_type
   use mech9_solver, only: solve_rates, solve_accelerations
   use mech9_conditioning, only: conditioning_type
-  use mech9_closure, only: closing_error
   use mech9_planning, only: chain_names
   use mech9_watch, only: factorize_trial, is_near
   use mech9_following, only: follower_type, new_follower, settle, step_towards, set_inputs, go_back, add_accelerations
-  use mech9_special_position, only: finding_type, look_ahead, find_escape, nothing_special, dead_point, crossing, &
-    lost, escape
-  use mech9_motion, only: spread_velocities
+  use mech9_special_position, only: finding_type, look_ahead, find_escape, nothing_special, dead_point, crossing, lost, escape
   use mech9_special_start, only: ways_type, find_ways, start_passage
   use mech9_passage, only: passage_type, build_passage, position_within
+  use mech9_frame_motion, only: spread_velocities
+  use mech9_block_equations, only: largest_gap
   implicit none
   private
-  public :: tracker_type, start_tracking, advance, set_inputs, largest_closure, words_of_block
+  public :: tracker_type, start_tracking, advance, set_inputs, words_of_block
 
   !> Blocks whose least against largest pivot is below this start at a singular position: at a dead point
   !> round-off of the position leaves its square root, some 1e-8.
@@ -115,7 +114,7 @@ contains
       text = text//', which it cannot leave'
     else
       tracker%state%dq(block%coordinates) = ways%rates(:, 1)
-      call spread_velocities(plan, block%first_step, block%last_step, tracker%state)
+      call spread_velocities(plan, block, tracker%state)
       return
     end if
     call raise(err, exit_singular, text)
@@ -291,24 +290,10 @@ contains
     type(tracker_type), intent(inout) :: tracker
 
     tracker%positions = tracker%positions + 1
-    tracker%closure = largest_closure(plan, tracker%state)
+    tracker%closure = largest_gap(plan, tracker%state)
     tracker%worst_closure = max(tracker%worst_closure, tracker%closure)
     call tracker%conditioning%glance(tracker%state%t, tracker%work)
   end subroutine record
-
-  !> Largest closure error of a state: a length [m], rotations times the mechanism's size.
-  pure real(wp) function largest_closure(plan, state) result(largest)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
-    integer :: b, c
-
-    largest = 0.0_wp
-    do b = 1, size(plan%blocks)
-      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
-        largest = max(largest, closing_error(plan, c, state))
-      end do
-    end do
-  end function largest_closure
 
   !> Say where and why the motion cannot go on, and keep the independent coordinates there.
   subroutine refuse(mechanism, plan, tracker, err)

@@ -7,10 +7,11 @@
 module mech9_pair
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type
-  use mech9_pose, only: pose_type
+  use mech9_pose, only: pose_type, inverse
+  use mech9_rotation, only: turn, cross
   implicit none
   private
-  public :: pair_type, pair_slot_type, pair_motion_type, screw_factors_type, kind_name_length
+  public :: pair_type, pair_slot_type, pair_motion_type, screw_factors_type, kind_name_length, reversed_motion
 
   integer, parameter :: kind_name_length = 9   !< of the longest, prismatic
 
@@ -85,4 +86,21 @@ module mech9_pair
     end function calls_interface
   end interface
 
+contains
+
+  !> The motion of the reference link in the moving link, from that of the moving in the reference link.
+  pure function reversed_motion(motion) result(back)
+    type(pair_motion_type), intent(in) :: motion
+    type(pair_motion_type) :: back
+    real(wp) :: g(3), r_back(3, 3)
+
+    r_back = transpose(motion%pose%r)
+    back%pose = inverse(motion%pose)
+    g = motion%v - cross(motion%w, motion%pose%p)
+    back%w = -turn(r_back, motion%w)
+    back%v = -turn(r_back, g)
+    back%w_rate = -turn(r_back, motion%w_rate)
+    back%v_rate = turn(r_back, cross(motion%w, g) + cross(motion%w, motion%v) &
+                         + cross(motion%w_rate, motion%pose%p) - motion%v_rate)
+  end function reversed_motion
 end module mech9_pair

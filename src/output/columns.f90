@@ -7,8 +7,8 @@ module mech9_columns
   use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion, only: point_motion
   use mech9_poses, only: poses_type, poses_of
+  use mech9_frame_motion, only: point_motion
   implicit none
   private
   public :: columns_type, kinematic_columns
@@ -135,11 +135,12 @@ contains
       associate (point => mechanism%points(i))
         select case (self%derivatives)
         case (0)
-          call point_motion(plan, state, point, row(used + 1:used + 3))
+          call point_motion(plan, state, point%link, point%position, row(used + 1:used + 3))
         case (1)
-          call point_motion(plan, state, point, row(used + 1:used + 3), row(used + 4:used + 6))
+          call point_motion(plan, state, point%link, point%position, row(used + 1:used + 3), row(used + 4:used + 6))
         case default
-          call point_motion(plan, state, point, row(used + 1:used + 3), row(used + 4:used + 6), row(used + 7:used + 9))
+          call point_motion(plan, state, point%link, point%position, row(used + 1:used + 3), row(used + 4:used + 6), &
+                            row(used + 7:used + 9))
         end select
       end associate
       used = used + 3*(self%derivatives + 1)

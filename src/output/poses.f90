@@ -7,7 +7,7 @@ module mech9_poses
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion, only: link_motion
+  use mech9_frame_motion, only: link_motion
   implicit none
   private
   public :: poses_type, poses_of

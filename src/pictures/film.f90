@@ -8,8 +8,8 @@ module mech9_film
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion, only: point_motion, link_motion
   use mech9_columns, only: columns_type
+  use mech9_frame_motion, only: point_motion, link_motion
   implicit none
   private
   public :: film_type, new_film
@@ -101,7 +101,9 @@ contains
     integer :: i, n, new
 
     do i = 1, size(mechanism%points)
-      call point_motion(plan, state, mechanism%points(i), now(:, i, 1), now(:, i, 2), now(:, i, 3))
+      associate (point => mechanism%points(i))
+        call point_motion(plan, state, point%link, point%position, now(:, i, 1), now(:, i, 2), now(:, i, 3))
+      end associate
     end do
     new = self%between
     if (self%n_path_points == 0) new = 1

@@ -12,7 +12,6 @@ module mech9_dynamic_run
   use mech9_solver, only: work_count_type, work_of
   use mech9_needs, only: needs_of_results, add_forces, leave_out, stay_with
   use mech9_conditioning, only: conditioning_type
-  use mech9_tracking, only: largest_closure
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_coordinate_choice, only: best_independent, with_independent
   use mech9_expectation, only: expectation_type
@@ -25,6 +24,7 @@ module mech9_dynamic_run
   use mech9_closure_guard, only: check_closure
   use mech9_recording, only: motion_source_type, stop_if_interrupted
   use mech9_geometry_text, only: explain_geometry
+  use mech9_block_equations, only: largest_gap
   implicit none
   private
   public :: dynamic_run_type, event_type, start_dynamic_run, assemble_initial_state
@@ -159,7 +159,7 @@ contains
       call self%start_integrator(err)
     end if
     if (allocated(err)) return
-    gap = largest_closure(self%system%plan, self%system%state)
+    gap = largest_gap(self%system%plan, self%system%state)
     call check_closure(self%system%plan, t, gap, err)
     if (allocated(err)) return
     associate (system => self%system)

@@ -17,9 +17,9 @@ module mech9_literal_lagrange
   use mech9_coordinate_load, only: coordinate_load_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_closure, only: closure_errors
-  use mech9_motion, only: link_motion
   use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, factorize_block, apply_change
+  use mech9_frame_motion, only: link_motion
+  use mech9_block_equations, only: block_residual
   implicit none
   private
   public :: literal_type, literal_equations, close_chains
@@ -123,7 +123,7 @@ contains
       end if
       if (size(plan%blocks(b)%unknowns) == 0) cycle
       call factorize_block(plan, plan%blocks(b), state, work)
-      call closure_errors(plan, plan%blocks(b), state, work%right)
+      call block_residual(plan, plan%blocks(b), state, work%right)
       work%right = -work%right
       call work%equations%solve(work%right, work%change)
       call apply_change(plan, plan%blocks(b), work%change, state)

@@ -10,7 +10,6 @@ program test_planar_arithmetic
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_motion, only: point_motion
   use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
   use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
   use mech9_lagrange, only: find_equations, find_motion, complete_accelerations
@@ -19,6 +18,7 @@ program test_planar_arithmetic
   use mech9_mechanism_families, only: axis_type, home_mechanism, planar_axes
   use mech9_loaded_mechanisms, only: loaded_fig1, five_bar, open_chain, load_everything
   use mech9_testing, only: tester_type
+  use mech9_frame_motion, only: point_motion
   implicit none
 
   !> All that an evaluation of the motion gives.
@@ -182,7 +182,10 @@ contains
     result%velocity_terms = work%velocity_terms
     result%forces = work%forces
     allocate (result%points(3, 3))
-    call point_motion(plan, state, mechanism%points(1), result%points(:, 1), result%points(:, 2), result%points(:, 3))
+    associate (point => mechanism%points(1))
+      call point_motion(plan, state, point%link, point%position, result%points(:, 1), result%points(:, 2), &
+                        result%points(:, 3))
+    end associate
     result%energies = [kinetic_energy(dynamics, state), potential_energy(mechanism, plan, state, work%view)]
   end subroutine evaluate
 

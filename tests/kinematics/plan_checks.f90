@@ -3,7 +3,6 @@ module mech9_plan_checks
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_closure, only: closing_error
   use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
   use mech9_testing, only: tester_type
   implicit none
@@ -72,7 +71,7 @@ contains
     end if
     largest = 0.0_wp
     do c = 1, size(plan%closures)
-      largest = max(largest, closing_error(plan, c, state))
+      largest = max(largest, plan%constraints(c)%item%gap(plan, state))
     end do
     call test%near(largest/reach, 0.0_wp, 1.0e-13_wp, why//': closed to round-off')
   end subroutine check_closed
@@ -110,7 +109,7 @@ contains
       do c = 1, n
         if (.not. btest(part, c - 1)) cycle
         associate (closure => plan%closures(block%first_closure + c - 1))
-          met(closure%path%steps) = .true.
+          met(closure%part%steps) = .true.
           equations = equations + closure%rank
         end associate
       end do

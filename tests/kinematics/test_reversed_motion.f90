@@ -6,9 +6,8 @@ program test_reversed_motion
   use mech9_differentiation, only: half_width
   use mech9_rotation, only: about_axis
   use mech9_pose, only: pose_type, compose, inverse, identity_pose
-  use mech9_pair, only: pair_motion_type
+  use mech9_pair, only: reversed_motion, pair_motion_type
   use mech9_screw_pair, only: screw_pair_type, helical_pair
-  use mech9_composition, only: reversed_motion
   use mech9_random_geometry, only: random_vector, random_unit, random_pose, largest_difference
   use mech9_motion_check, only: motion_from_poses, poses_around, check_same_motion
   use mech9_testing, only: tester_type

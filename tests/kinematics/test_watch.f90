@@ -7,12 +7,12 @@ program test_watch
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_composition, only: place_frames
   use mech9_solver, only: block_work_type, new_block_work
   use mech9_watch, only: watch_type, new_watch, factorize_trial, watch_step, keep
   use mech9_sample_mechanisms, only: four_bar
   use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit
   use mech9_testing, only: tester_type
+  use mech9_frame_motion, only: place_all
   implicit none
   type(tester_type) :: test
   !> Coupler and rocker are stretched out and folded at a crank between 0 and half a turn.
@@ -50,7 +50,7 @@ contains
     type(error_type), allocatable :: err
 
     state%q = four_bar_guess(bar, angle, branch)
-    call place_frames(plan, 1, plan%n_coordinates, state, err)
+    call place_all(plan, state, err)
     call test%no_error(err, 'the frames are in place')
   end subroutine go_to
 

@@ -1,0 +1,43 @@
+!> The one place that decides in which arithmetic a plan is executed: in space, or in the plane of a planar mechanism.
+module mech9_arithmetics
+  use mech9_plan, only: plan_type
+  use mech9_planar_plan, only: planar_plan_type
+  use mech9_spatial_arithmetic, only: spatial_arithmetic_type
+  use mech9_spatial_closure, only: spatial_closure_type
+  use mech9_planar_arithmetic, only: planar_arithmetic_type
+  use mech9_planar_closure, only: planar_closure_constraint_type
+  implicit none
+  private
+  public :: set_in_space, set_in_plane
+
+contains
+
+  !> Execute a plan in space. The ranks of its closures count as they are now.
+  pure subroutine set_in_space(plan)
+    type(plan_type), intent(inout) :: plan
+    integer :: c
+
+    plan%planar = planar_plan_type()
+    if (allocated(plan%arithmetics)) deallocate (plan%arithmetics, plan%constraints)
+    allocate (plan%arithmetics(1), plan%constraints(size(plan%closures)))
+    allocate (spatial_arithmetic_type :: plan%arithmetics(1)%kind)
+    do c = 1, size(plan%closures)
+      allocate (plan%constraints(c)%item, &
+                source=spatial_closure_type(equations=plan%closures(c)%rank, closure=c))
+    end do
+  end subroutine set_in_space
+
+  !> Execute a plan in its plane, if it has been laid out there.
+  pure subroutine set_in_plane(plan)
+    type(plan_type), intent(inout) :: plan
+    integer :: c
+
+    if (.not. plan%planar%used) return
+    deallocate (plan%arithmetics, plan%constraints)
+    allocate (plan%arithmetics(1), plan%constraints(size(plan%closures)))
+    allocate (planar_arithmetic_type :: plan%arithmetics(1)%kind)
+    do c = 1, size(plan%closures)
+      allocate (plan%constraints(c)%item, source=planar_closure_constraint_type(equations=3, closure=c))
+    end do
+  end subroutine set_in_plane
+end module mech9_arithmetics

@@ -1,0 +1,86 @@
+!> The equations of a block: residuals, Jacobian and rates of its constraints, one below the other.
+module mech9_block_equations
+  use mech9_kinds, only: wp
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  implicit none
+  private
+  public :: block_residual, block_jacobian, block_rates, largest_gap
+
+contains
+
+  !> By how much the constraints of a block are not satisfied: rotations in rad, translations in lengths of the mechanism.
+  pure subroutine block_residual(plan, block, state, residual)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: residual(:)      !< (equations)
+    integer :: c, row
+
+    row = 0
+    do c = block%first_closure, block%last_closure
+      associate (constraint => plan%constraints(c)%item)
+        call constraint%residual(plan, state, residual(row + 1:row + constraint%equations))
+        row = row + constraint%equations
+      end associate
+    end do
+  end subroutine block_residual
+
+  !> Derivatives of the block's equations with respect to its unknowns, each coordinate in its own unit (rad, or the
+  !> mechanism's length).
+  pure subroutine block_jacobian(plan, block, state, column_of, jacobian)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    integer, intent(in), contiguous :: column_of(:)       !< column of each of the block's steps; 0: not an unknown
+    real(wp), intent(out), contiguous :: jacobian(:, :)   !< (equations, unknowns)
+    integer :: c, row
+
+    jacobian = 0.0_wp
+    row = 0
+    do c = block%first_closure, block%last_closure
+      associate (constraint => plan%constraints(c)%item)
+        if (block%whole_loops) then
+          call constraint%jacobian(plan, plan%closures(c)%loop, block%first_step, column_of, state, row, jacobian)
+        else
+          call constraint%jacobian(plan, plan%closures(c)%part, block%first_step, column_of, state, row, jacobian)
+        end if
+        row = row + constraint%equations
+      end associate
+    end do
+  end subroutine block_jacobian
+
+  !> First or second time derivatives of the block's residual at the rates, or rates and accelerations, in `state`. The frames of
+  !> earlier blocks must move as these say; of the block's own frames no accelerations are needed, and no velocities for the
+  !> first derivatives.
+  pure subroutine block_rates(plan, block, order, state, rates)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    integer, intent(in) :: order                          !< 1 or 2
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: rates(:)         !< (equations)
+    integer :: c, row
+
+    row = 0
+    do c = block%first_closure, block%last_closure
+      associate (constraint => plan%constraints(c)%item)
+        call constraint%rates(plan, order, state, rates(row + 1:row + constraint%equations))
+        row = row + constraint%equations
+      end associate
+    end do
+  end subroutine block_rates
+
+  !> Largest gap of any constraint that the plan's blocks solve: a length [m], rotations times the mechanism's size.
+  pure real(wp) function largest_gap(plan, state) result(largest)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer :: b, c
+
+    largest = 0.0_wp
+    do b = 1, size(plan%blocks)
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        largest = max(largest, plan%constraints(c)%item%gap(plan, state))
+      end do
+    end do
+  end function largest_gap
+end module mech9_block_equations

@@ -1,0 +1,156 @@
+!> The formulas of planar motion, each written once: what one step does to frames and to closures.
+!>
+!> A pose is (cosine, sine, x, y) in the plane's axes; a motion is (angular velocity about the normal, velocity of an origin), or
+!> the same of accelerations. They are small, so that the compiler can put them into the loops that use them.
+module mech9_planar_formulas
+  use mech9_kinds, only: wp
+  use mech9_planar_plan, only: planar_step_type, planar_closure_type
+  implicit none
+  private
+  public :: step_column, step_velocity, step_acceleration, add_rate, add_swing, stem_difference, rows_at_base
+
+contains
+
+  !> Derivatives of a closure's three equations with respect to the coordinate of a step of its loop.
+  pure subroutine step_column(step, sign, pose, slide, base, per_length, column)
+    type(planar_step_type), intent(in) :: step
+    real(wp), intent(in) :: sign                  !< of the step in the loop
+    real(wp), intent(in) :: pose(4)               !< of its frame [m]
+    real(wp), intent(in) :: slide(2)              !< velocity of its origin per unit rate
+    real(wp), intent(in) :: base(2)               !< origin of the frame at which the closure is written [m]
+    real(wp), intent(in) :: per_length            !< one over the mechanism's size [1/m]
+    real(wp), intent(out) :: column(3)            !< per rad, or per size
+    real(wp) :: w
+
+    if (step%turns) then
+      w = sign*step%turn
+      column(1) = w
+      w = w*per_length
+      column(2) = w*(pose(4) - base(2))
+      column(3) = w*(base(1) - pose(3))
+    else
+      column(1) = 0.0_wp
+      column(2) = sign*slide(1)
+      column(3) = sign*slide(2)
+    end if
+  end subroutine step_column
+
+  !> Velocity of a step's frame from that of its parent.
+  pure subroutine step_velocity(step, rate, x, y, slide, parent, v)
+    type(planar_step_type), intent(in) :: step
+    real(wp), intent(in) :: rate                  !< of its coordinate [rad/s, m/s]
+    real(wp), intent(in) :: x                     !< from the parent's origin to the frame's [m]
+    real(wp), intent(in) :: y                     !< the same along the second axis [m]
+    real(wp), intent(in) :: slide(2)              !< velocity of the origin per unit rate
+    real(wp), intent(in) :: parent(3)             !< motion of the parent [rad/s, m/s]
+    real(wp), intent(out) :: v(3)                 !< motion of the frame [rad/s, m/s]
+
+    v(1) = parent(1) + step%turn*rate
+    v(2) = parent(2) - parent(1)*y
+    v(3) = parent(3) + parent(1)*x
+    if (step%turns) return
+    v(2) = v(2) + rate*slide(1)
+    v(3) = v(3) + rate*slide(2)
+  end subroutine step_velocity
+
+  !> Acceleration of a step's frame from that of its parent.
+  pure subroutine step_acceleration(step, rate, acceleration, x, y, slide, w, parent, a)
+    type(planar_step_type), intent(in) :: step
+    real(wp), intent(in) :: rate                  !< of its coordinate [rad/s, m/s]
+    real(wp), intent(in) :: acceleration          !< of its coordinate [rad/s^2, m/s^2]
+    real(wp), intent(in) :: x                     !< from the parent's origin to the frame's [m]
+    real(wp), intent(in) :: y                     !< the same along the second axis [m]
+    real(wp), intent(in) :: slide(2)              !< velocity of the origin per unit rate
+    real(wp), intent(in) :: w                     !< angular velocity of the parent [rad/s]
+    real(wp), intent(in) :: parent(3)             !< acceleration of the parent [rad/s^2, m/s^2]
+    real(wp), intent(out) :: a(3)                 !< acceleration of the frame [rad/s^2, m/s^2]
+    real(wp) :: coriolis
+
+    a(1) = parent(1) + step%turn*acceleration
+    a(2) = parent(2) - parent(1)*y - w**2*x
+    a(3) = parent(3) + parent(1)*x - w**2*y
+    if (step%turns) return
+    coriolis = 2.0_wp*w*rate
+    a(2) = a(2) + acceleration*slide(1) - coriolis*slide(2)
+    a(3) = a(3) + acceleration*slide(2) + coriolis*slide(1)
+  end subroutine step_acceleration
+
+  !> Add the motion at a place that the rate of a step's coordinate gives to a loop.
+  pure subroutine add_rate(step, rate, pose, slide, place, opening)
+    type(planar_step_type), intent(in) :: step
+    real(wp), intent(in) :: rate                  !< rate or acceleration, with the sign of the step in the loop
+    real(wp), intent(in) :: pose(4)               !< of its frame [m]
+    real(wp), intent(in) :: slide(2)              !< velocity of its origin per unit rate
+    real(wp), intent(in) :: place(2)              !< [m]
+    real(wp), intent(inout) :: opening(3)         !< motion of the closing frame relative to the target
+    real(wp) :: w
+
+    if (step%turns) then
+      w = rate*step%turn
+      opening(1) = opening(1) + w
+      opening(2) = opening(2) - w*(place(2) - pose(4))
+      opening(3) = opening(3) + w*(place(1) - pose(3))
+    else
+      opening(2) = opening(2) + rate*slide(1)
+      opening(3) = opening(3) + rate*slide(2)
+    end if
+  end subroutine add_rate
+
+  !> Add the acceleration of a loop that the velocities of a step give it: centripetal and of Coriolis.
+  pure subroutine add_swing(step, sign, rate, x, y, slide, w, swing)
+    type(planar_step_type), intent(in) :: step
+    real(wp), intent(in) :: sign                  !< of the step in the loop
+    real(wp), intent(in) :: rate                  !< of its coordinate [rad/s, m/s]
+    real(wp), intent(in) :: x                     !< from the parent's origin to the frame's [m]
+    real(wp), intent(in) :: y                     !< the same along the second axis [m]
+    real(wp), intent(in) :: slide(2)              !< velocity of its origin per unit rate
+    real(wp), intent(in) :: w                     !< angular velocity of the parent [rad/s]
+    real(wp), intent(inout) :: swing(2)           !< [m/s^2]
+    real(wp) :: square, coriolis
+
+    square = sign*w**2
+    swing(1) = swing(1) - square*x
+    swing(2) = swing(2) - square*y
+    if (step%turns) return
+    coriolis = 2.0_wp*sign*w*rate
+    swing(1) = swing(1) - coriolis*slide(2)
+    swing(2) = swing(2) + coriolis*slide(1)
+  end subroutine add_swing
+
+  !> Difference at a place between the motions that two frames carry along: of their velocities, or of accelerations without those
+  !> of turning on.
+  pure subroutine stem_difference(m, stems, place, f, v, difference)
+    integer, intent(in) :: m                      !< steps
+    integer, intent(in) :: stems(2)               !< the two frames
+    real(wp), intent(in) :: place(2)              !< [m]
+    real(wp), intent(in) :: f(4, 0:m)             !< poses of the frames [m]
+    real(wp), intent(in) :: v(3, 0:m)             !< their motions
+    real(wp), intent(out) :: difference(3)
+    integer :: i, k
+
+    difference = 0.0_wp
+    i = stems(1)
+    k = stems(2)
+    if (i == k) return
+    difference(1) = v(1, i) - v(1, k)
+    difference(2) = v(2, i) - v(1, i)*(place(2) - f(4, i)) - v(2, k) + v(1, k)*(place(2) - f(4, k))
+    difference(3) = v(3, i) + v(1, i)*(place(1) - f(3, i)) - v(3, k) - v(1, k)*(place(1) - f(3, k))
+  end subroutine stem_difference
+
+  !> The three equations' part in a motion that is given at the origin of a closure's closing frame.
+  pure subroutine rows_at_base(closure, per_length, m, f, motion, rows)
+    type(planar_closure_type), intent(in) :: closure
+    real(wp), intent(in) :: per_length            !< one over the mechanism's size [1/m]
+    integer, intent(in) :: m                      !< steps
+    real(wp), intent(in) :: f(4, 0:m)             !< poses of the frames [m]
+    real(wp), intent(in) :: motion(3)             !< angle or angular motion; way or motion of the place [rad, m, ...]
+    real(wp), intent(out) :: rows(3)              !< the way in sizes of the mechanism
+    integer :: b, i
+
+    b = closure%base
+    i = closure%closing
+    rows(1) = motion(1)
+    rows(2) = (motion(2) - motion(1)*(f(4, b) - f(4, i)))*per_length
+    rows(3) = (motion(3) + motion(1)*(f(3, b) - f(3, i)))*per_length
+  end subroutine rows_at_base
+end module mech9_planar_formulas
