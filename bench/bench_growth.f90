@@ -12,7 +12,7 @@ program bench_growth
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_kinematic_run, only: assemble_start
   use mech9_dynamic_run, only: assemble_initial_state
@@ -126,7 +126,7 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start
     real(wp), intent(out) :: time
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: each(passes), begin
     integer :: pass, i, positions
@@ -134,11 +134,11 @@ contains
     ! a few thousandths of a turn between positions, and work enough for the clock
     positions = max(20, min(300, 100000/plan%n_links))
     do pass = 1, passes
-      call start_tracking(mechanism, plan, start, 0.0_wp, tracker, err)
+      call start_driven_motion(mechanism, plan, start, 0.0_wp, driven, err)
       call stop_at(err, 'ladder')
       begin = seconds()
       do i = 1, positions
-        call advance(mechanism, plan, tracker, 0.003_wp*i, err)
+        call advance(mechanism, plan, driven, 0.003_wp*i, err)
         if (allocated(err)) exit
       end do
       each(pass) = (seconds() - begin)/positions

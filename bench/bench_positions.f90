@@ -10,8 +10,8 @@ program bench_positions
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_needs, only: needs_type, needs_of_results, leave_out
-  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_requested, only: requested_type, requested_by_results, leave_out
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_kinematic_run, only: assemble_start
   use mech9_closed_four_bar, only: four_bar_position, four_bar_motion
   use mech9_bench_support, only: read_data_file, stop_at, median, argument
@@ -73,7 +73,7 @@ contains
     real(wp), intent(in) :: closed(2)   !< times of the closed form [us]
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan, lean
-    type(needs_type) :: needs
+    type(requested_type) :: requested
     type(state_type) :: start
     type(error_type), allocatable :: err
     real(wp) :: each(2, passes), error
@@ -84,10 +84,10 @@ contains
     call assemble_start(mechanism, plan, start, err)
     call stop_at(err, name)
     lean = plan
-    needs = needs_of_results(mechanism)
-    call leave_out(plan, needs)
-    needs%derivatives = 0
-    call leave_out(lean, needs)
+    requested = requested_by_results(mechanism)
+    call leave_out(plan, requested)
+    requested%derivatives = 0
+    call leave_out(lean, requested)
     do pass = 1, passes
       call time_positions(mechanism, lean, start, each(1, pass))
       call time_motion(mechanism, plan, start, name == 'four_bar', each(2, pass), error)
@@ -103,19 +103,19 @@ contains
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start
     real(wp), intent(out) :: time   !< [s]
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: begin, positions(3, mechanism%time%intervals)
     integer :: i
 
-    call start_tracking(mechanism, plan, start, mechanism%time%start, tracker, err, with_accelerations=.false.)
+    call start_driven_motion(mechanism, plan, start, mechanism%time%start, driven, err, with_accelerations=.false.)
     call stop_at(err, mechanism%title)
     begin = seconds()
     do i = 1, mechanism%time%intervals
-      call advance(mechanism, plan, tracker, mechanism%time%time(i), err)
+      call advance(mechanism, plan, driven, mechanism%time%time(i), err)
       if (allocated(err)) exit
       associate (point => mechanism%points(size(mechanism%points)))
-        call point_motion(plan, tracker%state, point%link, point%position, positions(:, i))
+        call point_motion(plan, driven%state, point%link, point%position, positions(:, i))
       end associate
     end do
     time = seconds() - begin
@@ -130,20 +130,20 @@ contains
     logical, intent(in) :: compare         !< with the closed form, after the clock has stopped
     real(wp), intent(out) :: time          !< [s]
     real(wp), intent(out) :: error         !< of the accelerations against the largest one; 0 where not compared
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: begin, motions(3, 3, 0:mechanism%time%intervals), exact(2, 3), largest
     integer :: i
 
-    call start_tracking(mechanism, plan, start, mechanism%time%start, tracker, err)
+    call start_driven_motion(mechanism, plan, start, mechanism%time%start, driven, err)
     call stop_at(err, mechanism%title)
     associate (point => mechanism%points(size(mechanism%points)))
-      call point_motion(plan, tracker%state, point%link, point%position, motions(:, 1, 0), motions(:, 2, 0), motions(:, 3, 0))
+      call point_motion(plan, driven%state, point%link, point%position, motions(:, 1, 0), motions(:, 2, 0), motions(:, 3, 0))
       begin = seconds()
       do i = 1, mechanism%time%intervals
-        call advance(mechanism, plan, tracker, mechanism%time%time(i), err)
+        call advance(mechanism, plan, driven, mechanism%time%time(i), err)
         if (allocated(err)) exit
-        call point_motion(plan, tracker%state, point%link, point%position, motions(:, 1, i), motions(:, 2, i), motions(:, 3, i))
+        call point_motion(plan, driven%state, point%link, point%position, motions(:, 1, i), motions(:, 2, i), motions(:, 3, i))
       end do
       time = seconds() - begin
     end associate

@@ -1,4 +1,4 @@
-!> What the benchmarks share: reading a mechanism, and an end that tells why. Uses the base and the input floor.
+!> What the benchmarks share: reading a mechanism, and an end that tells why.
 module mech9_bench_support
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp

@@ -1,5 +1,4 @@
-!> The four-bar linkage in closed form, written by hand for this one mechanism: what a general program is held
-!> against. Uses mech9_kinds only.
+!> The four-bar linkage in closed form, written by hand for this one mechanism: what a general program is held against.
 module mech9_closed_four_bar
   use mech9_kinds, only: wp
   implicit none

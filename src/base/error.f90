@@ -1,4 +1,4 @@
-!> Failures as values: a code, a message, and where it happened. Uses nothing.
+!> Failures as values: a code, a message, and where it happened.
 !>
 !> A procedure that can fail has a last argument `type(error_type), allocatable, intent(out) :: err`;
 !> allocated means failed. Places are added on the way up. Only the programs end a run.

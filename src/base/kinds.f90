@@ -1,4 +1,4 @@
-!> The kinds of numbers used everywhere. Uses nothing.
+!> The kinds of numbers used everywhere.
 module mech9_kinds
   use, intrinsic :: iso_fortran_env, only: real64, int64
   implicit none

@@ -1,4 +1,4 @@
-!> Names of files taken apart: folder, name, ending. Uses mech9_text.
+!> Names of files taken apart: folder, name, ending.
 module mech9_path
   use mech9_text, only: lower
   implicit none

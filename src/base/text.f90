@@ -1,4 +1,4 @@
-!> Small helpers for text: numbers as text, case, lists, nearest names. Uses mech9_kinds only.
+!> Small helpers for text: numbers as text, case, lists, nearest names.
 !>
 !> Functions here and wherever threads may meet have results of explicit length: gfortran keeps the length of
 !> a result `character(len=:), allocatable` in a static variable of the caller, which threads would share.

@@ -1,6 +1,5 @@
-!> What follows a run in a conversation: its results are shown, plotted, compared with those of the run before;
-!> a value is changed, and the mechanism run again. Uses error, text, kept_rows, rows_text, run_comparison,
-!> plot, plot_request, conversation, correcting.
+!> What follows a run in a conversation: its results are shown, plotted, compared with those of the run before; a value is
+!> changed, and the mechanism run again.
 module mech9_after_run
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type

@@ -1,5 +1,4 @@
-!> One question: put in words, its answer heard, held against the checks of the data file, and kept. Uses text,
-!> grammar, topics, answer, short_answers, draft, draft_check, questions, question_words, question_help, conversation.
+!> One question: put in words, its answer heard, held against the checks of the data file, and kept.
 module mech9_asking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_text, only: string_type, to_text, lower, nearest_name

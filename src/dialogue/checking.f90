@@ -1,5 +1,5 @@
-!> The checks between the questions: of the structure as soon as it is complete, of the geometry by putting the
-!> mechanism together. Uses error, the model, the kinematics, task, structure_text, draft_check, conversation, correcting.
+!> The checks between the questions: of the structure as soon as it is complete, of the geometry by putting the mechanism
+!> together.
 module mech9_checking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, exit_structure

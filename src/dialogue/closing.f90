@@ -1,5 +1,4 @@
 !> The end of a conversation: the summary, in which any answer can be changed, and then saving and running.
-!> Uses error, text, path, same_file, draft_check, draft_file, conversation, correcting, summary.
 module mech9_closing
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type

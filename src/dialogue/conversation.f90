@@ -1,6 +1,4 @@
-!> A conversation as it stands, and how it is led: what is said and heard, kept in a file, and common to all
-!> questions. Uses error, text, line_input, grammar, topics, draft, draft_file, interview, paragraph,
-!> summary.
+!> A conversation as it stands, and how it is led: what is said and heard, kept in a file, and common to all questions.
 module mech9_conversation
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type

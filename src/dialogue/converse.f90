@@ -1,5 +1,4 @@
 !> A whole conversation, from its first question to a run: begun anew, resumed, or about an existing data file.
-!> Uses error, command_line, system, diagnostics, task, draft_file, the interview and its parts.
 module mech9_converse
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: exit_done, exit_usage, exit_interrupted

@@ -1,6 +1,5 @@
-!> How answers are corrected. What is wrong is shown with the numbers of the answers, and any answer can be changed, taken
-!> away or added. Uses text, grammar, draft_check, questions, question_words, summary, asking,
-!> conversation.
+!> How answers are corrected. What is wrong is shown with the numbers of the answers, and any answer can be changed, taken away
+!> or added.
 module mech9_correcting
   use mech9_text, only: string_type, to_text, lower
   use mech9_grammar, only: group_table, find_group_row

@@ -1,5 +1,4 @@
 !> A conversation without its words: the draft, the questions, which one is due, and where to go from it.
-!> Uses text, grammar, structure, draft, draft_check, topics, outline, questions, question_words.
 module mech9_interview
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, find_item_rows, rows_of_group

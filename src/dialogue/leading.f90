@@ -1,4 +1,4 @@
-!> One question, or check, of a conversation after the other. Uses task, questions, asking, checking, conversation.
+!> One question, or check, of a conversation after the other.
 module mech9_leading
   use mech9_task, only: task_type
   use mech9_questions, only: check_structure, check_start, check_all

@@ -1,4 +1,4 @@
-!> Text for people, in lines that fit a terminal of 80 columns. Uses nothing.
+!> Text for people, in lines that fit a terminal of 80 columns.
 module mech9_paragraph
   implicit none
   private

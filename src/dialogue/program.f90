@@ -1,5 +1,4 @@
 !> A program from the words of its command line to its exit code: a run of a data file, or a conversation.
-!> Uses error, command_line, system, session, task, converse.
 module mech9_program
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type

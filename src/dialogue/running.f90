@@ -1,5 +1,4 @@
-!> The run at the end of a conversation, and what follows it: looking at results, changes, further runs. Uses error,
-!> kept_rows, system, session, task, closing, leading, after_run, conversation.
+!> The run at the end of a conversation, and what follows it: looking at results, changes, further runs.
 module mech9_running
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type

@@ -1,5 +1,4 @@
 !> A structure drawn as text: its chains of links and pairs, and what the counts say of its mobility.
-!> Uses text, structure, structural_vectors.
 module mech9_structure_sketch
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type

@@ -1,5 +1,4 @@
-!> All that a draft says as a list of numbered answers, and words that mean one of them. Uses text, grammar,
-!> draft, paragraph, topics.
+!> All that a draft says as a list of numbered answers, and words that mean one of them.
 module mech9_summary
   use mech9_text, only: to_text, lower
   use mech9_grammar, only: group_table, find_group_row, words_of

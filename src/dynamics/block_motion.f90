@@ -1,15 +1,13 @@
-!> Rates and Jacobians of one block, and its accelerations from rates alone. Uses kinds, error, least_squares, the
-!> kinematics floor, dynamics_plan, jacobian, planar_block, lagrange_work.
+!> Rates and Jacobians of one block, and its accelerations from rates alone.
 module mech9_block_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_least_squares, only: least_squares_type, nearly_dependent
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type
-  use mech9_planar_motion, only: planar_motion_type
+  use mech9_state, only: state_type, planar_motion_type
   use mech9_planar_closure, only: planar_bias_rates
-  use mech9_solver, only: block_work_type, factorize_block
-  use mech9_tracking, only: words_of_block
+  use mech9_block_solver, only: block_work_type, factorize_block
+  use mech9_driven_motion, only: words_of_block
   use mech9_dynamics_plan, only: dynamics_plan_type
   use mech9_jacobian, only: jacobian_type, find_jacobian, noise_of_rates
   use mech9_planar_block, only: planar_block_type, fill_columns, add_earlier, move_frames

@@ -1,6 +1,4 @@
-!> The plan of dynamics: which links have inertia, and on which independent coordinates each frame
-!> depends. Uses kinds, pose, inertia, mechanism, plan, planar_motion, planar_lagrange,
-!> planar_block, articulated_bodies.
+!> The plan of dynamics: which links have inertia, and on which independent coordinates each frame depends.
 !>
 !> Columns of Jacobians are kept only where a frame depends on the independent coordinate: frame s has
 !> the entries first(s) .. first(s+1)-1 of one long list. All frames of a closed block share one set of

@@ -1,5 +1,4 @@
-!> Kinetic (20) and potential energy of a state. Uses kinds, rotation, mechanism, plan, state, motion, dynamics_plan,
-!> planar_lagrange.
+!> Kinetic (20) and potential energy of a state.
 module mech9_energy
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back, cross

@@ -1,4 +1,4 @@
-!> What rates and accelerations are expected to be, by continuation from the positions before. Uses kinds.
+!> What rates and accelerations are expected to be, by continuation from the positions before.
 module mech9_expectation
   use mech9_kinds, only: wp
   implicit none

@@ -1,5 +1,4 @@
-!> What loads exert and the generalized forces Q_p (25) of it. Uses kinds, error, rotation, mechanism, motion_view,
-!> plan, state, motion, dynamics_plan, planar_lagrange, lagrange_work.
+!> What loads exert and the generalized forces Q_p (25) of it.
 module mech9_generalized_forces
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

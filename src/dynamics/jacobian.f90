@@ -1,13 +1,11 @@
-!> Jacobians of frames with respect to the independent coordinates, with the dependent coordinates
-!> eliminated block by block. Uses kinds, rotation, plan, state, closure, planar_closure, solver, dynamics_plan,
-!> planar_lagrange.
+!> Jacobians of frames with respect to the independent coordinates, with the dependent coordinates eliminated block by block.
 module mech9_jacobian
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_planar_closure, only: planar_difference
-  use mech9_solver, only: block_work_type
+  use mech9_block_solver, only: block_work_type
   use mech9_dynamics_plan, only: dynamics_plan_type
   use mech9_planar_lagrange, only: spread_columns
   use mech9_spatial_closure, only: reduced_screw

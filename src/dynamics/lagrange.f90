@@ -1,7 +1,5 @@
-!> Lagrange's equations in the independent coordinates, (19): coefficients of motion, velocity terms and
-!> generalized forces from the Jacobians of the frames. Uses kinds, error, text, rotation, cholesky, mechanism, plan,
-!> state, motion, dynamics_plan, lagrange_work, block_motion, generalized_forces, planar_lagrange, articulated_bodies,
-!> planar_articulated.
+!> Lagrange's equations in the independent coordinates, (19): coefficients of motion, velocity terms and generalized forces from
+!> the Jacobians of the frames.
 !>
 !> (21) and the terms of (19) that are squares of rates are not differentiated: with the Jacobians J_c of
 !> mass centres and J_w of angular velocities,

@@ -1,11 +1,10 @@
-!> Scratch and results of one evaluation of Lagrange's equations. Uses kinds, motion_view, force_sum, plan, solver,
-!> dynamics_plan, jacobian, expectation, articulated_bodies, planar_articulated.
+!> Scratch and results of one evaluation of Lagrange's equations.
 module mech9_lagrange_work
   use mech9_kinds, only: wp
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_plan, only: plan_type
-  use mech9_solver, only: block_work_type, new_block_work
+  use mech9_block_solver, only: block_work_type, new_block_work
   use mech9_dynamics_plan, only: dynamics_plan_type
   use mech9_jacobian, only: jacobian_type, new_jacobian
   use mech9_expectation, only: expectation_type

@@ -1,5 +1,4 @@
-!> Articulated bodies in planar arithmetic: accelerations of open chains whose motion keeps to one plane. Uses kinds,
-!> planar_plan, planar_lagrange.
+!> Articulated bodies in planar arithmetic: accelerations of open chains whose motion keeps to one plane.
 !>
 !> As in space (articulated_bodies), with wrenches (torque about the normal, force) and motions (dw, dv):
 !>   torque = J dw + H . dv + torque_0,   force = H dw + M dv + force_0.

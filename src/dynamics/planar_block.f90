@@ -1,6 +1,5 @@
-!> A block of closed chains in planar arithmetic: which steps its closures hold, listed once, and the loops over
-!> these lists that an evaluation of the motion runs through. Uses kinds, plan, planar_plan,
-!> planar_lagrange.
+!> A block of closed chains in planar arithmetic: which steps its closures hold, listed once, and the loops over these lists
+!> that an evaluation of the motion runs through.
 !>
 !> What a closure lacks is the sum of what the steps of its loop give to it, each seen from the loop's base. Those
 !> of the block's unknowns make up the Jacobian. The independent ones and the frames of earlier blocks, from

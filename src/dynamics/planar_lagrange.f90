@@ -1,5 +1,4 @@
-!> Lagrange's equations in planar arithmetic: columns of frames, inertia of links and forces on them, in the
-!> plane. Uses kinds, body, inertia, the plan and the motion in the plane.
+!> Lagrange's equations in planar arithmetic: columns of frames, inertia of links and forces on them, in the plane.
 !>
 !> A column is (angular velocity, velocity of the frame's origin) per unit rate of an independent coordinate.
 module mech9_planar_lagrange
@@ -9,7 +8,8 @@ module mech9_planar_lagrange
   use mech9_body, only: body_type
   use mech9_plan, only: plan_type
   use mech9_planar_plan, only: planar_plan_type, planar_step_type
-  use mech9_planar_motion, only: planar_motion_type, to_plane
+  use mech9_planar_motion, only: to_plane
+  use mech9_state, only: planar_motion_type
   implicit none
   private
   public :: planar_body_type, planar_body, spread_columns, carry_columns, add_inertia, planar_wrench, add_link_force, &

@@ -1,5 +1,4 @@
-!> Bodies and gravity from a checked document. Uses kinds, text, structure, pair, turning_direction, body, document,
-!> lookup, motion_reader, diagnostics.
+!> Bodies and gravity from a checked document.
 module mech9_body_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text

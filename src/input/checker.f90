@@ -1,5 +1,4 @@
 !> A document held against the grammar: groups, names, values, what is missing, what is there twice.
-!> Uses text, source, grammar, document, item_merge, item_check, diagnostics.
 !>
 !> What passes can be read by mech9_lookup without further questions.
 module mech9_checker

@@ -1,5 +1,4 @@
-!> The table of names told to people: as plain text for the terminal and as Markdown for the
-!> documentation. Uses error, text, grammar.
+!> The table of names told to people: as plain text for the terminal and as Markdown for the documentation.
 module mech9_data_help
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text, nearest_name

@@ -1,5 +1,4 @@
 !> What is wrong with an input: every error with its place, sorted, shown with its line of the file.
-!> Uses error, text, source.
 module mech9_diagnostics
   use mech9_error, only: error_type, place_type, exit_done, exit_data, exit_structure, exit_file
   use mech9_text, only: to_text

@@ -1,4 +1,4 @@
-!> A data file as it is written: groups of items with values, each with its place. Uses kinds, source.
+!> A data file as it is written: groups of items with values, each with its place.
 !>
 !> Nothing here knows which groups and names there are; mech9_checker holds them against the grammar.
 module mech9_document

@@ -1,5 +1,4 @@
-!> Drives from the groups &drive of a checked document. Uses kinds, error, text, the drives of the model
-!> and of the user, spline, structure, source, document, lookup, table_file, diagnostics.
+!> Drives from the groups &drive of a checked document.
 module mech9_drive_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,5 +1,5 @@
-!> The data file's language as one constant table: which groups there are, which names each has,
-!> and what each name takes. Reader, help, documentation and conversation all come from it. Uses text.
+!> The data file's language as one constant table: which groups there are, which names each has, and what each name takes.
+!> Reader, help, documentation and conversation all come from it.
 module mech9_grammar
   use mech9_text, only: lower
   implicit none

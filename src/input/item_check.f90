@@ -1,5 +1,4 @@
 !> The values under one name, held against its row of the grammar: type, count, range, words.
-!> Uses kinds, text, source, grammar, document, diagnostics.
 module mech9_item_check
   use mech9_kinds, only: wp, long
   use mech9_text, only: to_text, lower, nearest_name

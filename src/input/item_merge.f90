@@ -1,5 +1,4 @@
-!> One plain list of values from all that a group says under one name: repeats written out,
-!> subscripts put in their places. Uses text, source, document, diagnostics.
+!> One plain list of values from all that a group says under one name: repeats written out, subscripts put in their places.
 module mech9_item_merge
   use mech9_text, only: to_text
   use mech9_source, only: span_type

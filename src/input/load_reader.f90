@@ -1,5 +1,4 @@
-!> Loads from a checked document. Uses kinds, text, the model's pairs and loads, the user's load, document,
-!> lookup, motion_reader, diagnostics.
+!> Loads from a checked document.
 module mech9_load_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text

@@ -1,5 +1,4 @@
 !> What a checked document says: values by group and name, with the defaults of the grammar.
-!> Uses kinds, text, source, numeral, grammar, document.
 !>
 !> Only for sound groups: mechanisms are read after mech9_checker has passed them.
 module mech9_lookup

@@ -1,5 +1,4 @@
-!> The coincidence matrix from its rows, columns and elements in a data file. Uses text, source,
-!> document, diagnostics.
+!> The coincidence matrix from its rows, columns and elements in a data file.
 module mech9_matrix_items
   use mech9_text, only: to_text
   use mech9_source, only: span_type

@@ -1,5 +1,4 @@
-!> What is known at the start, and which points are recorded: the groups &initial and &point of a checked
-!> document. Uses kinds, text, structure, point, document, lookup, drive_reader, diagnostics.
+!> What is known at the start, and which points are recorded: the groups &initial and &point of a checked document.
 module mech9_motion_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text

@@ -1,4 +1,4 @@
-!> From the text of a number to its value, with a reason where it has none. Uses kinds.
+!> From the text of a number to its value, with a reason where it has none.
 module mech9_numeral
   use mech9_kinds, only: wp, long
   implicit none

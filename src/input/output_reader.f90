@@ -1,4 +1,4 @@
-!> What a run writes: &output, with everything checked. Uses text, settings, document, lookup, diagnostics.
+!> What a run writes: &output, with everything checked.
 module mech9_output_reader
   use mech9_text, only: to_text
   use mech9_settings, only: output_settings_type

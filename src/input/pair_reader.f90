@@ -1,5 +1,4 @@
-!> Pairs from the groups &pair of a checked document. Uses kinds, error, text, pose, the pairs of the
-!> model and of the user, document, lookup, diagnostics.
+!> Pairs from the groups &pair of a checked document.
 module mech9_pair_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

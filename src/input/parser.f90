@@ -1,4 +1,4 @@
-!> Namelist text as a document. Uses error, source, scanner, document, diagnostics.
+!> Namelist text as a document.
 module mech9_parser
   use mech9_error, only: error_type
   use mech9_text, only: lower

@@ -1,5 +1,4 @@
-!> From a document to a mechanism with everything checked. Uses kinds, structure, mechanism, settings,
-!> document, checker, lookup, the readers of the parts, diagnostics.
+!> From a document to a mechanism with everything checked.
 module mech9_reader
   use mech9_kinds, only: wp, radians_per_degree
   use mech9_structure, only: structure_type

@@ -1,5 +1,4 @@
-!> The small pieces of namelist text: blanks, names, subscripts, values. Uses kinds, text, numeral,
-!> source, document, diagnostics.
+!> The small pieces of namelist text: blanks, names, subscripts, values.
 !>
 !> Each procedure starts at byte `at` of the text and leaves `at` on the first byte it did not take.
 module mech9_scanner

@@ -1,5 +1,4 @@
-!> Changes to a document from the command line: --set group.name=value. Uses text, source, grammar,
-!> document, scanner, parser, diagnostics.
+!> Changes to a document from the command line: --set group.name=value.
 module mech9_setting
   use mech9_text, only: lower, to_text
   use mech9_source, only: source_type, span_type, source_from_text

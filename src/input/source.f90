@@ -1,4 +1,4 @@
-!> The text of an input, and where its lines begin. Uses error, text, file_bytes.
+!> The text of an input, and where its lines begin.
 !>
 !> Everything read from an input carries a span of it, so that a message can point there.
 module mech9_source

@@ -1,6 +1,5 @@
-!> The structure of a mechanism from a checked document: first set, second set, or the links of the
-!> pairs; what is wrong with it is shown at the very number. Uses error, text, source, document,
-!> lookup, matrix_items, diagnostics and the structure floor.
+!> The structure of a mechanism from a checked document: first set, second set, or the links of the pairs; what is wrong with it
+!> is shown at the very number.
 module mech9_structure_reader
   use mech9_error, only: exit_structure
   use mech9_text, only: to_text, some_of

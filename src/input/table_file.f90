@@ -1,5 +1,4 @@
-!> The file of a table drive: lines with t and q. Uses kinds, error, text, source, numeral,
-!> item_check, diagnostics.
+!> The file of a table drive: lines with t and q.
 !>
 !> Two numbers in each line, with blanks or a comma between; `#` begins a comment. A line of names may stand before
 !> the first point.

@@ -1,4 +1,4 @@
-!> Inertia of a link. Uses kinds, error.
+!> Inertia of a link.
 module mech9_body
   use mech9_kinds, only: wp
   use mech9_error, only: place_type

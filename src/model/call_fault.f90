@@ -1,4 +1,4 @@
-!> A number of a link or coordinate that the mechanism does not have, as a user's procedure gave it. Uses nothing.
+!> A number of a link or coordinate that the mechanism does not have, as a user's procedure gave it.
 module mech9_call_fault
   implicit none
   private

@@ -1,5 +1,4 @@
 !> A spring, damper and actuator on a coordinate, independent or not.
-!> Uses kinds, error, load and what loads see.
 module mech9_coordinate_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

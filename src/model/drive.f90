@@ -1,4 +1,4 @@
-!> A drive: an independent coordinate as a given function of time. Uses kinds, error.
+!> A drive: an independent coordinate as a given function of time.
 module mech9_drive
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type

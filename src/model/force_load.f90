@@ -1,4 +1,4 @@
-!> A constant force at a point of a link, or a constant torque. Uses kinds, error, load and what loads see.
+!> A constant force at a point of a link, or a constant torque.
 module mech9_force_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,5 +1,4 @@
 !> What loads collect: forces and torques on links, generalized forces on coordinates.
-!> Uses kinds, rotation, call_fault, motion_view.
 module mech9_force_sum
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, cross

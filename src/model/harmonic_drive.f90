@@ -1,4 +1,4 @@
-!> Drive q = mean + amplitude sin(angular_frequency t + phase). Uses kinds, error, drive.
+!> Drive q = mean + amplitude sin(angular_frequency t + phase).
 module mech9_harmonic_drive
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

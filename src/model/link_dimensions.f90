@@ -1,5 +1,4 @@
 !> The dimensions of links: how far apart and at which angle the axes of two pairs lie on a link.
-!> Uses kinds, rotation, link_graph, pair_axes, mechanism.
 module mech9_link_dimensions
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross

@@ -1,5 +1,4 @@
 !> A load: whatever pulls, pushes or turns, as all loads are seen from above.
-!> Uses kinds, error, motion_view, force_sum.
 module mech9_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type

@@ -1,6 +1,5 @@
 !> What is odd about the geometry of closed chains that do not close or do not move: one axis that is not parallel to the
 !> others, or does not meet them in their common point, heights that do not fit, a link that is too long.
-!> Uses kinds, rotation, pose, link_graph, pair_axes, link_dimensions, mechanism.
 !>
 !> All pairs of a chain are laid out from one of its links with all coordinates zero. Turns about parallel axes keep
 !> their directions, turns about axes through one point keep this point, whatever the coordinates are.

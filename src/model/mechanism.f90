@@ -1,5 +1,4 @@
 !> A mechanism: everything a data file says, checked. It never changes once it is read.
-!> Uses kinds, structure and the parts of the model.
 module mech9_mechanism
   use mech9_kinds, only: wp
   use mech9_structure, only: structure_type

@@ -1,4 +1,4 @@
-!> The motion of links and coordinates as loads see it. Uses kinds, rotation, call_fault.
+!> The motion of links and coordinates as loads see it.
 module mech9_motion_view
   use mech9_kinds, only: wp
   use mech9_rotation, only: identity, turn, cross

@@ -1,5 +1,4 @@
 !> A pair: the one-degree-of-freedom joint of two links, as every pair is seen from above.
-!> Uses kinds, error, pose.
 !>
 !> A pair is any one-parameter motion of its moving link in its reference link. Most pairs turn
 !> about or slide along one fixed axis, or both in proportion: they say so through `as_screw`,

@@ -1,4 +1,4 @@
-!> The axes of pairs in both of their links, as the data file gives them. Uses kinds, pose, pair.
+!> The axes of pairs in both of their links, as the data file gives them.
 module mech9_pair_axes
   use mech9_kinds, only: wp
   use mech9_pose, only: pose_type, compose, inverse, pose_from_dh

@@ -1,4 +1,4 @@
-!> Points of links whose motion is recorded. Uses kinds, error.
+!> Points of links whose motion is recorded.
 module mech9_point
   use mech9_kinds, only: wp
   use mech9_error, only: place_type

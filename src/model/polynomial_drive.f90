@@ -1,4 +1,4 @@
-!> Drive q = c0 + c1 t + c2 t^2 + ... Uses kinds, error, text, drive.
+!> Drive q = c0 + c1 t + c2 t^2 + ...
 module mech9_polynomial_drive
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp

@@ -1,4 +1,4 @@
-!> The units of coordinates in results and messages, which are those of the data file. Uses kinds, mechanism.
+!> The units of coordinates in results and messages, which are those of the data file.
 module mech9_result_units
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type

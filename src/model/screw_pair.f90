@@ -1,5 +1,4 @@
 !> Revolute, prismatic and helical pairs: motion along one fixed screw axis.
-!> Uses kinds, error, rotation, pose, pair.
 !>
 !> T(q) = F * motion(q + offset) * G^-1, where F stands in the reference link, G in the moving one,
 !> and the motion turns about z, slides along z, or does both.

@@ -1,4 +1,4 @@
-!> How to compute and what to record. Uses kinds only.
+!> How to compute and what to record.
 module mech9_settings
   use mech9_kinds, only: wp
   implicit none

@@ -1,4 +1,4 @@
-!> A spring and damper between points of two links. Uses kinds, error, text, load and what loads see.
+!> A spring and damper between points of two links.
 module mech9_spring_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_integrator

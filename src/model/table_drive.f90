@@ -1,5 +1,4 @@
 !> Drive through the points of a table, smooth: a cubic spline with continuous second derivative.
-!> Uses kinds, error, text, spline, drive.
 module mech9_table_drive
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data

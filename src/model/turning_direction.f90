@@ -1,5 +1,4 @@
 !> Whether a link can turn about one direction only, as all links of a planar mechanism do.
-!> Uses kinds, rotation, structure, link_graph, pair, pair_axes.
 !>
 !> A path of pairs leads from the link to link 1. Where each of them slides, or turns about the direction, every
 !> other path lets the link turn no further. The search takes every such pair until it comes to link 1.

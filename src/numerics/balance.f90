@@ -1,4 +1,4 @@
-!> How large a matrix is whatever the units of its coordinates. Uses kinds.
+!> How large a matrix is whatever the units of its coordinates.
 module mech9_balance
   use mech9_kinds, only: wp
   implicit none

@@ -1,4 +1,4 @@
-!> Cholesky factors of small symmetric matrices. Uses kinds only.
+!> Cholesky factors of small symmetric matrices.
 module mech9_cholesky
   use mech9_kinds, only: wp
   implicit none

@@ -1,4 +1,4 @@
-!> The inverse of a 3 by 3 matrix by its cofactors. Uses kinds only.
+!> The inverse of a 3 by 3 matrix by its cofactors.
 !>
 !> The cofactors are the products of two columns each. Their lengths give the pivots that a QR factorization
 !> with column pivoting would find: the longest column, the largest area that another one spans with it, and

@@ -1,5 +1,4 @@
 !> Derivatives of a smooth function of one variable from its values alone, to near round-off.
-!> Uses kinds only.
 !>
 !> Central differences over a wide symmetric stencil: the interpolating polynomial of degree 16
 !> through x +- h, +- 2h, ... +- 8h. With h around 1/16 of the length over which the function changes,

@@ -1,4 +1,4 @@
-!> Polynomials through points with two derivatives each, for many quantities at once. Uses kinds only.
+!> Polynomials through points with two derivatives each, for many quantities at once.
 module mech9_hermite
   use mech9_kinds, only: wp
   implicit none

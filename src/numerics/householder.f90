@@ -1,4 +1,4 @@
-!> QR of small matrices by Householder reflections. Uses kinds only.
+!> QR of small matrices by Householder reflections.
 !>
 !> The loops stand in files of their own and are compiled three times: for any size, and with the size known
 !> to the compiler for those that are met most, three equations of a planar or spherical chain and six of a

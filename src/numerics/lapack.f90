@@ -1,4 +1,4 @@
-!> Interfaces of the LAPACK routines in use, double precision. Uses kinds only.
+!> Interfaces of the LAPACK routines in use, double precision.
 module mech9_lapack
   use mech9_kinds, only: wp
   implicit none

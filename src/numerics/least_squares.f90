@@ -1,5 +1,4 @@
 !> Least squares by QR with column pivoting: factorized once, solved for several right-hand sides.
-!> Uses kinds, lapack, householder, cofactors.
 !>
 !> Small matrices, the rule in mechanisms, are factorized by Householder loops of our own,
 !> which beat the call into LAPACK there; larger ones by LAPACK. Three well determined equations in three unknowns

@@ -1,4 +1,4 @@
-!> Reproducible pseudo-random numbers without hidden state, for trial positions. Uses kinds only.
+!> Reproducible pseudo-random numbers without hidden state, for trial positions.
 module mech9_random
   use mech9_kinds, only: wp, long
   implicit none

@@ -1,4 +1,4 @@
-!> Cosines and sines of many angles at once. Uses kinds only.
+!> Cosines and sines of many angles at once.
 !>
 !> The intrinsic functions are called for one angle after the other. Here the loop runs over all of them without a
 !> branch, so that the compiler can take several together: whole quarter turns are taken away, and what is left,

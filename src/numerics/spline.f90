@@ -1,4 +1,4 @@
-!> Cubic spline through points, with continuous second derivative. Uses kinds, error, text, lapack.
+!> Cubic spline through points, with continuous second derivative.
 module mech9_spline
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data

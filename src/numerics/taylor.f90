@@ -1,5 +1,5 @@
-!> Taylor arithmetic: a value with its first and second derivative in one variable, carried exactly
-!> through arithmetic and the usual functions. Uses kinds, taylor_arithmetic, taylor_comparison.
+!> Taylor arithmetic: a value with its first and second derivative in one variable, carried exactly through arithmetic and the
+!> usual functions.
 !>
 !> Write a formula with `type(taylor)` as with real numbers; mixed operations with real numbers and
 !> integers work, and so do arrays.

@@ -1,4 +1,4 @@
-!> Taylor arithmetic, first part: the type and its operations. Uses kinds only.
+!> Taylor arithmetic, first part: the type and its operations.
 module mech9_taylor_arithmetic
   use mech9_kinds, only: wp
   implicit none

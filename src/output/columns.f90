@@ -1,5 +1,4 @@
 !> The columns of kinematic results: names, units, and a row of numbers from a state of motion.
-!> Uses kinds, text, mechanism, result_units, plan, state, motion, poses.
 module mech9_columns
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text

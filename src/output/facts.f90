@@ -1,5 +1,4 @@
-!> What is to be told of a run besides its rows: named numbers and texts, told once and written to every
-!> report. Uses json, hdf5_file and the base.
+!> What is to be told of a run besides its rows: named numbers and texts, told once and written to every report.
 module mech9_facts
   use mech9_kinds, only: wp, long
   use mech9_json, only: json_type

@@ -1,5 +1,4 @@
-!> An HDF5 file being written: data sets that stand at once, attributes, dimension scales. Uses the modules
-!> of HDF5, hdf5_reason and the base.
+!> An HDF5 file being written: data sets that stand at once, attributes, dimension scales.
 !>
 !> The first failure is kept and everything after it does nothing, so that many calls can follow each
 !> other before someone asks for it. Names are paths; the groups on the way are made.

@@ -1,4 +1,4 @@
-!> Why a call of HDF5 failed, in few words. Uses the C library of HDF5.
+!> Why a call of HDF5 failed, in few words.
 module mech9_hdf5_reason
   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_ptr, c_funptr, c_char, c_loc, c_funloc, c_f_pointer, c_null_char, &
                                          c_associated

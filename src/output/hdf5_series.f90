@@ -1,5 +1,4 @@
-!> Quantities over time in an HDF5 file: data sets that grow by blocks of rows. Uses the modules of HDF5,
-!> hdf5_file and the base.
+!> Quantities over time in an HDF5 file: data sets that grow by blocks of rows.
 !>
 !> The data sets grow together. Rows gather in memory, each quantity by itself, and go to the file in
 !> blocks; there they count only when a flush makes the new lengths known. A run may be killed in the middle

@@ -1,5 +1,4 @@
-!> Results as an HDF5 file: what stands in it is described in docs/results.md. Uses result_sink, hdf5_file,
-!> hdf5_series, poses, columns, mechanism, clock and the base.
+!> Results as an HDF5 file: what stands in it is described in docs/results.md.
 module mech9_hdf5_sink
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

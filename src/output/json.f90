@@ -1,5 +1,4 @@
 !> A writer of JSON for reports: objects, arrays, numbers, texts, truth values.
-!> Uses mech9_text, mech9_printable, mech9_text_file, mech9_page and the base.
 !>
 !>     call json%begin_object()
 !>     call json%add('positions', 101)

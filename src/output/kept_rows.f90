@@ -1,4 +1,4 @@
-!> The results of a run kept in memory, to be looked at when it is over. Uses the base.
+!> The results of a run kept in memory, to be looked at when it is over.
 module mech9_kept_rows
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, nearest_name

@@ -1,5 +1,4 @@
 !> Real numbers as text of 17 significant digits, correctly rounded, in columns of one width.
-!> Uses mech9_kinds only.
 !>
 !> A number is m 2^e with an integer m < 2^53. Its 17 digits are the integer nearest to m 2^e 10^p
 !> for the right power p, and that product is taken in integers: 10^p stands in a table as a

@@ -1,4 +1,4 @@
-!> A page: text that is put together in memory and saved as a file. Uses error, text_file.
+!> A page: text that is put together in memory and saved as a file.
 module mech9_page
   use mech9_error, only: error_type
   use mech9_text_file, only: save_text

@@ -1,5 +1,5 @@
-!> Poses of all links as columns behind those of a table, with vertices and lines that show the links: each link is
-!> drawn through its pairs and points. Uses kinds, pose, pair, mechanism, plan, state, motion.
+!> Poses of all links as columns behind those of a table, with vertices and lines that show the links: each link is drawn
+!> through its pairs and points.
 module mech9_poses
   use mech9_kinds, only: wp
   use mech9_pose, only: pose_type, inverse

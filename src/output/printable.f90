@@ -1,4 +1,4 @@
-!> Text of any origin made fit for a file that other programs read. Uses nothing.
+!> Text of any origin made fit for a file that other programs read.
 module mech9_printable
   implicit none
   private

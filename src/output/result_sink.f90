@@ -1,5 +1,4 @@
 !> What takes the rows of a run, as the recording sees it: a table, a file of another kind, a picture.
-!> Uses the base.
 module mech9_result_sink
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,4 +1,4 @@
-!> Some columns and the last rows of results as lines for the terminal. Uses the base, kept_rows.
+!> Some columns and the last rows of results as lines for the terminal.
 module mech9_rows_text
   use mech9_text, only: to_text
   use mech9_kept_rows, only: kept_rows_type

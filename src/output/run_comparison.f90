@@ -1,4 +1,4 @@
-!> Two runs held against each other: the largest difference in each column. Uses the base, kept_rows.
+!> Two runs held against each other: the largest difference in each column.
 module mech9_run_comparison
   use mech9_kinds, only: wp
   use mech9_text, only: to_text

@@ -1,5 +1,4 @@
 !> The table of results: comment lines, a line of names, rows of numbers.
-!> Uses mech9_result_sink, mech9_number_format, mech9_text_file, mech9_printable, mech9_clock and the base.
 !>
 !>     # A slider-crank
 !>     # mech9k 0.1.0

@@ -1,5 +1,4 @@
 !> A file or standard output that takes whole lines and reports every failure.
-!> Uses error, system_error, replacement.
 !>
 !> It calls the system's own `creat`, `write` and `close`: gfortran's runtime library loses the failure of
 !> a write that it held back (up to 8 KiB on a full disk vanish with a status of zero), and ends

@@ -1,4 +1,4 @@
-!> The memory of a program: where the system has no more of it, the program says so and ends with exit_file. Uses error.
+!> The memory of a program: where the system has no more of it, the program says so and ends with exit_file.
 !>
 !> These procedures take the place of the C library's own in the programs, and in nothing else that uses the library of
 !> this project. gfortran's code does not ask whether memory for a copy was granted, and its runtime library ends with a

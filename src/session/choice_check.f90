@@ -1,5 +1,5 @@
-!> The choice of the independent coordinates judged apart from their drives: where it is wrong, it explains why
-!> drives are missing. Uses error, document, diagnostics, reader, mechanism, state, plan, planning.
+!> The choice of the independent coordinates judged apart from their drives: where it is wrong, it explains why drives are
+!> missing.
 module mech9_choice_check
   use mech9_error, only: error_type, exit_structure
   use mech9_document, only: document_type, group_type

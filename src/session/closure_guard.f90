@@ -1,4 +1,4 @@
-!> The last guard of a run: no row whose closed chains are open is ever recorded. Uses kinds, error, text, plan.
+!> The last guard of a run: no row whose closed chains are open is ever recorded.
 module mech9_closure_guard
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular

@@ -1,5 +1,4 @@
 !> What mech9d says at the end of a run: a few lines for a person, JSON and data sets for programs.
-!> Uses text, json, facts, hdf5_sink, mechanism, solver, dynamic_run, recording, run_words.
 module mech9_dynamic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -12,7 +11,7 @@ module mech9_dynamic_report
   use mech9_plan, only: plan_type
   use mech9_recording, only: recording_outcome_type
   use mech9_integration_methods, only: integration_methods
-  use mech9_solver, only: work_count_type
+  use mech9_block_solver, only: work_count_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_dynamic_run, only: dynamic_run_type
   use mech9_run_words, only: duration, each, begin_report, add_structure

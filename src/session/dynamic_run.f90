@@ -1,6 +1,5 @@
-!> The run of mech9d: integrating the motion from output to output, in other independent coordinates
-!> where the present ones come to a singular position. Uses the kinematics and dynamics floors,
-!> columns, recording.
+!> The run of mech9d: integrating the motion from output to output, in other independent coordinates where the present ones come
+!> to a singular position.
 module mech9_dynamic_run
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular, exit_integrator
@@ -9,14 +8,14 @@ module mech9_dynamic_run
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_solver, only: work_count_type, work_of
-  use mech9_needs, only: needs_of_results, add_forces, leave_out, stay_with
+  use mech9_block_solver, only: work_count_type, work_of
+  use mech9_requested, only: requested_by_results, add_forces, leave_out, stay_with
   use mech9_conditioning, only: conditioning_type
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_coordinate_choice, only: best_independent, with_independent
   use mech9_expectation, only: expectation_type
   use mech9_motion_system, only: motion_system_type, set_motion_system
-  use mech9_between_steps, only: between_steps_type
+  use mech9_dense_output, only: dense_output_type
   use mech9_side_steps, only: side_steps_type, begin_integration
   use mech9_ode_system, only: is_recoverable
   use mech9_integrator, only: integrator_type, integration_statistics_type
@@ -53,7 +52,7 @@ module mech9_dynamic_run
     type(event_type), allocatable :: events(:)
     real(wp) :: t = 0.0_wp                        !< of the end of the last step [s]
     real(wp) :: end = 0.0_wp                      !< steps may go to there at most [s]
-    type(between_steps_type) :: between           !< outputs inside a step
+    type(dense_output_type) :: dense_output           !< outputs inside a step
     type(side_steps_type) :: aside                !< go onto outputs that are not certain otherwise
     logical :: steps_onto = .false.               !< no step may go beyond the next output
     real(wp) :: conditioning_here = 0.0_wp        !< at the end of the last step
@@ -129,11 +128,11 @@ contains
     run%t = mechanism%time%start
     run%end = mechanism%time%end
     allocate (run%events(0))
-    run%needs = needs_of_results(mechanism, pictures)
-    call add_forces(mechanism, run%needs)
+    run%requested = requested_by_results(mechanism, pictures)
+    call add_forces(mechanism, run%requested)
     used = plan
-    call leave_out(used, run%needs)
-    call stay_with(used, run%needs)
+    call leave_out(used, run%requested)
+    call stay_with(used, run%requested)
     allocate (run%system)
     call set_motion_system(mechanism, used, start, run%system, err)
     if (allocated(err)) then
@@ -243,7 +242,7 @@ contains
     call self%integrator%step(t, self%t, self%y, failure, farthest)
     if (.not. allocated(failure)) then
       self%conditioning_here = self%system%conditioning()
-      call self%between%add(self%system, self%t, self%y)
+      call self%dense_output%add(self%system, self%t, self%y)
       return
     end if
     ! perhaps the integrator stopped at a singular position of these coordinates only
@@ -264,23 +263,23 @@ contains
     real(wp) :: from, y(size(self%y))
 
     found = .false.
-    if (self%between%crosses()) return
+    if (self%dense_output%crosses()) return
     call self%integrator%interpolate(t, y, found)
-    if (.not. found) call self%between%find(self%system, t, y, found, err)
-    if (.not. (found .or. self%between%count_inserted() > 0)) then
+    if (.not. found) call self%dense_output%find(self%system, t, y, found, err)
+    if (.not. (found .or. self%dense_output%count_inserted() > 0)) then
       call self%insert(0.5_wp, err)
-      if (.not. allocated(err)) call self%between%find(self%system, t, y, found, err)
+      if (.not. allocated(err)) call self%dense_output%find(self%system, t, y, found, err)
     end if
-    if (.not. (found .or. allocated(err) .or. self%between%count_inserted() > 1)) then
+    if (.not. (found .or. allocated(err) .or. self%dense_output%count_inserted() > 1)) then
       call self%insert(0.25_wp, err)
       if (.not. allocated(err)) call self%insert(0.75_wp, err)
-      if (.not. allocated(err)) call self%between%find(self%system, t, y, found, err)
+      if (.not. allocated(err)) call self%dense_output%find(self%system, t, y, found, err)
     end if
     if (allocated(err)) return
     if (found) call self%system%close_near(t, y, found, err)
-    if (found) found = self%between%agrees(self%system)
+    if (found) found = self%dense_output%agrees(self%system)
     if (found) return
-    call self%between%start_of_step(from, y)
+    call self%dense_output%start_of_step(from, y)
     call self%aside%reach(self%system, from, y, t, err)
     if (.not. allocated(err)) call self%system%move_to(t, self%aside%y, err)
     found = .not. allocated(err)
@@ -293,9 +292,9 @@ contains
     type(error_type), allocatable, intent(out) :: err
     real(wp) :: from, y(size(self%y))
 
-    call self%between%start_of_step(from, y)
+    call self%dense_output%start_of_step(from, y)
     call self%aside%reach(self%system, from, y, from + part*(self%t - from), err)
-    if (.not. allocated(err)) call self%between%insert(self%aside%t, self%aside%y)
+    if (.not. allocated(err)) call self%dense_output%insert(self%aside%t, self%aside%y)
   end subroutine insert
 
   !> Back to the start of the last step, to go onto time t within it.
@@ -306,14 +305,14 @@ contains
     type(expectation_type) :: nothing
 
     self%steps_onto = .true.
-    call self%between%start_of_step(self%t, self%y)
+    call self%dense_output%start_of_step(self%t, self%y)
     call self%system%resume(nothing)
     call self%system%move_to(self%t, self%y, err)
     if (.not. allocated(err)) call self%integrator%restart(self%t, self%y, err, first_step=t - self%t)
     if (allocated(err)) return
     self%conditioning_here = self%system%conditioning()
-    call self%between%begin()
-    call self%between%add(self%system, self%t, self%y)
+    call self%dense_output%begin()
+    call self%dense_output%add(self%system, self%t, self%y)
   end subroutine step_back
 
   subroutine start_integrator(self, err)
@@ -322,8 +321,8 @@ contains
 
     self%y = self%system%vector()
     self%conditioning_here = self%system%conditioning()
-    call self%between%begin()
-    call self%between%add(self%system, self%t, self%y)
+    call self%dense_output%begin()
+    call self%dense_output%add(self%system, self%t, self%y)
     call begin_integration(self%integrator, self%system, self%t, self%y, err)
   end subroutine start_integrator
 
@@ -396,7 +395,7 @@ contains
       self%look_below = self%system%conditioning()/worth_it
       return
     end if
-    call with_independent(self%system%mechanism, self%system%state, independent, self%needs, mechanism, plan, state, &
+    call with_independent(self%system%mechanism, self%system%state, independent, self%requested, mechanism, plan, state, &
                           failure)
     if (gives_up(failure, err)) return
     allocate (other)

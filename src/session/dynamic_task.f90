@@ -1,4 +1,4 @@
-!> What mech9d does with a mechanism. Uses kinds, task, facts, hdf5_sink, results, recording, dynamic_run, dynamic_report.
+!> What mech9d does with a mechanism.
 module mech9_dynamic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
@@ -71,7 +71,7 @@ contains
       if (options%has('check')) call print_given(mechanism, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      call print_check(options, pictures, mechanism, plan, run%needs, start, diagnostics)
+      call print_check(options, pictures, mechanism, plan, run%requested, start, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
       if (options%has('check')) call check_motion(mechanism, run, err)
       if (allocated(err)) call diagnostics%add_error(err)

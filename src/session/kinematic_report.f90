@@ -1,5 +1,4 @@
 !> What mech9k says at the end of a run: a few lines for a person, JSON for a program.
-!> Uses text, json, facts, plan, solver, tracking, recording, run_words.
 module mech9_kinematic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -9,8 +8,8 @@ module mech9_kinematic_report
   use mech9_diagnostics, only: diagnostics_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_solver, only: work_count_type, work_of
-  use mech9_tracking, only: tracker_type, words_of_block
+  use mech9_block_solver, only: work_count_type, work_of
+  use mech9_driven_motion, only: driven_motion_type, words_of_block
   use mech9_recording, only: recording_outcome_type
   use mech9_run_words, only: duration, each, begin_report, add_structure
   implicit none
@@ -20,26 +19,26 @@ module mech9_kinematic_report
 contains
 
   !> The short report of a run.
-  subroutine print_kinematic_report(unit, mechanism, plan, table_path, outcome, tracker)
+  subroutine print_kinematic_report(unit, mechanism, plan, table_path, outcome, driven)
     integer, intent(in) :: unit
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     character(len=*), intent(in) :: table_path
     type(recording_outcome_type), intent(in) :: outcome
-    type(tracker_type), intent(in) :: tracker
+    type(driven_motion_type), intent(in) :: driven
     integer :: k, calls
 
     write (unit, '(a)') to_text(outcome%rows)//' positions: '//duration(outcome%seconds_solving)//' to solve'// &
       each(outcome%seconds_solving, outcome%rows)//', '//duration(outcome%seconds_writing)//' to write'
-    write (unit, '(a)') to_text(iterations_each(outcome, tracker), 3)//' Newton iterations a position; largest closure '// &
-      to_text(tracker%worst_closure, 3)//' m'
-    if (tracker%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
-      to_text(tracker%conditioning%least, 3)//' at t = '//to_text(tracker%conditioning%t, 6)//' s: '// &
-      words_of_block(plan, plan%blocks(tracker%conditioning%block))
-    if (tracker%passages > 0) write (unit, '(a)') 'special positions passed: '//to_text(tracker%passages)// &
+    write (unit, '(a)') to_text(iterations_each(outcome, driven), 3)//' Newton iterations a position; largest closure '// &
+      to_text(driven%worst_closure, 3)//' m'
+    if (driven%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
+      to_text(driven%conditioning%least, 3)//' at t = '//to_text(driven%conditioning%t, 6)//' s: '// &
+      words_of_block(plan, plan%blocks(driven%conditioning%block))
+    if (driven%crossings > 0) write (unit, '(a)') 'special positions passed: '//to_text(driven%crossings)// &
       ', each on the branch with continuous velocities'
-    if (tracker%steps >= outcome%rows) write (unit, '(a)') to_text(tracker%steps)//' steps to keep to the branch, and '// &
-      to_text(tracker%halvings)//' that were too long'
+    if (driven%steps >= outcome%rows) write (unit, '(a)') to_text(driven%steps)//' steps to keep to the branch, and '// &
+      to_text(driven%halvings)//' that were too long'
     calls = 0
     do k = 1, size(mechanism%pairs)
       if (mechanism%pairs(k)%pair%user_calls() > 1) calls = calls + mechanism%pairs(k)%pair%user_calls()
@@ -49,33 +48,33 @@ contains
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_kinematic_report
 
-  pure real(wp) function iterations_each(outcome, tracker)
+  pure real(wp) function iterations_each(outcome, driven)
     type(recording_outcome_type), intent(in) :: outcome
-    type(tracker_type), intent(in) :: tracker
+    type(driven_motion_type), intent(in) :: driven
 
-    iterations_each = real(tracker%iterations, wp)/max(1, outcome%rows)
+    iterations_each = real(driven%iterations, wp)/max(1, outcome%rows)
   end function iterations_each
 
   !> What a program may want to know of a run.
-  subroutine kinematic_facts(plan, outcome, tracker, facts)
+  subroutine kinematic_facts(plan, outcome, driven, facts)
     type(plan_type), intent(in) :: plan
     type(recording_outcome_type), intent(in) :: outcome
-    type(tracker_type), intent(in) :: tracker
+    type(driven_motion_type), intent(in) :: driven
     type(facts_type), intent(out) :: facts
     type(work_count_type) :: work
 
     call facts%add('positions', outcome%rows, 'positions computed')
-    call facts%add('steps', tracker%steps, 'steps of following the drives')
-    call facts%add('halvings', tracker%halvings, 'steps that were too long')
-    call facts%add('newton_iterations', tracker%iterations, 'Newton iterations')
-    call facts%add('newton_iterations_per_position', iterations_each(outcome, tracker), 'Newton iterations a position', '1')
-    call facts%add('largest_closure', tracker%worst_closure, 'largest error of a closed chain', 'm')
+    call facts%add('steps', driven%steps, 'steps of following the drives')
+    call facts%add('halvings', driven%halvings, 'steps that were too long')
+    call facts%add('newton_iterations', driven%iterations, 'Newton iterations')
+    call facts%add('newton_iterations_per_position', iterations_each(outcome, driven), 'Newton iterations a position', '1')
+    call facts%add('largest_closure', driven%worst_closure, 'largest error of a closed chain', 'm')
     call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
-    call facts%add('least_conditioning', tracker%conditioning%least, 'least singular value of any block: 0 is singular', '1')
-    call facts%add('least_conditioning_time', tracker%conditioning%t, 'when it was that', 's')
-    call facts%add('least_conditioning_block', tracker%conditioning%block, 'block that it was in')
-    call facts%add('special_positions_passed', tracker%passages, 'special positions passed')
-    if (allocated(tracker%work)) work = work_of(tracker%work)
+    call facts%add('least_conditioning', driven%conditioning%least, 'least singular value of any block: 0 is singular', '1')
+    call facts%add('least_conditioning_time', driven%conditioning%t, 'when it was that', 's')
+    call facts%add('least_conditioning_block', driven%conditioning%block, 'block that it was in')
+    call facts%add('special_positions_passed', driven%crossings, 'special positions passed')
+    if (allocated(driven%work)) work = work_of(driven%work)
     call facts%add('frames_placed', work%frames_placed, 'poses of frames that were found')
     call facts%add('frames_moved', work%frames_moved, 'velocities and accelerations of frames that were found')
     call facts%add('factorizations', work%factorizations, 'Jacobians of blocks that were factorized')
@@ -86,20 +85,20 @@ contains
   end subroutine kinematic_facts
 
   !> The same, and more, as JSON.
-  subroutine save_kinematic_report(path, mechanism, plan, table_path, diagnostics, outcome, tracker, err)
+  subroutine save_kinematic_report(path, mechanism, plan, table_path, diagnostics, outcome, driven, err)
     character(len=*), intent(in) :: path
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     character(len=*), intent(in) :: table_path
     type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
     type(recording_outcome_type), intent(in) :: outcome
-    type(tracker_type), intent(in) :: tracker
+    type(driven_motion_type), intent(in) :: driven
     type(error_type), allocatable, intent(out) :: err
     type(json_type) :: json
     type(facts_type) :: facts
 
     call begin_report(json, 'mech9k', mechanism, diagnostics, table_path)
-    call kinematic_facts(plan, outcome, tracker, facts)
+    call kinematic_facts(plan, outcome, driven, facts)
     call facts%to_json(json)
     call add_structure(json, mechanism, plan)
     call json%end_object()

@@ -1,5 +1,4 @@
 !> The run of mech9k: following the drives from output to output.
-!> Uses the kinematics floor, columns, recording.
 module mech9_kinematic_run
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -7,8 +6,8 @@ module mech9_kinematic_run
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_needs, only: needs_of_results, leave_out
-  use mech9_tracking, only: tracker_type, start_tracking, advance, set_inputs
+  use mech9_requested, only: requested_by_results, leave_out
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, set_inputs
   use mech9_columns, only: kinematic_columns
   use mech9_closure_guard, only: check_closure
   use mech9_recording, only: motion_source_type
@@ -21,7 +20,7 @@ module mech9_kinematic_run
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan              !< of what serves them
     type(state_type) :: start            !< assembled
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     logical :: started = .false.
   contains
     procedure :: row_at
@@ -56,8 +55,8 @@ contains
     run%program_name = 'mech9k'
     run%mechanism = mechanism
     run%plan = plan
-    run%needs = needs_of_results(mechanism, pictures)
-    call leave_out(run%plan, run%needs)
+    run%requested = requested_by_results(mechanism, pictures)
+    call leave_out(run%plan, run%requested)
     run%start = start
     run%columns = kinematic_columns(mechanism)
     call run%columns%append('closure', 'm', 'largest error of a closed chain')
@@ -74,19 +73,19 @@ contains
     integer :: next
 
     if (self%started) then
-      call advance(self%mechanism, self%plan, self%tracker, t, err)
+      call advance(self%mechanism, self%plan, self%driven, t, err)
     else
-      call start_tracking(self%mechanism, self%plan, self%start, t, self%tracker, err, self%needs%derivatives > 1)
+      call start_driven_motion(self%mechanism, self%plan, self%start, t, self%driven, err, self%requested%derivatives > 1)
       self%started = .true.
     end if
-    if (.not. allocated(err)) call check_closure(self%plan, t, self%tracker%closure, err)
+    if (.not. allocated(err)) call check_closure(self%plan, t, self%driven%closure, err)
     if (allocated(err)) return
-    call self%columns%fill(self%mechanism, self%plan, self%tracker%state, row)
+    call self%columns%fill(self%mechanism, self%plan, self%driven%state, row)
     next = self%columns%motion + 1
-    call self%columns%fill_poses(self%plan, self%tracker%state, row)
-    row(next) = self%tracker%closure
+    call self%columns%fill_poses(self%plan, self%driven%state, row)
+    row(next) = self%driven%closure
     if (self%mechanism%output%conditioning) &
-      call self%tracker%conditioning%look(t, self%tracker%work, row(next + 1))
-    if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%tracker%state, row)
+      call self%driven%conditioning%look(t, self%driven%work, row(next + 1))
+    if (allocated(self%film)) call self%film%take(self%mechanism, self%plan, self%driven%state, row)
   end subroutine row_at
 end module mech9_kinematic_run

@@ -1,5 +1,4 @@
-!> What mech9k does with a mechanism. Uses kinds, needs, tracking, task, range_text, facts, results, recording, kinematic_run,
-!> kinematic_report.
+!> What mech9k does with a mechanism.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
@@ -10,8 +9,8 @@ module mech9_kinematic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_needs, only: needs_of_results
-  use mech9_tracking, only: set_inputs
+  use mech9_requested, only: requested_by_results
+  use mech9_driven_motion, only: set_inputs
   use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
   use mech9_range_text, only: print_ranges
   use mech9_facts, only: facts_type
@@ -74,7 +73,7 @@ contains
       return
     end if
     if (answers_only(options)) then
-      call print_check(options, pictures, mechanism, plan, needs_of_results(mechanism, pictures%any_wanted()), start, &
+      call print_check(options, pictures, mechanism, plan, requested_by_results(mechanism, pictures%any_wanted()), start, &
                        diagnostics)
       if (options%has('range')) call print_ranges(output_unit, mechanism, plan, start)
       if (options%has('check')) call check_motion(mechanism, plan, start, err)
@@ -121,18 +120,18 @@ contains
     call begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return
-    call kinematic_facts(run%plan, outcome, run%tracker, facts)
+    call kinematic_facts(run%plan, outcome, run%driven, facts)
     call results%write_facts(facts)
     call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) &
-      call print_kinematic_report(error_unit, mechanism, run%plan, results%table_path, outcome, run%tracker)
+      call print_kinematic_report(error_unit, mechanism, run%plan, results%table_path, outcome, run%driven)
     if (allocated(err)) call diagnostics%add_error(err)
-    call kinematic_facts(run%plan, outcome, run%tracker, facts)
+    call kinematic_facts(run%plan, outcome, run%driven, facts)
     call results%write_facts(facts, diagnostics%code())
     call end_run(options, pictures, mechanism, run, results, diagnostics)
     if (.not. reported) return
     call save_kinematic_report(options%argument('report'), mechanism, run%plan, results%table_path, diagnostics, &
-                               outcome, run%tracker, err)
+                               outcome, run%driven, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out
 end module mech9_kinematic_task

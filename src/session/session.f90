@@ -1,6 +1,4 @@
 !> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
-!> Uses command_line, system, the input floor, structure_text, run_words, task, choice_check, unused_options,
-!> overwriting, version.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type, exit_done

@@ -1,6 +1,4 @@
 !> What a program does with a mechanism, as the session sees it, and what all tasks share.
-!> Uses command_line, mechanism, result_units, plan, needs, state, mobility_report, assemblies_text, structure_text,
-!> plan_text, structure_graph, diagnostics, kept_rows, film, picture_requests, results, recording, system.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -12,7 +10,7 @@ module mech9_task
   use mech9_film, only: film_type, new_film
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_needs, only: needs_type
+  use mech9_requested, only: requested_type
   use mech9_picture_requests, only: picture_requests_type
   use mech9_results, only: results_type
   use mech9_recording, only: motion_source_type
@@ -70,12 +68,12 @@ contains
   end function answers_only
 
   !> Answer --check, --plan, --branches and --graph, and --sketch beside them.
-  subroutine print_check(options, pictures, mechanism, plan, needs, start, diagnostics)
+  subroutine print_check(options, pictures, mechanism, plan, requested, start, diagnostics)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
-    type(needs_type), intent(in) :: needs      !< what the run asks for
+    type(requested_type), intent(in) :: requested      !< what the run asks for
     type(state_type), intent(in) :: start      !< assembled
     type(diagnostics_type), intent(inout) :: diagnostics
     type(mobility_report_type) :: report
@@ -87,7 +85,7 @@ contains
     else if (options%has('plan')) then
       call print_mobility(output_unit, plan)
     end if
-    if (options%has('plan')) call print_plan(output_unit, mechanism, plan, needs)
+    if (options%has('plan')) call print_plan(output_unit, mechanism, plan, requested)
     if (options%has('branches')) call print_assemblies(output_unit, mechanism, plan, start, options%number('starts', 100))
     if (options%has('graph')) call draw_graph(options, mechanism, plan, diagnostics)
     if (options%has('check')) then
@@ -152,7 +150,7 @@ contains
     logical, intent(out) :: ready
     type(error_type), allocatable :: err
 
-    call announce(options, mechanism, plan, run%needs)
+    call announce(options, mechanism, plan, run%requested)
     if (pictures%any_wanted()) run%film = new_film(mechanism, mechanism%time%intervals + 1, run%columns)
     call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
     ready = .not. allocated(err)
@@ -178,17 +176,17 @@ contains
   end subroutine end_run
 
   !> The title, and with --verbose the structure and the plan.
-  subroutine announce(options, mechanism, plan, needs)
+  subroutine announce(options, mechanism, plan, requested)
     type(command_line_type), intent(in) :: options
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
-    type(needs_type), intent(in) :: needs      !< what the run asks for
+    type(requested_type), intent(in) :: requested      !< what the run asks for
 
     if (.not. options%has('quiet') .and. mechanism%title /= '') write (error_unit, '(a)') mechanism%title
     if (.not. options%has('verbose')) return
     call print_structure(error_unit, mechanism%vectors)
     call print_mobility(error_unit, plan)
-    call print_plan(error_unit, mechanism, plan, needs)
+    call print_plan(error_unit, mechanism, plan, requested)
   end subroutine announce
 
   !> The pictures of the mechanism that are asked for, and a word on each.

@@ -1,4 +1,4 @@
-!> Inertia tensors and the measures of inertia of the paper, (22), (23). Uses kinds only.
+!> Inertia tensors and the measures of inertia of the paper, (22), (23).
 module mech9_inertia
   use mech9_kinds, only: wp
   implicit none

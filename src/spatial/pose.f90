@@ -1,5 +1,4 @@
 !> Poses, or where a frame B stands in a frame A, X_A = r_ab X_B + p_ab_a; the paper's (2)-(6), (10).
-!> Uses kinds, rotation.
 module mech9_pose
   use mech9_kinds, only: wp
   use mech9_rotation, only: identity, cross, unit

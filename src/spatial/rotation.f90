@@ -1,4 +1,4 @@
-!> Rotations as 3x3 matrices, and vectors. Uses mech9_kinds only.
+!> Rotations as 3x3 matrices, and vectors.
 !>
 !> r_ab turns components in frame B into components in frame A.
 module mech9_rotation

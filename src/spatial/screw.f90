@@ -1,5 +1,4 @@
-!> Screws as six numbers (w, v): rotation and the velocity it gives to the point at the origin of the
-!> frame it is written in. Uses kinds, rotation, pose, lapack.
+!> Screws as six numbers (w, v): rotation and the velocity it gives to the point at the origin of the frame it is written in.
 module mech9_screw
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross

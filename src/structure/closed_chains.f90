@@ -1,5 +1,5 @@
-!> The search for the next closed chain: the cheapest walk from a known link, through unused pairs
-!> and unknown links, to a known link. Uses kinds, priority_queue, link_graph.
+!> The search for the next closed chain: the cheapest walk from a known link, through unused pairs and unknown links, to a known
+!> link.
 !>
 !> Cheapest is: fewest dependent coordinates; ties: fewest coordinates, then the least link at
 !> an end, then, read from that end, the least coordinate numbers in order.

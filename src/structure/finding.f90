@@ -1,4 +1,4 @@
-!> What is wrong with structural data, and at which number. Uses nothing.
+!> What is wrong with structural data, and at which number.
 !>
 !> Checks of data collect findings, so that a user sees all that is wrong at once, and whoever read
 !> the data file can point at the very number.

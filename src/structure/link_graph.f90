@@ -1,5 +1,4 @@
-!> Links and pairs as a graph: which pairs each link has, and which pairs are bridges, that is, lie
-!> on no closed chain. Uses kinds, structure.
+!> Links and pairs as a graph: which pairs each link has, and which pairs are bridges, that is, lie on no closed chain.
 module mech9_link_graph
   use mech9_kinds, only: long
   use mech9_structure, only: structure_type

@@ -1,4 +1,4 @@
-!> A priority queue of integers: the item with the least key comes out first. Uses kinds.
+!> A priority queue of integers: the item with the least key comes out first.
 module mech9_priority_queue
   use mech9_kinds, only: long
   implicit none

@@ -1,5 +1,5 @@
-!> The second set of structural data: the vectors nrg, nws, rdw, nrw that say in which order the
-!> kinematic chains are run through. Uses kinds, text, finding, structure.
+!> The second set of structural data: the vectors nrg, nws, rdw, nrw that say in which order the kinematic chains are run
+!> through.
 module mech9_structural_vectors
   use mech9_kinds, only: long
   use mech9_text, only: to_text, some_of

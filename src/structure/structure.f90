@@ -1,5 +1,5 @@
-!> The structure of a mechanism, the paper's first set of data: which pairs join which links, and
-!> which coordinates are independent; (7), (8). Uses text, finding.
+!> The structure of a mechanism, the paper's first set of data: which pairs join which links, and which coordinates are
+!> independent; (7), (8).
 !>
 !> Held sparsely, as two links a pair: the coincidence matrix C itself is only ever read.
 module mech9_structure

@@ -1,6 +1,5 @@
-!> The transformation of the first set of structural data (which pairs join which links) into the
-!> second one (in which order the chains are run through). Uses kinds, structure,
-!> structural_vectors, priority_queue, link_graph, closed_chains.
+!> The transformation of the first set of structural data (which pairs join which links) into the second one (in which order the
+!> chains are run through).
 !>
 !> The rules, each followed exactly for any number of links. Link 1 is known at first; the links of
 !> each chain become known with it. What is cheaper has fewer dependent coordinates or, with as

@@ -1,5 +1,4 @@
 !> Completion of what is being typed: which of the words offered begin so, and what they have in common.
-!> Uses mech9_text only.
 module mech9_completion
   use mech9_text, only: string_type, starts_with
   implicit none

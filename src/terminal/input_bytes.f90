@@ -1,4 +1,4 @@
-!> Standard input byte by byte, as long as nobody interrupts. Uses system and ISO C binding.
+!> Standard input byte by byte, as long as nobody interrupts.
 !>
 !> It calls the system's own `poll` and `read`: gfortran's runtime library waits on through signals, reads
 !> lines of a fixed length, and takes bytes that others (a line editor) would have.

@@ -1,4 +1,4 @@
-!> The functions of libedit that are needed, as they stand in histedit.h. Uses ISO C binding only.
+!> The functions of libedit that are needed, as they stand in histedit.h.
 !>
 !> Some of them take a variable list of arguments, which Fortran has no word for. They are declared with as
 !> many machine words as any call of ours needs: on the processors for which CMake lets libedit in, whole numbers

@@ -1,5 +1,4 @@
 !> A line edited on a terminal by libedit: keys, history, completion.
-!> Uses libedit, wide_text, completion, input_bytes, system and the base.
 !>
 !> libedit calls back for the prompt, for each key and for completion. What these need travels with the
 !> editor, as its client data: a box of plain Fortran variables. Ctrl-C is a key here and no signal.

@@ -1,4 +1,4 @@
-!> Lines that a person or a script answers to prompts. Uses system, input_bytes, line_editor and the base.
+!> Lines that a person or a script answers to prompts.
 !>
 !> On a terminal lines can be edited, recalled and completed. From a pipe or a file, and on a terminal that
 !> cannot move its cursor, they are read as they come. Prompts go to standard error.

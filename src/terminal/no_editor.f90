@@ -1,4 +1,4 @@
-!> The line editor of a program built without libedit: there is none. Uses text, input_bytes.
+!> The line editor of a program built without libedit: there is none.
 module mech9_no_editor
   use mech9_text, only: string_type
   use mech9_input_bytes, only: input_ended

@@ -1,4 +1,4 @@
-!> Text as UTF-8 bytes, and as the code points a line editor works on. Uses printable.
+!> Text as UTF-8 bytes, and as the code points a line editor works on.
 module mech9_wide_text
   use mech9_printable, only: utf8_length
   implicit none

@@ -1,5 +1,4 @@
-!> A drive given by a user's procedure, in either form. Uses kinds, error, text, taylor,
-!> differentiation, drive and the hooks.
+!> A drive given by a user's procedure, in either form.
 module mech9_procedure_drive
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp

@@ -1,4 +1,4 @@
-!> A load given by a user's procedure. Uses kinds, error, text, load, what loads see, and the hook.
+!> A load given by a user's procedure.
 module mech9_procedure_load
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp

@@ -1,5 +1,4 @@
-!> A pair given by a user's procedure, in either form. Uses kinds, error, text, taylor,
-!> differentiation, spatial, pair and the hooks.
+!> A pair given by a user's procedure, in either form.
 module mech9_procedure_pair
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp

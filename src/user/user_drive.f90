@@ -1,4 +1,4 @@
-!> The hook for the user's own drive, in Taylor arithmetic. Uses kinds, taylor.
+!> The hook for the user's own drive, in Taylor arithmetic.
 !>
 !> Write a submodule of this module that holds `user_drive`, and link it: see docs/user-procedures.md.
 !> All of Taylor arithmetic is known there without a further `use`.

@@ -1,4 +1,4 @@
-!> What answers where no user's drive in Taylor arithmetic is linked. Uses not_linked.
+!> What answers where no user's drive in Taylor arithmetic is linked.
 submodule (mech9_user_drive) mech9_user_drive_default
   use mech9_not_linked, only: not_linked
   implicit none

@@ -1,4 +1,4 @@
-!> The hook for the user's own drive, in plain real numbers; the program differentiates it. Uses kinds.
+!> The hook for the user's own drive, in plain real numbers; the program differentiates it.
 !>
 !> Write a submodule of this module that holds `user_drive_values`, and link it: see
 !> docs/user-procedures.md.

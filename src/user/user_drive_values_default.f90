@@ -1,4 +1,4 @@
-!> What answers where no user's drive in plain real numbers is linked. Uses not_linked.
+!> What answers where no user's drive in plain real numbers is linked.
 submodule (mech9_user_drive_values) mech9_user_drive_values_default
   use mech9_not_linked, only: not_linked
   implicit none

@@ -1,4 +1,4 @@
-!> The hook for the user's own forces. Uses kinds, motion_view, force_sum.
+!> The hook for the user's own forces.
 !>
 !> Write a submodule of this module that holds `user_force`, and link it: see docs/user-procedures.md.
 module mech9_user_force

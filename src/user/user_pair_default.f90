@@ -1,4 +1,4 @@
-!> What answers where no user's pair in Taylor arithmetic is linked. Uses not_linked.
+!> What answers where no user's pair in Taylor arithmetic is linked.
 submodule (mech9_user_pair) mech9_user_pair_default
   use mech9_not_linked, only: not_linked
   implicit none

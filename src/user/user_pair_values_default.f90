@@ -1,4 +1,4 @@
-!> What answers where no user's pair in plain real numbers is linked. Uses not_linked.
+!> What answers where no user's pair in plain real numbers is linked.
 submodule (mech9_user_pair_values) mech9_user_pair_values_default
   use mech9_not_linked, only: not_linked
   implicit none

@@ -1,5 +1,4 @@
 !> A pair without a fixed axis, in closed form: its origin runs along a curve while it turns unevenly.
-!> Uses kinds, error, rotation, pair.
 module mech9_curved_pair
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data

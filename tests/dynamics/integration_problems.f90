@@ -1,5 +1,4 @@
 !> Equations with known solutions, and some that go wrong, for tests of the integrator.
-!> Uses kinds, error, ode_system, integrator.
 module mech9_integration_problems
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp, pi

@@ -1,5 +1,4 @@
-!> Lagrange's equations taken literally: (19), (21), (25) with every derivative by differences of closed
-!> positions. Uses the kinematics floor, the model, differentiation, inertia.
+!> Lagrange's equations taken literally: (19), (21), (25) with every derivative by differences of closed positions.
 !>
 !> Sixteenth-order differences over 17 positions, each closed to round-off. Nothing of the dynamics floor
 !> is used, and of the kinematics floor positions only: no Jacobian, no rate, no acceleration.
@@ -17,7 +16,7 @@ module mech9_literal_lagrange
   use mech9_coordinate_load, only: coordinate_load_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, factorize_block, apply_change
+  use mech9_block_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, factorize_block, apply_change
   use mech9_frame_motion, only: link_motion
   use mech9_block_equations, only: block_residual
   implicit none

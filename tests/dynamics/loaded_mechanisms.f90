@@ -1,5 +1,4 @@
-!> Mechanisms with bodies and loads, built in code for the tests of the dynamics floor. Uses the model,
-!> the sample mechanisms, random geometry, curved_pair.
+!> Mechanisms with bodies and loads, built in code for the tests of the dynamics floor.
 module mech9_loaded_mechanisms
   use mech9_kinds, only: wp, long
   use mech9_rotation, only: identity

@@ -6,7 +6,7 @@ program test_coordinate_choice
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_needs, only: needs_type, needs_of_results
+  use mech9_requested, only: requested_type, requested_by_results
   use mech9_coordinate_choice, only: with_independent
   use mech9_curved_pair, only: curved_pair_type
   use mech9_sample_mechanisms, only: four_bar
@@ -39,14 +39,14 @@ contains
     type(mechanism_type) :: whole, other_mechanism
     type(plan_type) :: plan, other_plan
     type(state_type) :: state, other_state
-    type(needs_type) :: needs
+    type(requested_type) :: requested
     type(error_type), allocatable :: err
 
     call new_four_bar(whole)
     call make_plan(whole, whole%initial_position, plan, state, err)
     call test%no_error(err, 'a four-bar')
-    needs = needs_of_results(whole)
-    call with_independent(mechanism, state, independent, needs, other_mechanism, other_plan, other_state, err)
+    requested = requested_by_results(whole)
+    call with_independent(mechanism, state, independent, requested, other_mechanism, other_plan, other_state, err)
     if (code == 0) then
       call test%no_error(err, why)
     else

@@ -109,7 +109,7 @@ contains
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(state_type) :: start, state
-    type(lagrange_work_type) :: work, elsewhere
+    type(lagrange_work_type) :: work, generic
     type(error_type), allocatable :: err
     real(wp), allocatable :: q(:, :)
     real(wp) :: energy(-half_width:half_width), rate, acceleration, error, scale
@@ -119,7 +119,7 @@ contains
     call test%no_error(err, why)
     if (allocated(err)) return
     allocate (q(plan%n_coordinates, -half_width:half_width))
-    elsewhere = work
+    generic = work
     do side = -1, 1, 2
       state = start
       do i = 0, side*half_width, side
@@ -128,7 +128,7 @@ contains
           state%dq(own) = start%dq(own) + i*h*work%accelerations
         end associate
         call close_chains(plan, state, err)
-        if (.not. allocated(err)) call find_motion(mechanism, plan, dynamics, state, elsewhere, err)
+        if (.not. allocated(err)) call find_motion(mechanism, plan, dynamics, state, generic, err)
         call test%no_error(err, why//': a position nearby')
         if (allocated(err)) return
         q(:, i) = state%q
@@ -157,7 +157,7 @@ contains
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(state_type) :: start, state
-    type(lagrange_work_type) :: work, elsewhere
+    type(lagrange_work_type) :: work, generic
     type(error_type), allocatable :: err
     real(wp) :: energy(-half_width:half_width), slope, unused, error
     integer :: i, p, side
@@ -165,17 +165,17 @@ contains
     call begin(mechanism, plan, dynamics, start, work, err)
     call test%no_error(err, why)
     if (allocated(err)) return
-    elsewhere = work
+    generic = work
     do p = 1, size(plan%independent)
       do side = -1, 1, 2
         state = start
         do i = 0, side*half_width, side
           state%q(plan%independent(p)) = start%q(plan%independent(p)) + i*h
           call close_chains(plan, state, err)
-          if (.not. allocated(err)) call find_motion(mechanism, plan, dynamics, state, elsewhere, err)
+          if (.not. allocated(err)) call find_motion(mechanism, plan, dynamics, state, generic, err)
           call test%no_error(err, why//': a position nearby')
           if (allocated(err)) return
-          energy(i) = potential_energy(mechanism, plan, state, elsewhere%view)
+          energy(i) = potential_energy(mechanism, plan, state, generic%view)
         end do
       end do
       call derivatives_from_stencil(energy, h, slope, unused, error)

@@ -1,5 +1,4 @@
-!> Motions followed from their start, for tests that hold them against closed forms. Uses the model, the kinematics
-!> and testing.
+!> Motions followed from their start, for tests that hold them against closed forms.
 module mech9_followed_motions
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
@@ -7,7 +6,7 @@ module mech9_followed_motions
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, set_inputs
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, set_inputs
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -16,12 +15,12 @@ module mech9_followed_motions
 contains
 
   !> Plan and assemble at time t, and start there. Without a position the test ends.
-  subroutine begin_motion(test, mechanism, t, plan, tracker, start_error)
+  subroutine begin_motion(test, mechanism, t, plan, driven, start_error)
     type(tester_type), intent(inout) :: test
     type(mechanism_type), intent(in) :: mechanism
     real(wp), intent(in) :: t
     type(plan_type), intent(out) :: plan
-    type(tracker_type), intent(out) :: tracker
+    type(driven_motion_type), intent(out) :: driven
     type(error_type), allocatable, intent(out), optional :: start_error   !< of a start that need not go well
     type(state_type) :: state
     type(error_type), allocatable :: err
@@ -33,7 +32,7 @@ contains
     call make_plan(mechanism, q, plan, state, err)
     call test%no_error(err, 'plan and assembly')
     if (allocated(err)) call test%finish()
-    call start_tracking(mechanism, plan, state, t, tracker, err)
+    call start_driven_motion(mechanism, plan, state, t, driven, err)
     if (present(start_error)) then
       call move_alloc(err, start_error)
     else

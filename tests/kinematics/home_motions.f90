@@ -1,5 +1,5 @@
-!> Which rates a mechanism allows in its home position, worked out from the axes alone: the oracle for
-!> ranks, choices of independent coordinates and rates. Uses kinds, random, the families.
+!> Which rates a mechanism allows in its home position, worked out from the axes alone: the oracle for ranks, choices of
+!> independent coordinates and rates.
 !>
 !> Twists are written in the fixed frame, moments about its origin. Along a tree of links each twist is
 !> the sum of the screws on the way; each pair outside the tree asks that the twists at its two links
@@ -93,13 +93,13 @@ contains
     end do
   end subroutine choose_dependent
 
-  !> All rates from those of the independent coordinates, by Gauss-Jordan elimination; `lack` is the
+  !> All rates from those of the independent coordinates, by Gauss-Jordan elimination; `residual_norm` is the
   !> largest part of an equation that stays.
-  subroutine rates_from(equations, dependent, rates, lack)
+  subroutine rates_from(equations, dependent, rates, residual_norm)
     real(wp), intent(in) :: equations(:, :)
     logical, intent(in) :: dependent(:)
     real(wp), intent(inout) :: rates(:)        !< on entry those of the independent coordinates
-    real(wp), intent(out) :: lack
+    real(wp), intent(out) :: residual_norm
     real(wp) :: a(size(equations, 1), size(equations, 2)), right(size(equations, 1))
     logical :: row_free(size(equations, 1))
     integer :: pivot_row(size(dependent)), i, at(2)
@@ -124,6 +124,6 @@ contains
     do i = 1, size(dependent)
       if (pivot_row(i) > 0) rates(i) = right(pivot_row(i))/a(pivot_row(i), i)
     end do
-    lack = maxval(abs(matmul(equations, rates)))
+    residual_norm = maxval(abs(matmul(equations, rates)))
   end subroutine rates_from
 end module mech9_home_motions

@@ -1,5 +1,5 @@
-!> Families of mechanisms for the tests of blocks, mobility and assembly, assembled where every
-!> coordinate is zero: each pair is an axis that both of its links share there. Uses the model and planning.
+!> Families of mechanisms for the tests of blocks, mobility and assembly, assembled where every coordinate is zero: each pair is
+!> an axis that both of its links share there.
 module mech9_mechanism_families
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type

@@ -1,9 +1,9 @@
-!> Checks that any plan must pass, whatever the mechanism. Uses plan, state, closure, solver, testing.
+!> Checks that any plan must pass, whatever the mechanism.
 module mech9_plan_checks
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
+  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
   use mech9_testing, only: tester_type
   implicit none
   private

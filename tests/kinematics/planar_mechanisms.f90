@@ -1,4 +1,4 @@
-!> Planar mechanisms with closed forms, for tests of branches and special positions. Uses sample_mechanisms.
+!> Planar mechanisms with closed forms, for tests of branches and special positions.
 module mech9_planar_mechanisms
   use mech9_kinds, only: wp
   use mech9_random, only: random_type

@@ -1,4 +1,4 @@
-!> Mechanisms built in code for the tests of the kinematics floor. Uses the model.
+!> Mechanisms built in code for the tests of the kinematics floor.
 module mech9_sample_mechanisms
   use mech9_kinds, only: wp
   use mech9_pose, only: pose_type, pose_from_axis, default_zero

@@ -9,7 +9,7 @@ program test_assemblies
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_branches, only: assembly_list_type, find_assemblies
+  use mech9_assemblies, only: assembly_list_type, find_assemblies
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame, four_bar
   use mech9_plan_checks, only: check_closed
   use mech9_testing, only: tester_type
@@ -186,7 +186,7 @@ contains
   integer function positions_of(base, plate, legs) result(found)
     real(wp), intent(in) :: base(2, 3), plate(2, 3), legs(3)
     integer, parameter :: n = 200000
-    real(wp) :: turn(2, 2), centre(2), apart(2), along, across, place(2), lack, before(2), angle
+    real(wp) :: turn(2, 2), centre(2), apart(2), along, across, place(2), residual_norm, before(2), angle
     logical :: had(2)
     integer :: i, side
 
@@ -207,11 +207,11 @@ contains
       apart = apart/norm2(apart)
       do side = 1, 2
         place = centre + along*apart + (3 - 2*side)*across*[-apart(2), apart(1)]
-        lack = norm2(place + matmul(turn, plate(:, 3)) - base(:, 3)) - legs(3)
+        residual_norm = norm2(place + matmul(turn, plate(:, 3)) - base(:, 3)) - legs(3)
         if (had(side)) then
-          if (lack*before(side) < 0.0_wp) found = found + 1
+          if (residual_norm*before(side) < 0.0_wp) found = found + 1
         end if
-        before(side) = lack
+        before(side) = residual_norm
         had(side) = .true.
       end do
     end do

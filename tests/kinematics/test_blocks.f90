@@ -136,7 +136,7 @@ contains
     type(state_type) :: state
     type(error_type), allocatable :: err
     real(wp), allocatable :: equations(:, :)
-    real(wp) :: rates(size(axes)), expected(size(axes)), lack
+    real(wp) :: rates(size(axes)), expected(size(axes)), residual_norm
     integer :: k
 
     call make_plan(mechanism, mechanism%initial_position, plan, state, err)
@@ -145,7 +145,7 @@ contains
     expected = 0.0_wp
     expected(driven) = 1.0_wp
     rates = expected
-    call rates_from(equations, [(k /= driven, k=1, size(axes))], expected, lack)
+    call rates_from(equations, [(k /= driven, k=1, size(axes))], expected, residual_norm)
     call rates_of(plan, state, rates)
     ! both solve some ten equations; random dimensions make them worse by some thousands at most
     call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-11_wp, name//': rates')

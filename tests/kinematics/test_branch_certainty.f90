@@ -7,7 +7,7 @@ program test_branch_certainty
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_tracking, only: tracker_type, advance
+  use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_harmonic_drive, only: harmonic_drive_type
   use mech9_sample_mechanisms, only: drive, four_bar, fig1
   use mech9_planar_mechanisms, only: two_circles, slider_crank, watt_six_bar, four_bar_type, random_crank, &
@@ -45,7 +45,7 @@ contains
     character(len=*), intent(in) :: name
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: start, angle, worst, last
     integer :: branch, n, j
@@ -55,20 +55,20 @@ contains
       call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, start, branch), mechanism)
       call drive(mechanism, 1, [start, 2.0_wp*pi])
       do n = 1, size(outputs)
-        call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+        call begin_motion(test, mechanism, 0.0_wp, plan, driven)
         worst = 0.0_wp
         do j = 1, outputs(n)
-          call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
+          call advance(mechanism, plan, driven, real(turns*j, wp)/outputs(n), err)
           if (allocated(err)) exit
-          angle = four_bar_angle(bar, tracker%state%q(1), branch)
-          worst = max(worst, angle_between(tracker%state%q(4), angle))
+          angle = four_bar_angle(bar, driven%state%q(1), branch)
+          worst = max(worst, angle_between(driven%state%q(4), angle))
         end do
         call test%no_error(err, name//' goes on')
         ! positions are known to round-off over the least pivot, and so is the closed form; the nearest
         ! branch is apart by at least the least pivot, 1e-5
         call test%near(worst, 0.0_wp, 1.0e-9_wp, name//' stays on its branch')
-        if (n == 1) last = tracker%state%q(4)
-        call test%near(tracker%state%q(4), last, 1.0e-9_wp, name//': as many turns of the rocker')
+        if (n == 1) last = driven%state%q(4)
+        call test%near(driven%state%q(4), last, 1.0e-9_wp, name//': as many turns of the rocker')
       end do
     end do
   end subroutine check_four_bar
@@ -78,7 +78,7 @@ contains
     integer, intent(in) :: i
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: crank, coupler, offset, angle, expected, worst
     integer :: branch, n, j
@@ -90,14 +90,14 @@ contains
       call slider_crank(crank, coupler, offset, 0.4_wp, branch, mechanism)
       call drive(mechanism, 1, [0.4_wp, 2.0_wp*pi])
       do n = 1, size(outputs)
-        call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+        call begin_motion(test, mechanism, 0.0_wp, plan, driven)
         worst = 0.0_wp
         do j = 1, outputs(n)
-          call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
+          call advance(mechanism, plan, driven, real(turns*j, wp)/outputs(n), err)
           if (allocated(err)) exit
-          angle = tracker%state%q(1)
+          angle = driven%state%q(1)
           expected = crank*cos(angle) + branch*sqrt(coupler**2 - (crank*sin(angle) - offset)**2)
-          worst = max(worst, abs(tracker%state%q(4) - expected))
+          worst = max(worst, abs(driven%state%q(4) - expected))
         end do
         call test%no_error(err, 'a slider-crank goes on')
         call test%near(worst, 0.0_wp, 1.0e-9_wp, 'a slider-crank stays on its branch')
@@ -109,7 +109,7 @@ contains
   subroutine check_six_bar()
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     type(four_bar_type) :: bar
     real(wp) :: at(2), pivot(2), expected, worst, joint(2), swing
@@ -123,18 +123,18 @@ contains
         call watt_six_bar(bar, at, pivot, [2.6_wp, 2.5_wp], 0.3_wp, branch, second, mechanism)
         call drive(mechanism, 1, [0.3_wp, 2.0_wp*pi])
         do n = 1, size(outputs)
-          call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+          call begin_motion(test, mechanism, 0.0_wp, plan, driven)
           worst = 0.0_wp
           do j = 1, outputs(n)
-            call advance(mechanism, plan, tracker, real(turns*j, wp)/outputs(n), err)
+            call advance(mechanism, plan, driven, real(turns*j, wp)/outputs(n), err)
             if (allocated(err)) exit
-            worst = max(worst, angle_between(tracker%state%q(4), four_bar_angle(bar, tracker%state%q(1), branch)))
-            swing = tracker%state%q(1) + tracker%state%q(2)
-            joint = bar%crank*[cos(tracker%state%q(1)), sin(tracker%state%q(1))] &
+            worst = max(worst, angle_between(driven%state%q(4), four_bar_angle(bar, driven%state%q(1), branch)))
+            swing = driven%state%q(1) + driven%state%q(2)
+            joint = bar%crank*[cos(driven%state%q(1)), sin(driven%state%q(1))] &
                     + at(1)*[cos(swing), sin(swing)] + at(2)*[-sin(swing), cos(swing)]
             joint = two_circles(joint, 2.6_wp, pivot, 2.5_wp, second) - pivot
             expected = atan2(joint(2), joint(1))
-            worst = max(worst, angle_between(tracker%state%q(7), expected))
+            worst = max(worst, angle_between(driven%state%q(7), expected))
           end do
           call test%no_error(err, 'a six-bar goes on')
           call test%near(worst, 0.0_wp, 1.0e-10_wp, 'a six-bar stays on its branches')
@@ -147,7 +147,7 @@ contains
   subroutine check_swinging_fig1()
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     type(harmonic_drive_type) :: swing
     real(wp) :: start(7), q(7)
@@ -163,17 +163,17 @@ contains
     swing%angular_frequency = 2.0_wp*pi
     do n = 1, 4
       allocate (mechanism%drives(1)%drive, source=swing)
-      call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
-      start = tracker%state%q
+      call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+      start = driven%state%q
       do j = 1, 10**n
         ! at the last output the drive has swung forty-seven and a quarter times
-        call advance(mechanism, plan, tracker, 47.25_wp*j/10**n, err)
+        call advance(mechanism, plan, driven, 47.25_wp*j/10**n, err)
         if (allocated(err)) exit
       end do
       call test%no_error(err, 'Fig. 1 swings on')
-      if (n == 1) q = tracker%state%q
-      call test%is_true(maxval(abs(tracker%state%q - start)) > 0.05_wp, 'and has moved')
-      call test%near(maxval(abs(tracker%state%q - q)), 0.0_wp, 1.0e-11_wp, 'to the same position')
+      if (n == 1) q = driven%state%q
+      call test%is_true(maxval(abs(driven%state%q - start)) > 0.05_wp, 'and has moved')
+      call test%near(maxval(abs(driven%state%q - q)), 0.0_wp, 1.0e-11_wp, 'to the same position')
       deallocate (mechanism%drives(1)%drive)
     end do
   end subroutine check_swinging_fig1

@@ -6,7 +6,7 @@ program test_no_allocation
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_point, only: point_type
   use mech9_sample_mechanisms, only: drive, fig1, general_loop
@@ -33,7 +33,7 @@ contains
     character(len=*), intent(in) :: name
     type(plan_type) :: plan
     type(state_type) :: state
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(columns_type) :: columns
     type(error_type), allocatable :: err
     real(wp) :: row(100)
@@ -45,14 +45,14 @@ contains
     columns = kinematic_columns(mechanism)
     call make_plan(mechanism, mechanism%initial_position, plan, state, err)
     call test%no_error(err, name//': plan')
-    call start_tracking(mechanism, plan, state, 0.0_wp, tracker, err)
+    call start_driven_motion(mechanism, plan, state, 0.0_wp, driven, err)
     call test%no_error(err, name//': start')
     before = calls
     call test%is_true(before > 0, 'the counter counts')
     do i = 1, 100
-      call advance(mechanism, plan, tracker, 0.002_wp*i, err)
+      call advance(mechanism, plan, driven, 0.002_wp*i, err)
       if (allocated(err)) exit
-      call columns%fill(mechanism, plan, tracker%state, row)
+      call columns%fill(mechanism, plan, driven%state, row)
     end do
     call test%is_true(calls == before, name//': a hundred positions allocate nothing')
     call test%no_error(err, name//': goes on')

@@ -7,7 +7,7 @@ program test_planar_chain
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_solver, only: block_work_type, new_block_work, factorize_block, solve_rates, solve_accelerations, solve_motion
+  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block, solve_rates, solve_accelerations, solve_motion
   use mech9_sample_mechanisms, only: fig1, new_mechanism, add_revolute, add_prismatic, frame
   use mech9_planar_mechanisms, only: four_bar_type, random_crank, slider_crank, watt_six_bar
   use mech9_testing, only: tester_type

@@ -108,7 +108,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
-    real(wp) :: rates(size(dependent)), expected(size(dependent)), start(size(dependent)), lack
+    real(wp) :: rates(size(dependent)), expected(size(dependent)), start(size(dependent)), residual_norm
     integer :: k
 
     call make_plan(mechanism, mechanism%initial_position, plan, state, err)
@@ -123,8 +123,8 @@ contains
     end do
     where (dependent) expected = 0.0_wp
     rates = expected
-    call rates_from(equations, dependent, expected, lack)
-    call test%near(lack/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, name//': the oracle contradicts itself')
+    call rates_from(equations, dependent, expected, residual_norm)
+    call test%near(residual_norm/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, name//': the oracle contradicts itself')
     call rates_of(plan, state, rates)
     ! the choice of coordinates is good, but some hundred at random have a condition of some thousands
     call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, name//': rates')

@@ -9,7 +9,7 @@ program test_random_motion
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_tracking, only: tracker_type, start_tracking, advance
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_mechanism_families, only: axis_type, planar_axes, spatial_axes, spherical_axes, home_mechanism, random_links
   use mech9_home_motions, only: loop_equations, choose_dependent
   use mech9_testing, only: tester_type
@@ -59,7 +59,7 @@ contains
     type(mechanism_type), intent(inout) :: mechanism
     type(plan_type) :: plan
     type(state_type) :: start
-    type(tracker_type) :: few, many
+    type(driven_motion_type) :: few, many
     type(error_type), allocatable :: err, few_err, many_err
     type(harmonic_drive_type) :: swing
     integer :: i
@@ -96,19 +96,19 @@ contains
     end if
   end subroutine compare
 
-  subroutine follow(mechanism, plan, start, outputs, tracker, err)
+  subroutine follow(mechanism, plan, start, outputs, driven, err)
     type(mechanism_type), intent(in) :: mechanism
     type(plan_type), intent(in) :: plan
     type(state_type), intent(in) :: start
     integer, intent(in) :: outputs
-    type(tracker_type), intent(out) :: tracker
+    type(driven_motion_type), intent(out) :: driven
     type(error_type), allocatable, intent(out) :: err
     integer :: j
 
-    call start_tracking(mechanism, plan, start, 0.0_wp, tracker, err)
+    call start_driven_motion(mechanism, plan, start, 0.0_wp, driven, err)
     do j = 1, outputs
       if (allocated(err)) return
-      call advance(mechanism, plan, tracker, 5.0_wp*j/outputs, err)
+      call advance(mechanism, plan, driven, 5.0_wp*j/outputs, err)
     end do
   end subroutine follow
 end program test_random_motion

@@ -7,7 +7,7 @@ program test_range
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_range, only: range_type, find_range, ends_at_limit, ends_never, ends_round
+  use mech9_motion_range, only: motion_range_type, find_range, ends_at_limit, ends_never, ends_round
   use mech9_sample_mechanisms, only: four_bar, new_mechanism, add_revolute, add_prismatic, frame
   use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit, random_crank, slider_crank
   use mech9_testing, only: tester_type
@@ -35,7 +35,7 @@ contains
   subroutine range_of(mechanism, coordinate, range)
     type(mechanism_type), intent(in) :: mechanism
     integer, intent(in) :: coordinate
-    type(range_type), intent(out) :: range
+    type(motion_range_type), intent(out) :: range
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
@@ -47,7 +47,7 @@ contains
   end subroutine range_of
 
   subroutine check_limits(range, lower, upper, name)
-    type(range_type), intent(in) :: range
+    type(motion_range_type), intent(in) :: range
     real(wp), intent(in) :: lower, upper
     character(len=*), intent(in) :: name
 
@@ -58,17 +58,17 @@ contains
   end subroutine check_limits
 
   !> A crank between two positions in which coupler and rocker are stretched out: it swings through zero.
-  !> The smaller `lack`, the nearer it passes to another dead point at zero, or at half a turn to none.
-  subroutine both_sides(branch, lack)
+  !> The smaller `residual_norm`, the nearer it passes to another dead point at zero, or at half a turn to none.
+  subroutine both_sides(branch, residual_norm)
     integer, intent(in) :: branch
-    real(wp), intent(in) :: lack
+    real(wp), intent(in) :: residual_norm
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
-    type(range_type) :: range
+    type(motion_range_type) :: range
     real(wp) :: limit
 
     bar = four_bar_type(ground=0.0_wp, crank=0.7_wp, coupler=0.8_wp, rocker=0.75_wp)
-    bar%ground = bar%coupler + bar%rocker - bar%crank + lack
+    bar%ground = bar%coupler + bar%rocker - bar%crank + residual_norm
     limit = four_bar_limit(bar, stretched=.true.)
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.3_wp*limit, branch), mechanism)
     call range_of(mechanism, 1, range)
@@ -80,7 +80,7 @@ contains
     integer, intent(in) :: branch
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
-    type(range_type) :: range
+    type(motion_range_type) :: range
     real(wp) :: from, to
 
     bar = four_bar_type(ground=1.0_wp, crank=0.7_wp + 0.1_wp*random%symmetric(), coupler=1.0_wp, &
@@ -98,7 +98,7 @@ contains
     integer, intent(in) :: branch
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
-    type(range_type) :: range
+    type(motion_range_type) :: range
 
     bar = random_crank(random, 0.1_wp*abs(random%symmetric()))
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.4_wp, branch), mechanism)
@@ -111,7 +111,7 @@ contains
   subroutine slider_as_input(branch)
     integer, intent(in) :: branch
     type(mechanism_type) :: mechanism
-    type(range_type) :: range
+    type(motion_range_type) :: range
     real(wp) :: crank, coupler, offset, lower, upper
 
     crank = 0.5_wp + 0.1_wp*random%symmetric()
@@ -139,7 +139,7 @@ contains
   !> A kite is its own mirror image after one turn of the crank: it is round after two.
   subroutine two_turns()
     type(mechanism_type) :: mechanism
-    type(range_type) :: range
+    type(motion_range_type) :: range
 
     call four_bar(0.7_wp, 0.7_wp, 1.0_wp, 1.0_wp, &
                   four_bar_guess(four_bar_type(0.7_wp, 0.7_wp, 1.0_wp, 1.0_wp), 0.8_wp, 1), mechanism)
@@ -150,7 +150,7 @@ contains
   !> An arm and a slide: one turns round, the other has no end.
   subroutine open_chain()
     type(mechanism_type) :: mechanism
-    type(range_type) :: range
+    type(motion_range_type) :: range
     real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], x(3) = [1.0_wp, 0.0_wp, 0.0_wp]
 
     call new_mechanism(3, reshape([1, 2, 2, 3], [2, 2]), [1, 2], mechanism)

@@ -6,7 +6,7 @@ program test_special_positions
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_tracking, only: tracker_type, advance
+  use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_harmonic_drive, only: harmonic_drive_type
   use mech9_sample_mechanisms, only: drive, four_bar
   use mech9_planar_mechanisms, only: slider_crank, watt_six_bar, four_bar_type, four_bar_guess, four_bar_limit
@@ -37,10 +37,10 @@ program test_special_positions
 
 contains
 
-  !> A crank that cannot turn fully because the longest and the shortest link are by `lack` too long
+  !> A crank that cannot turn fully because the longest and the shortest link are by `residual_norm` too long
   !> together: it stops on both sides where coupler and rocker are in line.
-  subroutine check_dead_point(lack)
-    real(wp), intent(in) :: lack
+  subroutine check_dead_point(residual_norm)
+    real(wp), intent(in) :: residual_norm
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     real(wp) :: limit
@@ -48,7 +48,7 @@ contains
 
     ! not of Grashof's kind: crank and ground are the two middle links or hold the longest
     bar = four_bar_type(ground=1.2_wp, crank=0.7_wp, coupler=0.9_wp, rocker=0.4_wp)
-    bar%ground = bar%coupler + bar%crank - bar%rocker + lack
+    bar%ground = bar%coupler + bar%crank - bar%rocker + residual_norm
     limit = four_bar_limit(bar, stretched=.true.)
     do branch = -1, 1, 2
       do direction = -1, 1, 2
@@ -86,24 +86,24 @@ contains
     integer, intent(in) :: direction
     character(len=*), intent(in) :: name
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     integer :: n, j
 
     do n = 1, 1000, 333
-      call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+      call begin_motion(test, mechanism, 0.0_wp, plan, driven)
       do j = 1, n
-        call advance(mechanism, plan, tracker, 4.0_wp*j/n, err)
+        call advance(mechanism, plan, driven, 4.0_wp*j/n, err)
         if (allocated(err)) exit
-        call test%is_true((limit - tracker%state%q(1))*direction > 0.0_wp, name//': no output beyond the dead point')
+        call test%is_true((limit - driven%state%q(1))*direction > 0.0_wp, name//': no output beyond the dead point')
       end do
       call test%has_error(err, exit_singular, name//': a dead point is exit code 6')
       if (.not. allocated(err)) cycle
       ! the closed form itself loses no digits; the square-root law that the limit is taken from is exact
       ! to the square of the last distance, about 1e-9
-      call test%near(tracker%limit(1), limit, 1.0e-10_wp, name//': the limit by its closed form')
-      call test%near(tracker%state%q(1), limit, 1.0e-6_wp, name//': it stops at the dead point')
-      call test%is_true((limit - tracker%state%q(1))*direction > 0.0_wp, name//': and just short of it')
+      call test%near(driven%limit(1), limit, 1.0e-10_wp, name//': the limit by its closed form')
+      call test%near(driven%state%q(1), limit, 1.0e-6_wp, name//': it stops at the dead point')
+      call test%is_true((limit - driven%state%q(1))*direction > 0.0_wp, name//': and just short of it')
       call test%is_true(index(err%message, 'dead point') > 0 .and. index(err%message, 'q1') > 0, &
                         name//': the message says so')
     end do
@@ -119,19 +119,19 @@ contains
     real(wp), intent(in) :: factors(2:4)
     character(len=*), intent(in) :: name
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     integer :: j
 
     call drive(mechanism, 1, [start, 3.0_wp*pi, merge(0.5_wp, 0.0_wp, start < 1.0_wp)])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
     do j = 1, n
-      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      call advance(mechanism, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       ! between the positions beside a special one there is a polynomial of high degree through accelerations that
       ! round-off over the square of their distance from it leaves uncertain by some 1e-8 of the squares of the
       ! rates (1e-6 here; seen 1.2e-6 with another BLAS): they are the least exact, and are held to ten times that
-      associate (state => tracker%state)
+      associate (state => driven%state)
         call test%near(maxval(angle_between(state%q(2:), expected + factors*state%q(1))), 0.0_wp, 1.0e-11_wp, name//': positions')
         call test%near(maxval(abs(state%dq(2:) - factors*state%dq(1))), 0.0_wp, 1.0e-9_wp, name//': rates')
         call test%near(maxval(abs(state%ddq(2:) - factors*state%ddq(1))), 0.0_wp, 1.0e-7_wp*state%dq(1)**2, &
@@ -139,7 +139,7 @@ contains
       end associate
     end do
     call test%no_error(err, name//' goes on')
-    call test%is_true(tracker%worst_closure < 1.0e-12_wp, name//' stays closed')
+    call test%is_true(driven%worst_closure < 1.0e-12_wp, name//' stays closed')
   end subroutine check_proportional
 
   !> The rocker turns with the crank, the coupler stays parallel to the ground, also through the flat positions.
@@ -160,7 +160,7 @@ contains
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: gap, rate
     integer :: j
@@ -168,17 +168,17 @@ contains
     bar = four_bar_type(ground, crank, ground, crank)
     call four_bar(ground, crank, ground, crank, four_bar_guess(bar, start, -1), mechanism)
     call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
-    call test%is_true(angle_between(tracker%state%q(4), start) > 1.0_wp, 'it is not the parallelogram')
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+    call test%is_true(angle_between(driven%state%q(4), start) > 1.0_wp, 'it is not the parallelogram')
     do j = 1, n
-      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      call advance(mechanism, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
-      associate (a => tracker%state%q(1), b => tracker%state%q(4))
+      associate (a => driven%state%q(1), b => driven%state%q(4))
         ! the pins are apart by the coupler's length, and the rocker turns against the crank
         gap = hypot(ground + crank*(cos(b) - cos(a)), crank*(sin(b) - sin(a))) - ground
         call test%near(gap, 0.0_wp, 1.0e-12_wp, 'an antiparallelogram: positions')
-        rate = -(ground**2 - crank**2)/(ground**2 + crank**2 - 2.0_wp*ground*crank*cos(a))*tracker%state%dq(1)
-        call test%near(tracker%state%dq(4), rate, 1.0e-9_wp, 'an antiparallelogram: rates')
+        rate = -(ground**2 - crank**2)/(ground**2 + crank**2 - 2.0_wp*ground*crank*cos(a))*driven%state%dq(1)
+        call test%near(driven%state%dq(4), rate, 1.0e-9_wp, 'an antiparallelogram: rates')
       end associate
     end do
     call test%no_error(err, 'an antiparallelogram goes on')
@@ -192,7 +192,7 @@ contains
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: half, expected, rate
     integer :: j
@@ -200,16 +200,16 @@ contains
     bar = four_bar_type(short, short, long, long)
     call four_bar(short, short, long, long, four_bar_guess(bar, 0.25_wp*pi, 1), mechanism)
     call drive(mechanism, 1, [0.25_wp*pi, -3.0_wp*pi])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
     do j = 1, n
-      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      call advance(mechanism, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       ! the diagonal 2 short sin(q1/2), with its sign, points along q1/2 + 90 degrees
-      half = 0.5_wp*tracker%state%q(1)
+      half = 0.5_wp*driven%state%q(1)
       expected = half + 0.5_wp*pi - acos(short*sin(half)/long)
-      rate = (0.5_wp + 0.5_wp*short*cos(half)/sqrt(long**2 - (short*sin(half))**2))*tracker%state%dq(1)
-      call test%near(angle_between(tracker%state%q(4), expected), 0.0_wp, 1.0e-11_wp, 'a kite: rocker')
-      call test%near(tracker%state%dq(4), rate, 1.0e-8_wp, 'a kite: rate of the rocker')
+      rate = (0.5_wp + 0.5_wp*short*cos(half)/sqrt(long**2 - (short*sin(half))**2))*driven%state%dq(1)
+      call test%near(angle_between(driven%state%q(4), expected), 0.0_wp, 1.0e-11_wp, 'a kite: rocker')
+      call test%near(driven%state%dq(4), rate, 1.0e-8_wp, 'a kite: rate of the rocker')
     end do
     call test%no_error(err, 'a kite goes on')
   end subroutine check_kite
@@ -221,17 +221,17 @@ contains
     real(wp), parameter :: arm = 0.6_wp
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     integer :: j
 
     call slider_crank(arm, arm, 0.0_wp, start, 1, mechanism)
     call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
     do j = 1, n
-      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      call advance(mechanism, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
-      associate (state => tracker%state)
+      associate (state => driven%state)
         call test%near(state%q(4), 2.0_wp*arm*cos(state%q(1)), 1.0e-11_wp, 'equal arms: slider')
         call test%near(state%dq(4), -2.0_wp*arm*sin(state%q(1))*state%dq(1), 1.0e-9_wp, 'equal arms: rate of the slider')
         call test%near(state%ddq(4), -2.0_wp*arm*cos(state%q(1))*state%dq(1)**2, 1.0e-6_wp, 'equal arms: acceleration')
@@ -247,7 +247,7 @@ contains
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     type(harmonic_drive_type) :: swing
     real(wp) :: limit, guess(4)
@@ -263,15 +263,15 @@ contains
     deallocate (mechanism%drives)
     allocate (mechanism%drives(1))
     allocate (mechanism%drives(1)%drive, source=swing)
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
     do j = 1, n
-      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      call advance(mechanism, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
     end do
     call test%no_error(err, 'a dead point that is only touched is passed')
     ! half a period later the crank is back, and the rocker on the other side
     guess = four_bar_guess(bar, 0.7_wp*limit, -1)
-    call test%near(maxval(angle_between(tracker%state%q, guess)), 0.0_wp, 1.0e-9_wp, 'a touched dead point: the other side')
+    call test%near(maxval(angle_between(driven%state%q, guess)), 0.0_wp, 1.0e-9_wp, 'a touched dead point: the other side')
   end subroutine check_touched_dead_point
 
   !> A parallelogram, and a second one on its coupler: both are flat at once.
@@ -281,7 +281,7 @@ contains
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: point(2), pin(2)
     integer :: j
@@ -293,13 +293,13 @@ contains
     call watt_six_bar(bar, [0.5_wp, 0.0_wp], [1.7_wp, 0.0_wp], [1.2_wp, crank], start, 1, 1, mechanism)
     mechanism%initial_position = [start, -start, start, start, 0.0_wp, start, start]
     call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
     call test%near(norm2(pin - point), 1.2_wp, 1.0e-14_wp, 'the second parallelogram closes')
     do j = 1, n
-      call advance(mechanism, plan, tracker, real(j, wp)/n, err)
+      call advance(mechanism, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
-      call test%near(angle_between(tracker%state%q(7), tracker%state%q(1)), 0.0_wp, 1.0e-11_wp, 'two parallelograms')
-      call test%near(tracker%state%dq(7), tracker%state%dq(1), 1.0e-8_wp, 'two parallelograms: rates')
+      call test%near(angle_between(driven%state%q(7), driven%state%q(1)), 0.0_wp, 1.0e-11_wp, 'two parallelograms')
+      call test%near(driven%state%dq(7), driven%state%dq(1), 1.0e-8_wp, 'two parallelograms: rates')
     end do
     call test%no_error(err, 'two parallelograms go on')
   end subroutine check_two_at_once

@@ -5,7 +5,7 @@ program test_special_start
   use mech9_error, only: error_type, exit_singular
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_tracking, only: tracker_type, advance
+  use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_sample_mechanisms, only: drive, four_bar
   use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit, slider_crank
   use mech9_followed_motions, only: begin_motion
@@ -32,27 +32,27 @@ contains
     real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: half, root, position, rate, acceleration
     integer :: j
 
     call four_bar(short, short, long, long, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], mechanism)
     call drive(mechanism, 1, [0.0_wp, speed])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker, err)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
     call test%no_error(err, 'a kite starts')
     do j = 0, n
       if (allocated(err)) exit
-      half = 0.5_wp*tracker%state%q(1)
+      half = 0.5_wp*driven%state%q(1)
       root = sqrt(long**2 - (short*sin(half))**2)
       position = half + 0.5_wp*pi - acos(short*sin(half)/long)
       rate = (0.5_wp + 0.5_wp*short*cos(half)/root)*speed
       acceleration = 0.25_wp*short*sin(half)*(short**2*cos(half)**2/root**3 - 1.0_wp/root)*speed**2
       ! as between all special positions: polynomials of high degree
-      call test%near(tracker%state%q(4), position, 1.0e-11_wp, 'a kite: position')
-      call test%near(tracker%state%dq(4), rate, 1.0e-9_wp*max(1.0_wp, abs(speed)), 'a kite: rate')
-      call test%near(tracker%state%ddq(4), acceleration, 1.0e-6_wp*max(1.0_wp, speed**2), 'a kite: acceleration')
-      if (j < n) call advance(mechanism, plan, tracker, (j + 1)*1.5_wp/(abs(speed)*n), err)
+      call test%near(driven%state%q(4), position, 1.0e-11_wp, 'a kite: position')
+      call test%near(driven%state%dq(4), rate, 1.0e-9_wp*max(1.0_wp, abs(speed)), 'a kite: rate')
+      call test%near(driven%state%ddq(4), acceleration, 1.0e-6_wp*max(1.0_wp, speed**2), 'a kite: acceleration')
+      if (j < n) call advance(mechanism, plan, driven, (j + 1)*1.5_wp/(abs(speed)*n), err)
     end do
     call test%no_error(err, 'a kite goes on')
   end subroutine kite
@@ -62,17 +62,17 @@ contains
   subroutine two_ways()
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
 
     call four_bar(1.0_wp, 0.6_wp, 1.0_wp, 0.6_wp, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], mechanism)
     call drive(mechanism, 1, [0.0_wp, 1.0_wp])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker, err)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
     call refused(err, 'dq4 = 1 ', 'dq4 = -4 ')
     call slider_crank(0.3_wp, 0.3_wp, 0.0_wp, 0.5_wp*pi, 1, mechanism)
     mechanism%initial_position(4) = 0.0_wp
     call drive(mechanism, 1, [0.5_wp*pi, 2.0_wp])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker, err)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
     call refused(err, 'dq4 = -1.2 ', 'dq4 = 0 ')
   end subroutine two_ways
 
@@ -98,7 +98,7 @@ contains
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
-    type(tracker_type) :: tracker
+    type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: limit
 
@@ -106,7 +106,7 @@ contains
     limit = four_bar_limit(bar, stretched=.true.)
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit, 1), mechanism)
     call drive(mechanism, 1, [limit, -1.0_wp])
-    call begin_motion(test, mechanism, 0.0_wp, plan, tracker, err)
+    call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
     call test%has_error(err, exit_singular, 'a start at a dead point: exit code 6')
     if (allocated(err)) call test%is_true(index(err%message, 'dead point') > 0, 'the message says so')
   end subroutine dead_start

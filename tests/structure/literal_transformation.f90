@@ -1,5 +1,5 @@
-!> The rules of mech9_transformation taken literally: at each turn all chains are written down and
-!> the best one is taken. For small structures only. Uses structure, structural_vectors.
+!> The rules of mech9_transformation taken literally: at each turn all chains are written down and the best one is taken. For
+!> small structures only.
 module literal_transformation
   use mech9_structure, only: structure_type
   use mech9_structural_vectors, only: structural_vectors_type

@@ -1,5 +1,4 @@
 !> Structures of many kinds from a seed, their links and coordinates numbered at random.
-!> Uses structure.
 module random_structures
   use mech9_structure, only: structure_type
   implicit none

@@ -1,5 +1,4 @@
-!> Whether vectors describe a structure, straight from the definitions of the paper's chapter 2 and
-!> the least length (9). Uses text, structure, structural_vectors.
+!> Whether vectors describe a structure, straight from the definitions of the paper's chapter 2 and the least length (9).
 module vector_definition
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type

@@ -1,5 +1,4 @@
-!> Counts calls of malloc, realloc and calloc, where the linker sends them here:
-!> -Wl,--wrap=malloc,--wrap=realloc,--wrap=calloc. Uses nothing.
+!> Counts calls of malloc, realloc and calloc, where the linker sends them here: -Wl,--wrap=malloc,--wrap=realloc,--wrap=calloc.
 module mech9_counted_memory
   use, intrinsic :: iso_c_binding, only: c_ptr, c_size_t
   implicit none

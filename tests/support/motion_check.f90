@@ -1,5 +1,4 @@
-!> Motions of pairs against differences of their poses. Uses kinds, error, differentiation, rotation,
-!> pose, pair, testing.
+!> Motions of pairs against differences of their poses.
 module mech9_motion_check
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,4 +1,4 @@
-!> Random vectors, rotations and poses for tests, reproducible. Uses kinds, random, pose.
+!> Random vectors, rotations and poses for tests, reproducible.
 !>
 !> Rotations come from quaternions, so that they are no product of the procedures under test.
 module mech9_random_geometry

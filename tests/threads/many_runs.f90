@@ -1,5 +1,4 @@
 !> Whole runs, from the data file to the rows, that share nothing: what several threads are given.
-!> Uses the input and session floors.
 module many_runs
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

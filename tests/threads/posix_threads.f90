@@ -1,5 +1,5 @@
-!> Threads of the system itself. The thread sanitizer knows these and follows what they do; of the
-!> OpenMP library it knows nothing, and takes its barriers for races. Uses ISO C binding.
+!> Threads of the system itself. The thread sanitizer knows these and follows what they do; of the OpenMP library it knows
+!> nothing, and takes its barriers for races.
 module posix_threads
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_funptr, c_null_ptr, c_funloc, c_loc, c_intptr_t
   use many_runs, only: run_type, carry_out

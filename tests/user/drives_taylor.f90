@@ -1,5 +1,4 @@
 !> User drives for the tests, in Taylor arithmetic; drives_values.f90 holds the same in plain real numbers.
-!> Uses ieee_arithmetic beside the hook.
 submodule (mech9_user_drive) test_drives
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   implicit none

@@ -1,5 +1,4 @@
 !> User drives for the tests, in plain real numbers; drives_taylor.f90 holds the same in Taylor arithmetic.
-!> Uses ieee_arithmetic beside the hook.
 submodule (mech9_user_drive_values) test_drives_values
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   implicit none

@@ -1,5 +1,4 @@
 !> User pairs for the tests, in Taylor arithmetic; pairs_values.f90 holds the same in plain real numbers.
-!> Uses ieee_arithmetic beside the hook.
 submodule (mech9_user_pair) test_pairs
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   implicit none

@@ -1,5 +1,4 @@
 !> User pairs for the tests, in plain real numbers; pairs_taylor.f90 holds the same in Taylor arithmetic.
-!> Uses ieee_arithmetic beside the hook.
 submodule (mech9_user_pair_values) test_pairs_values
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   implicit none

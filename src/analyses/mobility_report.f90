@@ -1,0 +1,249 @@
+!> What is known of the mobility of a mechanism whose plan is made: ranks, redundant equations, which coordinates could be
+!> independent, and which are idle.
+module mech9_mobility_report
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: cross
+  use mech9_screw, only: orthonormal_basis
+  use mech9_least_squares, only: least_squares_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
+  use mech9_generic_position, only: generic_position_type, find_generic_position
+  use mech9_frame_motion, only: step_screw
+  use mech9_block_equations, only: block_jacobian
+  implicit none
+  private
+  public :: mobility_report_type, idle_type, report_mobility
+
+  !> Pivots below this fraction of the largest count as zero, and rates below it as none.
+  real(wp), parameter :: tolerance = 1.0e-9_wp
+
+  !> Coordinates in series that can move, in one way, while the links at both ends of the series stand still.
+  type :: idle_type
+    integer, allocatable :: coordinates(:)
+    integer :: ends(2) = 0                    !< the links
+  end type idle_type
+
+  !> Ranks at a general position near the start, if one was found, and at the start.
+  type :: mobility_report_type
+    logical :: general = .false.              !< was a general position found?
+    integer :: by_count = 0                   !< coordinates less the dimensions of the chains' motions
+    integer :: by_rank = 0                    !< coordinates less rank
+    integer, allocatable :: ranks(:)          !< of each block
+    integer, allocatable :: at_start(:)       !< the same at the start: less at a singular position
+    integer, allocatable :: redundant(:)      !< equations of each closure that follow from those before it
+    logical, allocatable :: moves(:)          !< (M): could it be independent?
+    integer, allocatable :: dimensions(:)     !< (M): most dimensions of the motions of a loop it is on; 0: on none
+    !> (M, independent): rate of each coordinate per unit rate of each independent one, in their units
+    real(wp), allocatable :: shares(:, :)
+    type(idle_type), allocatable :: idle(:)
+  end type mobility_report_type
+
+contains
+
+  !> Judge a mechanism whose plan is made.
+  subroutine report_mobility(mechanism, plan, start, report)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start          !< assembled
+    type(mobility_report_type), intent(out) :: report
+    type(generic_position_type) :: generic
+    type(state_type) :: state
+    integer :: c
+
+    allocate (report%dimensions(plan%n_coordinates), source=0)
+    do c = 1, size(plan%closures)
+      associate (loop => plan%steps(plan%closures(c)%loop%steps)%coordinate)
+        report%dimensions(loop) = max(report%dimensions(loop), plan%closures(c)%rank)
+      end associate
+    end do
+    call find_generic_position(plan, plan%blocks, start, generic, report%general)
+    state = start
+    if (report%general) state = generic%state
+    report%by_count = plan%n_coordinates - sum(plan%closures%rank)
+    allocate (report%redundant(size(plan%closures)), source=0)
+    allocate (report%ranks(size(plan%blocks)), report%at_start(size(plan%blocks)))
+    call find_ranks(plan, state, report%ranks, report%redundant)
+    call find_ranks(plan, start, report%at_start)
+    report%by_rank = plan%n_coordinates - sum(report%ranks)
+    call find_shares(plan, state, report)
+    call find_idle(mechanism, plan, state, report%dimensions, report%idle)
+  end subroutine report_mobility
+
+  !> Rank of each block, and the closures to which redundant equations belong.
+  subroutine find_ranks(plan, state, ranks, redundant)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(out) :: ranks(:)
+    integer, intent(inout), optional :: redundant(:)
+    type(block_work_type) :: work
+    integer :: b
+
+    ranks = 0
+    do b = 1, size(plan%blocks)
+      if (plan%blocks(b)%equations == 0) cycle
+      work = new_block_work(plan%blocks(b))
+      call factorize_block(plan, plan%blocks(b), state, work)
+      ranks(b) = work%equations%rank(tolerance)
+      if (present(redundant) .and. ranks(b) < plan%blocks(b)%equations) &
+        call find_redundant(plan, plan%blocks(b), state, work%column_of, redundant)
+    end do
+  end subroutine find_ranks
+
+  !> The equations of each closure of a block that follow from the closures before it.
+  subroutine find_redundant(plan, block, state, column_of, redundant)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: column_of(:)
+    integer, intent(inout) :: redundant(:)
+    type(least_squares_type) :: equations
+    real(wp) :: a(block%equations, size(block%unknowns))
+    integer :: c, rows, rank, before
+
+    call block_jacobian(plan, block, state, column_of, a)
+    rows = 0
+    before = 0
+    do c = block%first_closure, block%last_closure
+      rows = rows + plan%closures(c)%rank
+      call equations%create(rows, size(a, 2))
+      equations%a = a(:rows, :)
+      call equations%factorize()
+      rank = equations%rank(tolerance)
+      redundant(c) = plan%closures(c)%rank - (rank - before)
+      before = rank
+    end do
+  end subroutine find_redundant
+
+  !> Rates of all coordinates for a rate of one of each independent coordinate alone.
+  subroutine find_shares(plan, state, report)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    type(mobility_report_type), intent(inout) :: report
+    type(state_type) :: moving
+    type(block_work_type), allocatable :: work(:)
+    integer :: b, i, k
+
+    allocate (report%shares(plan%n_coordinates, size(plan%independent)))
+    allocate (report%moves(plan%n_coordinates), source=.false.)
+    allocate (work(size(plan%blocks)))
+    do b = 1, size(plan%blocks)
+      work(b) = new_block_work(plan%blocks(b))
+      if (plan%blocks(b)%equations > 0) call factorize_block(plan, plan%blocks(b), state, work(b))
+    end do
+    moving = state
+    do i = 1, size(plan%independent)
+      k = plan%independent(i)
+      moving%dq = 0.0_wp
+      moving%dq(k) = plan%unit_of(k)
+      do b = 1, size(plan%blocks)
+        call solve_rates(plan, plan%blocks(b), moving, work(b))
+      end do
+      report%shares(:, i) = moving%dq/plan%unit_of
+      report%moves = report%moves .or. abs(report%shares(:, i)) > tolerance
+    end do
+  end subroutine find_shares
+
+  !> Idle freedoms of all series of pairs, that is, runs of pairs through links that have no others.
+  subroutine find_idle(mechanism, plan, state, dimensions, idle)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: dimensions(:)          !< (M) of the motions of the loops that each coordinate is on
+    type(idle_type), allocatable, intent(out) :: idle(:)
+    integer, dimension(plan%n_coordinates) :: series
+    integer :: links(0:plan%n_coordinates), at(2, plan%n_links), pairs_of(plan%n_links), i, k, l, n
+    logical :: seen(plan%n_coordinates)
+
+    allocate (idle(0))
+    pairs_of = 0
+    at = 0
+    associate (links_of => mechanism%structure%links)
+      do k = 1, size(links_of, 2)
+        do i = 1, 2
+          l = links_of(i, k)
+          pairs_of(l) = pairs_of(l) + 1
+          if (pairs_of(l) <= 2) at(pairs_of(l), l) = k
+        end do
+      end do
+      pairs_of(1) = max(3, pairs_of(1))       ! the frame ends a series in any case
+      seen = dimensions == 0
+      do k = 1, size(links_of, 2)
+        do i = 1, 2
+          links(0) = links_of(i, k)
+          if (seen(k) .or. pairs_of(links(0)) == 2) cycle
+          n = 0
+          l = k
+          do
+            n = n + 1
+            seen(l) = .true.
+            series(n) = l
+            links(n) = links_of(1, l) + links_of(2, l) - links(n - 1)
+            if (pairs_of(links(n)) /= 2) exit
+            l = at(1, links(n)) + at(2, links(n)) - l
+          end do
+          call search_series(plan, state, series(:n), links(0:n), dimensions(k), idle)
+        end do
+      end do
+    end associate
+  end subroutine find_idle
+
+  !> The shortest runs in a series whose screws are dependent: they can move by themselves. Spherical
+  !> pairs at both ends let a rod spin, axes in one line turn freely. A run that uses all dimensions of
+  !> its loop is idle only if it ends at links with other pairs: else it is how the loop moves. A run that comes back to
+  !> its first link is a whole loop, overconstrained and moving as it should.
+  subroutine search_series(plan, state, series, links, dimension, idle)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: series(:), links(0:), dimension
+    type(idle_type), allocatable, intent(inout) :: idle(:)
+    type(idle_type) :: run
+    integer :: first, last, rank
+
+    first = 1
+    do last = 2, size(series)
+      if (rank_of_series(plan, state, series(first:last)) == last - first + 1) cycle
+      do while (rank_of_series(plan, state, series(first + 1:last)) < last - first)
+        first = first + 1
+      end do
+      rank = last - first
+      if ((rank < dimension .or. links(0) /= links(size(series))) .and. links(first - 1) /= links(last)) then
+        run%coordinates = series(first:last)
+        run%ends = [links(first - 1), links(last)]
+        call append(idle, run)
+      end if
+      first = first + 1
+    end do
+  end subroutine search_series
+
+  !> One series more. An array constructor would be shorter, but gfortran 12 leaks what is in it.
+  pure subroutine append(list, series)
+    type(idle_type), allocatable, intent(inout) :: list(:)
+    type(idle_type), intent(in) :: series
+    type(idle_type), allocatable :: longer(:)
+
+    allocate (longer(size(list) + 1))
+    longer(:size(list)) = list
+    longer(size(longer)) = series
+    call move_alloc(longer, list)
+  end subroutine append
+
+  !> Number of independent screws of some coordinates.
+  integer function rank_of_series(plan, state, coordinates) result(rank)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: coordinates(:)
+    real(wp) :: screws(6, size(coordinates)), basis(6, 6), v(3), place(3), first_place(3)
+    integer :: i
+
+    do i = 1, size(coordinates)
+      call step_screw(plan, state, plan%step_of(coordinates(i)), screws(1:3, i), v, place)
+      if (i == 1) first_place = place
+      ! about the first axis: far from the origin all screws would look alike
+      screws(4:6, i) = (v + cross(place - first_place, screws(1:3, i)))/plan%length
+      screws(:, i) = screws(:, i)/norm2(screws(:, i))
+    end do
+    call orthonormal_basis(screws, tolerance, basis, rank)
+  end function rank_of_series
+end module mech9_mobility_report

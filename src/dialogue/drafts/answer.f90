@@ -1,0 +1,148 @@
+!> What was typed at a question, held against its row of the grammar as the reader of data files does.
+module mech9_answer
+  use mech9_text, only: lower, to_text
+  use mech9_source, only: source_type, span_type, source_from_text
+  use mech9_grammar, only: item_row_type
+  use mech9_document, only: item_type
+  use mech9_parser, only: parse_item
+  use mech9_item_merge, only: expand_repeats
+  use mech9_item_check, only: check_item
+  use mech9_diagnostics, only: diagnostics_type, printable
+  use mech9_printable, only: with_escapes
+  use mech9_draft_source, only: values_text
+  use mech9_short_answers, only: full_form
+  implicit none
+  private
+  public :: read_answer, yes_or_no
+
+  !> Answers longer than this are no answers.
+  integer, parameter :: longest_answer = 100000
+
+contains
+
+  !> Values as a data file writes them, or, if that cannot be, why not: one message or several, a line each.
+  !> Texts need no quotes, a switch may be answered by yes or no, and short forms are written in full.
+  pure subroutine read_answer(row, line, text, problem)
+    type(item_row_type), intent(in) :: row
+    character(len=*), intent(in) :: line                     !< without blanks around it
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable, intent(out) :: problem    !< empty where all is well
+    character(len=:), allocatable :: written
+
+    text = ''
+    problem = ''
+    if (len(line) > longest_answer) then
+      problem = 'this is too long for an answer'
+      return
+    end if
+    if (has_control_byte(line)) then
+      problem = 'there is a control character in it; type it again'
+      return
+    end if
+    written = full_form(row, line)
+    if (row%type == 'text' .and. scan(line, '''"') /= 1) written = quoted(written)
+    if (row%type == 'logical') written = switch_text(line)
+    call read_values(row, written, text, problem)
+  end subroutine read_answer
+
+  pure subroutine read_values(row, written, text, problem)
+    type(item_row_type), intent(in) :: row
+    character(len=*), intent(in) :: written
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable, intent(inout) :: problem
+    type(source_type) :: source
+    type(item_type) :: item, plain
+    type(diagnostics_type) :: diagnostics
+    integer :: at, number
+
+    source = source_from_text('answer', trim(row%name)//' = '//written, is_file=.false.)
+    call diagnostics%add_source(source, number)
+    at = 1
+    call parse_item(source%text, at, number, item, diagnostics)
+    text = values_text(source%text, item%values)
+    if (at <= len(source%text)) then
+      problem = "'"//printable(source%text(at:), 40)//"' cannot stand in an answer"//advice(source%text(at:at))
+      return
+    end if
+    plain%name = item%name
+    plain%span = item%span
+    call expand_repeats(item, plain%values, diagnostics)
+    call check_item(plain, row, diagnostics)
+    if (diagnostics%failed()) problem = messages_of(diagnostics)
+  end subroutine read_values
+
+  pure function advice(mark) result(text)
+    character, intent(in) :: mark
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (mark == '/') text = '; write a quotient as a number, 0.5 instead of 1/2'
+  end function advice
+
+  !> All messages, each once and in a line, at most a few.
+  pure function messages_of(diagnostics) result(text)
+    type(diagnostics_type), intent(in) :: diagnostics
+    character(len=:), allocatable :: text, message
+    type(span_type) :: span
+    integer, parameter :: most = 4
+    integer :: i, shown
+
+    text = ''
+    shown = 0
+    do i = 1, diagnostics%known()
+      call diagnostics%get(i, message, span)
+      ! a word that is repeated is wrong once
+      if (index(new_line('a')//text, new_line('a')//message//new_line('a')) > 0) cycle
+      shown = shown + 1
+      if (shown <= most) text = text//message//new_line('a')
+    end do
+    if (shown > most) then
+      text = text//'and '//to_text(shown - most)//' more'
+    else if (text /= '') then
+      text = text(:len(text) - 1)
+    end if
+  end function messages_of
+
+  !> A text in quotes, its own quotes doubled.
+  pure function quoted(line) result(text)
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: text
+
+    text = ''''//with_escapes(line, '''', [''''''])//''''
+  end function quoted
+
+  pure function switch_text(line) result(text)
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: text
+
+    text = line
+    if (yes_or_no(line) == 'yes') text = '.true.'
+    if (yes_or_no(line) == 'no') text = '.false.'
+  end function switch_text
+
+  !> 'yes' or 'no' for the usual ways to type them; empty for anything else.
+  pure function yes_or_no(line) result(word)
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: word
+
+    select case (lower(line))
+    case ('yes', 'y')
+      word = 'yes'
+    case ('no', 'n')
+      word = 'no'
+    case default
+      word = ''
+    end select
+  end function yes_or_no
+
+  pure logical function has_control_byte(line)
+    character(len=*), intent(in) :: line
+    integer :: i
+
+    has_control_byte = .true.
+    do i = 1, len(line)
+      if ((iachar(line(i:i)) < 32 .and. line(i:i) /= achar(9)) .or. iachar(line(i:i)) == 127) return
+    end do
+    has_control_byte = .false.
+  end function has_control_byte
+end module mech9_answer

@@ -1,0 +1,348 @@
+!> A data file in the making: groups of names with their values as text, in an order that reads well.
+!>
+!> A group is spoken of by its name and its place among the groups of that name, from 1 on.
+module mech9_draft
+  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_grammar, only: find_group_row, find_item_rows
+  implicit none
+  private
+  public :: draft_type, draft_group_type, entry_type, plain_name, integer_of, unquoted
+
+  !> One name and what it is given.
+  type :: entry_type
+    character(len=:), allocatable :: name    !< in lower case, with its subscript if it has one: c(1,:)
+    character(len=:), allocatable :: text    !< its values, as a data file writes them
+  end type entry_type
+
+  !> One group.
+  type :: draft_group_type
+    character(len=:), allocatable :: name
+    character(len=:), allocatable :: comment       !< whole lines to stand above it; empty: none
+    type(entry_type), allocatable :: entries(:)
+  end type draft_group_type
+
+  type :: draft_type
+    character(len=:), allocatable :: head          !< comment lines at the beginning of the file
+    type(draft_group_type), allocatable :: groups(:)
+    integer :: comments_left_out = 0               !< comments of the data file it was made from that it does not hold
+  contains
+    procedure :: clear
+    procedure :: find
+    procedure :: find_entry
+    procedure :: with_number
+    procedure :: count_of
+    procedure :: place_of
+    procedure :: value
+    procedure :: number
+    procedure :: has
+    procedure :: add
+    procedure :: give
+    procedure :: take_away
+    procedure :: remove
+  end type draft_type
+
+contains
+
+  !> Nothing is said yet.
+  pure subroutine clear(self)
+    class(draft_type), intent(inout) :: self
+
+    self%head = ''
+    self%comments_left_out = 0
+    if (allocated(self%groups)) deallocate (self%groups)
+    allocate (self%groups(0))
+  end subroutine clear
+
+  !> Index of a group; 0 where there is none.
+  pure integer function find(self, group, place) result(index)
+    class(draft_type), intent(in) :: self
+    character(len=*), intent(in) :: group
+    integer, intent(in) :: place
+    integer :: n
+
+    n = 0
+    do index = 1, size(self%groups)
+      if (self%groups(index)%name == group) n = n + 1
+      if (n == place .and. n > 0) return
+    end do
+    index = 0
+  end function find
+
+  !> Place of the group whose name `key` has this number; 0 where there is none.
+  pure integer function with_number(self, group, key, number) result(place)
+    class(draft_type), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer, intent(in) :: number
+    integer :: i
+
+    place = 0
+    do i = 1, size(self%groups)
+      if (self%groups(i)%name /= group) cycle
+      place = place + 1
+      if (integer_of(value_in(self%groups(i), key)) == number) return
+    end do
+    place = 0
+  end function with_number
+
+  !> How many groups have this name.
+  pure integer function count_of(self, group) result(n)
+    class(draft_type), intent(in) :: self
+    character(len=*), intent(in) :: group
+    integer :: i
+
+    n = 0
+    do i = 1, size(self%groups)
+      if (self%groups(i)%name == group) n = n + 1
+    end do
+  end function count_of
+
+  !> Place of the group with this index among those of its name.
+  pure integer function place_of(self, index) result(place)
+    class(draft_type), intent(in) :: self
+    integer, intent(in) :: index
+    integer :: i
+
+    place = 0
+    do i = 1, index
+      if (self%groups(i)%name == self%groups(index)%name) place = place + 1
+    end do
+  end function place_of
+
+  !> Number of an entry in its group; 0 where the group does not have it.
+  pure integer function find_entry(self, group, place, name) result(number)
+    class(draft_type), intent(in) :: self
+    character(len=*), intent(in) :: group, name
+    integer, intent(in) :: place
+    integer :: i
+
+    number = 0
+    i = self%find(group, place)
+    if (i > 0) number = entry_number(self%groups(i), name)
+  end function find_entry
+
+  pure integer function entry_number(group, name) result(number)
+    type(draft_group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+
+    do number = size(group%entries), 1, -1
+      if (group%entries(number)%name == name) return
+    end do
+  end function entry_number
+
+  pure function value_in(group, name) result(text)
+    type(draft_group_type), intent(in) :: group
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    i = entry_number(group, name)
+    if (i > 0) text = group%entries(i)%text
+  end function value_in
+
+  !> The values under a name as text; empty where it is not given.
+  pure function value(self, group, place, name) result(text)
+    class(draft_type), intent(in) :: self
+    character(len=*), intent(in) :: group, name
+    integer, intent(in) :: place
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    i = self%find(group, place)
+    if (i > 0) text = value_in(self%groups(i), name)
+  end function value
+
+  !> The whole number under a name; 0 where there is none.
+  pure integer function number(self, group, place, name)
+    class(draft_type), intent(in) :: self
+    character(len=*), intent(in) :: group, name
+    integer, intent(in) :: place
+
+    number = integer_of(self%value(group, place, name))
+  end function number
+
+  !> Whether a name is given.
+  pure logical function has(self, group, place, name)
+    class(draft_type), intent(in) :: self
+    character(len=*), intent(in) :: group, name
+    integer, intent(in) :: place
+
+    has = self%find_entry(group, place, name) > 0
+  end function has
+
+  !> One group more, empty: after its fellows, or where the table of groups has it.
+  pure subroutine add(self, group)
+    class(draft_type), intent(inout) :: self
+    character(len=*), intent(in) :: group
+    type(draft_group_type), allocatable :: longer(:)
+    integer :: i, at
+
+    at = 0
+    do i = 1, size(self%groups)
+      if (rank_of(self%groups(i)%name) <= rank_of(group)) at = i
+    end do
+    allocate (longer(size(self%groups) + 1))
+    do i = 1, size(self%groups)
+      call move_group(self%groups(i), longer(merge(i, i + 1, i <= at)))
+    end do
+    longer(at + 1)%name = group
+    longer(at + 1)%comment = ''
+    allocate (longer(at + 1)%entries(0))
+    call move_alloc(longer, self%groups)
+  end subroutine add
+
+  !> Where groups of a name stand in a file: as in the table of groups, unknown ones at its end.
+  pure integer function rank_of(group) result(rank)
+    character(len=*), intent(in) :: group
+
+    rank = find_group_row(group)
+    if (rank == 0) rank = huge(rank)
+  end function rank_of
+
+  pure subroutine move_group(from, to)
+    type(draft_group_type), intent(inout) :: from, to
+
+    call move_alloc(from%name, to%name)
+    call move_alloc(from%comment, to%comment)
+    call move_alloc(from%entries, to%entries)
+  end subroutine move_group
+
+  !> Give a name a value, in the place of an earlier one; a group that is not there yet is added.
+  pure subroutine give(self, group, place, name, text)
+    class(draft_type), intent(inout) :: self
+    character(len=*), intent(in) :: group, name, text
+    integer, intent(in) :: place             !< at most one more than there are
+    integer :: i, number
+
+    if (place > self%count_of(group)) call self%add(group)
+    i = self%find(group, place)
+    number = entry_number(self%groups(i), name)
+    if (number == 0) call add_entry(self%groups(i), name, number)
+    self%groups(i)%entries(number)%text = text
+  end subroutine give
+
+  !> One entry more, in the order of the table of names; rows of a matrix in theirs.
+  pure subroutine add_entry(group, name, number)
+    type(draft_group_type), intent(inout) :: group
+    character(len=*), intent(in) :: name
+    integer, intent(out) :: number           !< where it stands
+    type(entry_type), allocatable :: longer(:)
+    integer :: i
+
+    number = size(group%entries) + 1
+    do i = size(group%entries), 1, -1
+      if (stands_before(group%name, name, group%entries(i)%name)) number = i
+    end do
+    allocate (longer(size(group%entries) + 1))
+    do i = 1, size(group%entries)
+      associate (to => longer(merge(i, i + 1, i < number)))
+        call move_alloc(group%entries(i)%name, to%name)
+        call move_alloc(group%entries(i)%text, to%text)
+      end associate
+    end do
+    longer(number)%name = name
+    longer(number)%text = ''
+    call move_alloc(longer, group%entries)
+  end subroutine add_entry
+
+  pure logical function stands_before(group, name, other)
+    character(len=*), intent(in) :: group, name, other
+    integer, allocatable :: rows(:), others(:)
+
+    rows = find_item_rows(group, plain_name(name))
+    others = find_item_rows(group, plain_name(other))
+    stands_before = .false.
+    if (size(rows) == 0 .or. size(others) == 0) return
+    stands_before = rows(1) < others(1)
+    if (rows(1) == others(1)) stands_before = subscript_of(name) < subscript_of(other)
+  end function stands_before
+
+  pure integer function subscript_of(name) result(subscript)
+    character(len=*), intent(in) :: name
+    integer :: first
+
+    first = index(name, '(')
+    subscript = 0
+    if (first > 0) subscript = integer_of(name(first + 1:first + scan(name(first + 1:)//')', ',:)') - 1))
+  end function subscript_of
+
+  !> Say nothing under a name any more.
+  pure subroutine take_away(self, group, place, name)
+    class(draft_type), intent(inout) :: self
+    character(len=*), intent(in) :: group, name
+    integer, intent(in) :: place
+    type(entry_type), allocatable :: shorter(:)
+    integer :: i, j, number
+
+    i = self%find(group, place)
+    number = self%find_entry(group, place, name)
+    if (number == 0) return
+    associate (entries => self%groups(i)%entries)
+      allocate (shorter(size(entries) - 1))
+      do j = 1, size(entries)
+        if (j == number) cycle
+        call move_alloc(entries(j)%name, shorter(merge(j, j - 1, j < number))%name)
+        call move_alloc(entries(j)%text, shorter(merge(j, j - 1, j < number))%text)
+      end do
+    end associate
+    call move_alloc(shorter, self%groups(i)%entries)
+  end subroutine take_away
+
+  !> A group less.
+  pure subroutine remove(self, group, place)
+    class(draft_type), intent(inout) :: self
+    character(len=*), intent(in) :: group
+    integer, intent(in) :: place
+    type(draft_group_type), allocatable :: shorter(:)
+    integer :: i, index
+
+    index = self%find(group, place)
+    if (index == 0) return
+    allocate (shorter(size(self%groups) - 1))
+    do i = 1, size(self%groups)
+      if (i /= index) call move_group(self%groups(i), shorter(merge(i, i - 1, i < index)))
+    end do
+    call move_alloc(shorter, self%groups)
+  end subroutine remove
+
+  !> A name without its subscript.
+  pure function plain_name(name) result(plain)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: plain
+
+    plain = name(:index(name//'(', '(') - 1)
+  end function plain_name
+
+  !> The whole number that a text is; 0 where it is none.
+  pure integer function integer_of(text) result(number)
+    character(len=*), intent(in) :: text
+    type(numeral_type) :: numeral
+
+    number = 0
+    if (text == '') return
+    call read_numeral(trim(adjustl(text)), numeral)
+    if (allocated(numeral%problem) .or. .not. numeral%is_integer) return
+    if (abs(numeral%whole) < huge(number)) number = int(numeral%whole)
+  end function integer_of
+
+  !> A text value without its quotes; what has none stays as it is.
+  pure function unquoted(text) result(plain)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: plain
+    character :: quote
+    integer :: i
+
+    plain = text
+    if (len(text) < 2) return
+    quote = text(1:1)
+    if (quote /= '''' .and. quote /= '"') return
+    plain = ''
+    i = 2
+    do while (i < len(text))
+      plain = plain//text(i:i)
+      if (text(i:i) == quote) i = i + 1
+      i = i + 1
+    end do
+  end function unquoted
+end module mech9_draft

@@ -1,0 +1,234 @@
+!> What a draft says, read as the data file it will be: the same checks, with the place of each error in the draft.
+module mech9_draft_check
+  use mech9_text, only: to_text
+  use mech9_source, only: span_type, source_from_text
+  use mech9_grammar, only: item_table, rows_of_group, takes_kind
+  use mech9_structure, only: structure_type
+  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_document, only: document_type
+  use mech9_parser, only: parse_document
+  use mech9_reader, only: read_mechanism, read_structure_only
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_draft, only: draft_type
+  use mech9_draft_text, only: draft_text_type, write_draft, locate
+  use mech9_outline, only: outline_type, kind_in
+  implicit none
+  private
+  public :: fault_type, read_draft, read_draft_structure, problem_with, faults_of
+
+  !> One thing that is wrong, and the entry of the draft it is about.
+  type :: fault_type
+    character(len=:), allocatable :: message
+    integer :: group = 0       !< index in the draft; 0: no group
+    integer :: entry = 0       !< number in the group; 0: the group as a whole
+  end type fault_type
+
+contains
+
+  !> The mechanism of a draft. It is of use only where nothing is wrong.
+  subroutine read_draft(draft, path, needs_drives, mechanism, written, diagnostics)
+    type(draft_type), intent(in) :: draft
+    character(len=*), intent(in) :: path          !< of the data file: tables of drives stand beside it
+    logical, intent(in) :: needs_drives
+    type(mechanism_type), intent(out) :: mechanism
+    type(draft_text_type), intent(out) :: written
+    type(diagnostics_type), intent(out) :: diagnostics
+    type(document_type) :: document
+
+    call write_draft(draft, '', written)
+    call parse_document(source_from_text(path, written%text), document, diagnostics)
+    call read_mechanism(document, needs_drives, mechanism, diagnostics)
+  end subroutine read_draft
+
+  !> The structure alone. It is of use only where nothing is wrong.
+  pure subroutine read_draft_structure(draft, outline, structure, vectors, faults)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    type(structure_type), intent(out) :: structure
+    type(structural_vectors_type), intent(out) :: vectors
+    type(fault_type), allocatable, intent(out) :: faults(:)
+    type(draft_type) :: part
+    type(draft_text_type) :: written
+    type(diagnostics_type) :: diagnostics
+
+    part = structural_part(draft, outline)
+    call read_part(part, structure, vectors, written, diagnostics)
+    call find_faults(diagnostics, written, faults)
+    call translate(part, draft, faults)
+  end subroutine read_draft_structure
+
+  pure subroutine read_part(part, structure, vectors, written, diagnostics)
+    type(draft_type), intent(in) :: part
+    type(structure_type), intent(out) :: structure
+    type(structural_vectors_type), intent(out) :: vectors
+    type(draft_text_type), intent(out) :: written
+    type(diagnostics_type), intent(out) :: diagnostics
+    type(document_type) :: document
+
+    call write_draft(part, '', written)
+    call parse_document(source_from_text('structure', written%text), document, diagnostics)
+    call read_structure_only(document, structure, vectors, diagnostics)
+  end subroutine read_part
+
+  !> What a draft says of the structure: counts, structural data, and the links of the pairs where they are
+  !> how it is given. Pairs need a kind to be read.
+  pure function structural_part(draft, outline) result(part)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    type(draft_type) :: part
+    integer :: i, j, place
+    character(len=:), allocatable :: name
+
+    call part%clear()
+    do i = 1, size(draft%groups)
+      name = draft%groups(i)%name
+      if (.not. (name == 'mechanism' .or. name == 'structure' .or. (name == 'pair' .and. outline%way == 'pairs'))) cycle
+      place = part%count_of(name) + 1
+      do j = 1, size(draft%groups(i)%entries)
+        associate (entry => draft%groups(i)%entries(j))
+          if (name == 'pair' .and. entry%name /= 'coordinate' .and. entry%name /= 'links') cycle
+          call part%give(name, place, entry%name, entry%text)
+        end associate
+      end do
+      if (name == 'pair') call part%give(name, place, 'kind', '''revolute''')
+    end do
+  end function structural_part
+
+  !> From places in a part of a draft to those in the whole, by names.
+  pure subroutine translate(part, draft, faults)
+    type(draft_type), intent(in) :: part, draft
+    type(fault_type), intent(inout) :: faults(:)
+    integer :: i, place
+
+    do i = 1, size(faults)
+      associate (fault => faults(i))
+        if (fault%group == 0) cycle
+        associate (name => part%groups(fault%group)%name)
+          place = part%place_of(fault%group)
+          if (fault%entry > 0) fault%entry = draft%find_entry(name, place, part%groups(fault%group)%entries(fault%entry)%name)
+          fault%group = draft%find(name, place)
+        end associate
+      end associate
+    end do
+  end subroutine translate
+
+  !> Errors with the entries of the draft they are about, in the order in which they were found.
+  pure subroutine find_faults(diagnostics, written, faults)
+    type(diagnostics_type), intent(in) :: diagnostics
+    type(draft_text_type), intent(in) :: written
+    type(fault_type), allocatable, intent(out) :: faults(:)
+    type(span_type) :: span
+    integer :: i
+
+    allocate (faults(diagnostics%known()))
+    do i = 1, size(faults)
+      call diagnostics%get(i, faults(i)%message, span)
+      if (span%source == 1) call locate(written, span%first, faults(i)%group, faults(i)%entry)
+    end do
+  end subroutine find_faults
+
+  !> The errors of a draft that was read by read_draft.
+  pure subroutine faults_of(diagnostics, written, faults)
+    type(diagnostics_type), intent(in) :: diagnostics
+    type(draft_text_type), intent(in) :: written
+    type(fault_type), allocatable, intent(out) :: faults(:)
+
+    call find_faults(diagnostics, written, faults)
+  end subroutine faults_of
+
+  !> What is wrong with one entry of a draft, as far as this can be told now; empty: nothing. What the
+  !> entry's group still lacks is taken for given, with the examples of the table of names.
+  subroutine problem_with(draft, outline, path, group, place, name, problem)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    character(len=*), intent(in) :: path, group, name
+    integer, intent(in) :: place
+    character(len=:), allocatable, intent(out) :: problem
+    type(draft_type) :: trial
+    type(mechanism_type) :: mechanism
+    type(structure_type) :: structure
+    type(structural_vectors_type) :: vectors
+    type(draft_text_type) :: written
+    type(diagnostics_type) :: diagnostics
+    type(fault_type), allocatable :: faults(:)
+    integer :: i
+
+    problem = ''
+    if (group == 'structure' .or. (group == 'pair' .and. name == 'links' .and. outline%way == 'pairs')) then
+      trial = structural_part(draft, outline)
+      do i = 1, trial%count_of('pair')
+        call complete(trial, 'pair', i)
+      end do
+      call complete_matrix(trial)
+      call read_part(trial, structure, vectors, written, diagnostics)
+    else
+      trial = draft
+      call complete(trial, group, place)
+      call read_draft(trial, path, .false., mechanism, written, diagnostics)
+    end if
+    call find_faults(diagnostics, written, faults)
+    do i = 1, size(faults)
+      if (faults(i)%group /= trial%find(group, place) .or. faults(i)%entry /= trial%find_entry(group, place, name)) cycle
+      if (problem /= '') problem = problem//new_line('a')
+      problem = problem//faults(i)%message
+    end do
+  end subroutine problem_with
+
+  !> Give a group what it needs and lacks.
+  pure subroutine complete(draft, group, place)
+    type(draft_type), intent(inout) :: draft
+    character(len=*), intent(in) :: group
+    integer, intent(in) :: place
+    integer, allocatable :: rows(:)
+    integer :: i
+    character(len=:), allocatable :: kind
+
+    rows = rows_of_group(group)
+    kind = kind_in(draft, draft%find(group, place))
+    do i = 1, size(rows)
+      associate (row => item_table(rows(i)))
+        if (.not. row%needed .or. .not. takes_kind(row, kind)) cycle
+        if (draft%has(group, place, trim(row%name))) cycle
+        call draft%give(group, place, trim(row%name), trim(row%example))
+        if (row%name == 'kind') kind = kind_in(draft, draft%find(group, place))
+      end associate
+    end do
+  end subroutine complete
+
+  !> Rows of the coincidence matrix that are not given yet: as its symmetry says, else zeros.
+  pure subroutine complete_matrix(draft)
+    type(draft_type), intent(inout) :: draft
+    integer :: n, i, j
+    integer, allocatable :: c(:, :)
+    logical, allocatable :: given(:)
+
+    n = draft%number('mechanism', 1, 'links')
+    if (n < 1 .or. .not. draft%has('structure', 1, 'c(1,:)')) return
+    allocate (c(n, n), source=0)
+    allocate (given(n))
+    do i = 1, n
+      given(i) = draft%has('structure', 1, 'c('//to_text(i)//',:)')
+      if (given(i)) call take_row(draft%value('structure', 1, 'c('//to_text(i)//',:)'), c(i, :))
+    end do
+    do i = 1, n
+      if (given(i)) cycle
+      do j = 1, n
+        if (given(j)) c(i, j) = c(j, i)
+      end do
+      call draft%give('structure', 1, 'c('//to_text(i)//',:)', to_text(c(i, :)))
+    end do
+  end subroutine complete_matrix
+
+  !> Numbers from "1, 2, 3"; more than fit are left out, missing ones stay.
+  pure subroutine take_row(text, numbers)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: numbers(:)
+    integer :: status
+    integer :: read_numbers(size(numbers))
+
+    read_numbers = numbers
+    read (text, *, iostat=status) read_numbers
+    if (status == 0) numbers = read_numbers
+  end subroutine take_row
+end module mech9_draft_check

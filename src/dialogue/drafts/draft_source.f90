@@ -1,0 +1,191 @@
+!> A draft from an existing data file: what it says and the comments above its groups.
+module mech9_draft_source
+  use mech9_error, only: place_type
+  use mech9_text, only: to_text, join, string_type
+  use mech9_source, only: source_type
+  use mech9_document, only: document_type, group_type, item_type, value_type, value_bad
+  use mech9_checker, only: check_document
+  use mech9_matrix_items, only: matrix_type, read_matrix
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_draft, only: draft_type
+  implicit none
+  private
+  public :: draft_from_document, values_text
+
+  character(len=*), parameter :: line_end = achar(10)
+
+contains
+
+  !> Take over what a document says: one entry for each name, the coincidence matrix by rows. Values
+  !> that cannot be read are left out; they have been reported when the document was read.
+  pure subroutine draft_from_document(document, draft)
+    type(document_type), intent(in) :: document
+    type(draft_type), intent(out) :: draft
+    type(document_type) :: checked
+    type(diagnostics_type) :: ignored
+    character(len=:), allocatable :: comment
+    integer :: i, number
+
+    call draft%clear()
+    checked = document
+    ! its errors are found again when the draft is checked, with places in the draft
+    call ignored%add_source(document%source, number)
+    call check_document(checked, ignored)
+    do i = 1, size(checked%groups)
+      call take_group(checked, checked%groups(i), draft)
+    end do
+    if (size(checked%groups) == 0) return
+    call find_comment(document%source, checked%groups(1)%span%first, .true., comment)
+    draft%head = comment
+    draft%comments_left_out = count_comments(document%source%text) - count_comments(draft%head)
+    do i = 1, size(draft%groups)
+      draft%comments_left_out = draft%comments_left_out - count_comments(draft%groups(i)%comment)
+    end do
+  end subroutine draft_from_document
+
+  pure subroutine take_group(document, group, draft)
+    type(document_type), intent(in) :: document
+    type(group_type), intent(in) :: group
+    type(draft_type), intent(inout) :: draft
+    character(len=:), allocatable :: comment
+    integer :: i, place, number
+
+    call draft%add(group%name)
+    place = draft%count_of(group%name)
+    number = draft%find(group%name, place)
+    call find_comment(document%source, group%span%first, .false., comment)
+    draft%groups(number)%comment = comment
+    if (group%name == 'structure') call take_matrix(document, group, draft)
+    do i = 1, size(group%items)
+      associate (item => group%items(i))
+        if (any(item%values%kind == value_bad) .or. (group%name == 'structure' .and. item%name == 'c')) cycle
+        call draft%give(group%name, place, item%name, values_text(document%source%text, item%values))
+      end associate
+    end do
+  end subroutine take_group
+
+  !> The coincidence matrix, however it is given, as rows.
+  pure subroutine take_matrix(document, group, draft)
+    type(document_type), intent(in) :: document
+    type(group_type), intent(in) :: group
+    type(draft_type), intent(inout) :: draft
+    type(matrix_type) :: matrix
+    type(diagnostics_type) :: ignored
+    integer :: i, number
+    logical :: ok
+
+    if (.not. any([(group%items(i)%name == 'c', i=1, size(group%items))])) return
+    if (all([(group%items(i)%name /= 'c' .or. is_row(group%items(i)), i=1, size(group%items))])) then
+      ! also where some are still missing
+      do i = 1, size(group%items)
+        if (group%items(i)%name == 'c') &
+          call draft%give('structure', 1, 'c('//to_text(group%items(i)%subscripts(1)%first)//',:)', &
+                          values_text(document%source%text, group%items(i)%values))
+      end do
+      return
+    end if
+    call ignored%add_source(document%source, number)
+    call read_matrix(group, 0, matrix, ok, ignored)
+    if (.not. ok) return
+    do i = 1, size(matrix%c, 1)
+      call draft%give('structure', 1, 'c('//to_text(i)//',:)', to_text(matrix%c(i, :)))
+    end do
+  end subroutine take_matrix
+
+  !> Whether an item is a whole row of the matrix: c(2,:).
+  pure logical function is_row(item)
+    type(item_type), intent(in) :: item
+
+    is_row = .false.
+    if (size(item%subscripts) == 2) &
+      is_row = .not. item%subscripts(1)%section .and. item%subscripts(2)%section .and. &
+               item%subscripts(2)%first == 0 .and. item%subscripts(2)%last == 0
+  end function is_row
+
+  !> Values as they are written, with commas between.
+  pure function values_text(source_text, values) result(text)
+    character(len=*), intent(in) :: source_text
+    type(value_type), intent(in) :: values(:)
+    character(len=:), allocatable :: text
+    type(string_type) :: words(size(values))
+    integer :: i
+
+    do i = 1, size(values)
+      words(i)%text = source_text(values(i)%span%first:values(i)%span%last)
+      if (values(i)%times > 1) words(i)%text = to_text(values(i)%times)//'*'//words(i)%text
+    end do
+    text = join(words, ', ')
+  end function values_text
+
+  !> The comment lines right above a byte; with `to_the_top` those that stand over them, above a blank line.
+  pure subroutine find_comment(source, byte, to_the_top, comment)
+    type(source_type), intent(in) :: source
+    integer, intent(in) :: byte
+    logical, intent(in) :: to_the_top
+    character(len=:), allocatable, intent(out) :: comment
+    type(place_type) :: position
+    integer :: line, first, last
+
+    position = source%place(byte)
+    line = position%line - 1
+    do while (line >= 1)
+      call source%line_bounds(line, first, last)
+      if (.not. is_comment(source%text(first:last))) exit
+      line = line - 1
+    end do
+    if (to_the_top) then
+      call take_lines(source, 1, line, comment)
+    else
+      call take_lines(source, line + 1, position%line - 1, comment)
+    end if
+  end subroutine find_comment
+
+  !> Comment lines and blank ones, without a blank one at the end; none where something else stands among them.
+  pure subroutine take_lines(source, from, to, text)
+    type(source_type), intent(in) :: source
+    integer, intent(in) :: from, to
+    character(len=:), allocatable, intent(out) :: text
+    integer :: line, first, last
+
+    text = ''
+    do line = from, to
+      call source%line_bounds(line, first, last)
+      if (len_trim(source%text(first:last)) == 0) then
+        if (line < to) text = text//line_end
+      else if (is_comment(source%text(first:last))) then
+        text = text//source%text(first:last)//line_end
+      else
+        text = ''
+        return
+      end if
+    end do
+  end subroutine take_lines
+
+  !> How many comments a text has; an exclamation mark in quotes begins none.
+  pure integer function count_comments(text) result(count)
+    character(len=*), intent(in) :: text
+    character :: quote
+    integer :: at
+
+    count = 0
+    quote = ' '
+    at = 1
+    do while (at <= len(text))
+      if (quote /= ' ') then
+        if (text(at:at) == quote .or. text(at:at) == line_end) quote = ' '
+      else if (text(at:at) == '!') then
+        count = count + 1
+        at = at + index(text(at:)//line_end, line_end) - 1
+      else if (scan(text(at:at), '''"') == 1) then
+        quote = text(at:at)
+      end if
+      at = at + 1
+    end do
+  end function count_comments
+
+  pure logical function is_comment(line)
+    character(len=*), intent(in) :: line
+
+    is_comment = index(adjustl(line), '!') == 1
+  end function is_comment
+end module mech9_draft_source

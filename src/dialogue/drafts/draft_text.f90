@@ -1,0 +1,133 @@
+!> A draft as the text of a data file, and what stands where in it.
+module mech9_draft_text
+  use mech9_text, only: string_type, starts_with
+  use mech9_grammar, only: group_table, find_group_row
+  use mech9_draft, only: draft_type, draft_group_type
+  implicit none
+  private
+  public :: draft_text_type, write_draft, locate
+
+  !> Groups whose line is not longer than this are written in one line.
+  integer, parameter :: longest_line = 120
+  character(len=*), parameter :: line_end = achar(10)
+
+  !> The text, and the stretch of each entry and of each group.
+  type :: draft_text_type
+    character(len=:), allocatable :: text
+    integer, allocatable :: group(:)       !< index in the draft of each stretch
+    integer, allocatable :: entry(:)       !< number of its entry; 0: the whole group
+    integer, allocatable :: first(:)       !< its first byte
+    integer, allocatable :: last(:)
+    integer :: count = 0                   !< stretches in use
+  end type draft_text_type
+
+contains
+
+  !> Write a draft. `remark` is a comment line for its end; empty: none.
+  pure subroutine write_draft(draft, remark, written)
+    type(draft_type), intent(in) :: draft
+    character(len=*), intent(in) :: remark
+    type(draft_text_type), intent(out) :: written
+    integer :: i, n
+    character(len=:), allocatable :: before
+
+    n = size(draft%groups)
+    do i = 1, size(draft%groups)
+      n = n + size(draft%groups(i)%entries)
+    end do
+    allocate (written%group(n), written%entry(n), written%first(n), written%last(n))
+    written%text = draft%head
+    before = ''
+    do i = 1, size(draft%groups)
+      if (draft%groups(i)%name /= before) call begin_kind(draft%groups(i), written%text)
+      before = draft%groups(i)%name
+      written%text = written%text//draft%groups(i)%comment
+      call write_group(draft%groups(i), i, written)
+    end do
+    if (remark /= '') written%text = written%text//line_end//remark//line_end
+  end subroutine write_draft
+
+  !> A blank line, and what groups of this name are, unless a comment stands there already.
+  pure subroutine begin_kind(group, text)
+    type(draft_group_type), intent(in) :: group
+    character(len=:), allocatable, intent(inout) :: text
+    integer :: row
+
+    if (text /= '') text = text//line_end
+    row = find_group_row(group%name)
+    if (group%comment == '' .and. row > 0) text = text//'! '//trim(group_table(row)%help)//line_end
+  end subroutine begin_kind
+
+  pure subroutine write_group(group, number, written)
+    type(draft_group_type), intent(in) :: group
+    integer, intent(in) :: number              !< its index in the draft
+    type(draft_text_type), intent(inout) :: written
+    type(string_type) :: parts(size(group%entries))
+    character(len=:), allocatable :: separator, equals
+    integer :: i, whole, length
+
+    length = len(group%name) + 4 + sum([(len(group%entries(i)%name) + len(group%entries(i)%text) + 3, i=1, size(parts))])
+    separator = line_end//'  '
+    equals = ' = '
+    if (length <= longest_line .and. .not. is_matrix(group)) then
+      separator = ' '
+      equals = '='
+    end if
+    do i = 1, size(parts)
+      parts(i)%text = group%entries(i)%name//equals//group%entries(i)%text
+    end do
+    whole = written%count + 1
+    call note(written, number, 0, len(written%text) + 1)
+    written%text = written%text//'&'//group%name
+    do i = 1, size(parts)
+      if (i > 1 .and. separator == ' ') written%text = written%text//','
+      written%text = written%text//separator
+      call note(written, number, i, len(written%text) + 1)
+      written%text = written%text//parts(i)%text
+      written%last(written%count) = len(written%text)
+    end do
+    if (separator /= ' ') separator = line_end
+    written%text = written%text//separator//'/'
+    written%last(whole) = len(written%text)
+    written%text = written%text//line_end
+  end subroutine write_group
+
+  !> Rows of a matrix are easier to read one below the other.
+  pure logical function is_matrix(group)
+    type(draft_group_type), intent(in) :: group
+    integer :: i
+
+    is_matrix = .true.
+    do i = 1, size(group%entries)
+      if (starts_with(group%entries(i)%name, 'c(')) return
+    end do
+    is_matrix = .false.
+  end function is_matrix
+
+  pure subroutine note(written, group, entry, first)
+    type(draft_text_type), intent(inout) :: written
+    integer, intent(in) :: group, entry, first
+
+    written%count = written%count + 1
+    written%group(written%count) = group
+    written%entry(written%count) = entry
+    written%first(written%count) = first
+  end subroutine note
+
+  !> Group and entry that a byte of the text belongs to; group 0 where it is none, entry 0 where it is the
+  !> group as a whole.
+  pure subroutine locate(written, byte, group, entry)
+    type(draft_text_type), intent(in) :: written
+    integer, intent(in) :: byte
+    integer, intent(out) :: group, entry
+    integer :: i
+
+    group = 0
+    entry = 0
+    do i = 1, written%count
+      if (byte < written%first(i) .or. byte > written%last(i)) cycle
+      group = written%group(i)
+      if (written%entry(i) > 0) entry = written%entry(i)
+    end do
+  end subroutine locate
+end module mech9_draft_text

@@ -1,0 +1,184 @@
+!> What a conversation knows beside the draft itself: how the structure is given, which seldom names are asked for, which
+!> coordinates are independent; and the groups that follow from it.
+module mech9_outline
+  use mech9_text, only: to_text, lower
+  use mech9_grammar, only: item_table, find_item_rows, item_row_for_kind
+  use mech9_draft, only: draft_type, plain_name, unquoted
+  implicit none
+  private
+  public :: outline_type, ways, new_outline, make_groups, drop_empty_guesses, drop_foreign, kind_in
+
+  !> How the structure can be given: the links of each pair, the rows of the coincidence matrix, the second set.
+  character(len=7), parameter :: ways(3) = [character(len=7) :: 'pairs', 'matrix', 'vectors']
+
+  !> What is known beside the draft.
+  type :: outline_type
+    character(len=6) :: program_name = ''
+    character(len=7) :: way = ways(1)                       !< one of `ways`
+    logical :: asked(size(item_table)) = .false.            !< seldom names that are asked for
+    logical :: guesses = .false.                            !< dependent coordinates at the start are asked for
+    logical :: structure_known = .false.
+    logical, allocatable :: independent(:)                  !< of use where the structure is known
+    integer, allocatable :: links(:, :)                     !< (2,M) likewise
+  end type outline_type
+
+contains
+
+  !> The outline of what a draft says already.
+  pure function new_outline(program_name, draft) result(outline)
+    character(len=*), intent(in) :: program_name
+    type(draft_type), intent(in) :: draft
+    type(outline_type) :: outline
+    integer :: i, j, row
+
+    outline%program_name = program_name
+    allocate (outline%independent(0), outline%links(2, 0))
+    do i = 1, size(draft%groups)
+      associate (group => draft%groups(i))
+        do j = 1, size(group%entries)
+          row = item_row_for_kind(group%name, plain_name(group%entries(j)%name), kind_in(draft, i))
+          if (row > 0) outline%asked(row) = .true.
+          if (group%name /= 'structure') cycle
+          if (plain_name(group%entries(j)%name) == 'c') outline%way = 'matrix'
+          if (group%entries(j)%name == 'nrg') outline%way = 'vectors'
+        end do
+      end associate
+    end do
+  end function new_outline
+
+  !> The kind that a group says it is, in lower case; empty where it has none.
+  pure function kind_in(draft, group) result(kind)
+    type(draft_type), intent(in) :: draft
+    integer, intent(in) :: group                            !< its index
+    character(len=:), allocatable :: kind
+    integer :: i
+
+    kind = ''
+    associate (entries => draft%groups(group)%entries)
+      do i = 1, size(entries)
+        if (entries(i)%name == 'kind') kind = lower(unquoted(entries(i)%text))
+      end do
+    end associate
+  end function kind_in
+
+  !> A pair for each coordinate; a drive, or the values at the start, for each independent one; guesses for
+  !> the others where they are wanted.
+  pure subroutine make_groups(draft, outline)
+    type(draft_type), intent(inout) :: draft
+    type(outline_type), intent(in) :: outline
+    logical :: all(max(draft%number('mechanism', 1, 'coordinates'), 0))
+
+    all = .true.
+    call make_numbered(draft, 'pair', all)
+    if (.not. outline%structure_known) return
+    if (outline%way /= 'pairs') call give_links(draft, outline%links)
+    if (outline%program_name == 'mech9k') then
+      call make_numbered(draft, 'drive', outline%independent)
+    else
+      call make_numbered(draft, 'initial', outline%independent)
+    end if
+    if (outline%guesses) call make_numbered(draft, 'initial', .not. outline%independent)
+  end subroutine make_groups
+
+  !> Links of the pairs as the structure says, where they are not the same in either order.
+  pure subroutine give_links(draft, links)
+    type(draft_type), intent(inout) :: draft
+    integer, intent(in) :: links(:, :)
+    integer :: k, place
+    character(len=:), allocatable :: given
+
+    do place = 1, draft%count_of('pair')
+      k = draft%number('pair', place, 'coordinate')
+      if (k < 1 .or. k > size(links, 2)) cycle
+      given = draft%value('pair', place, 'links')
+      if (given == to_text(links(:, k)) .or. given == to_text(links(2:1:-1, k))) cycle
+      call draft%give('pair', place, 'links', to_text(links(:, k)))
+    end do
+  end subroutine give_links
+
+  !> A group for each coordinate of a mask, where there is none yet.
+  pure subroutine make_numbered(draft, group, wanted)
+    type(draft_type), intent(inout) :: draft
+    character(len=*), intent(in) :: group
+    logical, intent(in) :: wanted(:)
+    logical :: there(size(wanted))
+    integer :: k, place
+
+    there = .false.
+    do place = 1, draft%count_of(group)
+      k = draft%number(group, place, 'coordinate')
+      if (k >= 1 .and. k <= size(there)) there(k) = .true.
+    end do
+    place = draft%count_of(group)
+    do k = 1, size(wanted)
+      if (there(k) .or. .not. wanted(k)) cycle
+      place = place + 1
+      call draft%give(group, place, 'coordinate', to_text(k))
+    end do
+  end subroutine make_numbered
+
+  !> Values at the start that say nothing but their coordinate.
+  pure subroutine drop_empty_guesses(draft)
+    type(draft_type), intent(inout) :: draft
+    integer :: place
+
+    do place = draft%count_of('initial'), 1, -1
+      if (size(draft%groups(draft%find('initial', place))%entries) < 2) call draft%remove('initial', place)
+    end do
+  end subroutine drop_empty_guesses
+
+  !> Take away what does not belong to a group since its kind has changed, and drives and velocities of
+  !> coordinates that are not independent any more. `dropped` names it; empty: nothing.
+  pure subroutine drop_foreign(draft, outline, dropped)
+    type(draft_type), intent(inout) :: draft
+    type(outline_type), intent(in) :: outline
+    character(len=:), allocatable, intent(out) :: dropped
+    character(len=:), allocatable :: name
+    integer :: i, j, k, place
+
+    dropped = ''
+    do i = size(draft%groups), 1, -1
+      name = draft%groups(i)%name
+      place = draft%place_of(i)
+      do j = size(draft%groups(i)%entries), 1, -1
+        if (.not. is_foreign(draft, i, draft%groups(i)%entries(j)%name)) cycle
+        call note(name//' '//draft%groups(i)%entries(j)%name, dropped)
+        call draft%take_away(name, place, draft%groups(i)%entries(j)%name)
+      end do
+      if (.not. outline%structure_known) cycle
+      k = draft%number(name, place, 'coordinate')
+      if (k < 1 .or. k > size(outline%independent)) cycle
+      if (outline%independent(k)) cycle
+      if (name == 'drive') then
+        ! a drive of which nothing was entered yet goes without a word
+        if (size(draft%groups(i)%entries) > 1) call note('drive '//to_text(k), dropped)
+        call draft%remove(name, place)
+      else if (name == 'initial' .and. draft%has(name, place, 'velocity')) then
+        call note('velocity '//to_text(k), dropped)
+        call draft%take_away(name, place, 'velocity')
+      end if
+    end do
+  end subroutine drop_foreign
+
+  pure subroutine note(what, list)
+    character(len=*), intent(in) :: what
+    character(len=:), allocatable, intent(inout) :: list
+
+    if (list /= '') list = ', '//list
+    list = what//list
+  end subroutine note
+
+  !> Whether a known name does not belong to the kind of its group.
+  pure logical function is_foreign(draft, group, name)
+    type(draft_type), intent(in) :: draft
+    integer, intent(in) :: group
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: kind
+
+    is_foreign = .false.
+    kind = kind_in(draft, group)
+    if (kind == '' .or. name == 'kind') return
+    if (size(find_item_rows(draft%groups(group)%name, plain_name(name))) == 0) return
+    is_foreign = item_row_for_kind(draft%groups(group)%name, plain_name(name), kind) == 0
+  end function is_foreign
+end module mech9_outline

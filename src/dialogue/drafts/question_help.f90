@@ -1,0 +1,136 @@
+!> What is said about a question beyond its prompt: one line where a name comes up the first time, the answer to `?`, and what
+!> is said of Enter where it answers nothing.
+module mech9_question_help
+  use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group
+  use mech9_data_help, only: values_text, default_text
+  use mech9_draft, only: draft_type, unquoted
+  use mech9_topics, only: can_be_left_out
+  use mech9_outline, only: outline_type
+  use mech9_questions, only: question_type, is_seldom, ask_item, ask_seldom, ask_way, ask_guesses
+  use mech9_question_words, only: coordinate_kind, angle_unit, unit_here, is_needed, seldom_names
+  use mech9_explanations, only: find_explanation, explanations
+  implicit none
+  private
+  public :: gist_of, help_of, refusal_of_enter
+
+  character, parameter :: line_end = achar(10)
+
+contains
+
+  !> One line on what a question means, with the words it takes.
+  pure function gist_of(question) result(text)
+    type(question_type), intent(in) :: question
+    character(len=:), allocatable :: text
+
+    associate (row => item_table(question%row))
+      text = trim(row%name)//': '//trim(row%help)
+      if (row%words /= '') text = text//' ('//words_allowed(values_text(row))//')'
+    end associate
+  end function gist_of
+
+  !> What stands behind the colon of "text: fixed or link".
+  pure function words_allowed(values) result(words)
+    character(len=*), intent(in) :: values
+    character(len=:), allocatable :: words
+
+    words = values(index(values, ': ') + 2:)
+  end function words_allowed
+
+  !> The answer to `?`.
+  pure function help_of(question, draft, outline) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    character(len=:), allocatable :: text, names
+
+    select case (question%kind)
+    case (ask_way)
+      text = 'The structure says which links are joined by which pairs. It can be given in three ways:'//line_end// &
+             'pairs: you are asked, pair by pair, which two links it joins. For example: 1 2 (or 1-2).'//line_end// &
+             'matrix: you are asked for the rows of the coincidence matrix C. For example: 0 1 0 4.'//line_end// &
+             'vectors: you are asked for the second set: the lists nrg, nws, rdw and nrw.'//line_end// &
+             'The first letter will do.'
+    case (ask_seldom)
+      names = seldom_names(question, outline)
+      text = 'These names have defaults that mostly serve:'//line_end//list_of_seldom(question, outline)// &
+             'Answer yes to be asked for all of them, or name those that you want to give.'//line_end//'For example: '// &
+             names(:index(names//',', ',') - 1)
+    case (ask_guesses)
+      text = 'The same links can be put together in several ways. Rough values of the dependent coordinates choose '// &
+             'one; without them the search starts from zeros, the position in which the mechanism is described. '// &
+             'Answer yes to be asked for them.'
+    case default
+      text = help_on_name(question, draft, outline)
+    end select
+    text = text//line_end//'Enter takes what stands in brackets. Also: back (to the question before), list (what is '// &
+           'known), default (as if never answered), quit (what was typed is kept).'
+    if (question%kind /= ask_item .or. question%is_new) return
+    if (can_be_left_out(question%group_row)) text = text//' remove leaves out the '//trim(item_table(question%row)%group)// &
+                                                    ' that is asked about.'
+  end function help_of
+
+  !> The names of a group that are asked for only when told so, each with what it means in a line.
+  pure function list_of_seldom(question, outline) result(text)
+    type(question_type), intent(in) :: question
+    type(outline_type), intent(in) :: outline
+    character(len=:), allocatable :: text
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    text = ''
+    rows = rows_of_group(group_table(question%group_row)%name)
+    do i = 1, size(rows)
+      if (is_seldom(outline, item_table(rows(i)))) &
+        text = text//trim(item_table(rows(i))%name)//': '//trim(item_table(rows(i))%help)//line_end
+    end do
+  end function list_of_seldom
+
+  !> The explanation of a name, the values it takes, and an example in the unit that is asked for.
+  pure function help_on_name(question, draft, outline) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    character(len=:), allocatable :: text, unit, otherwise
+    integer :: place
+
+    associate (row => item_table(question%row))
+      place = find_explanation(trim(row%group), trim(row%name), trim(row%kinds))
+      text = gist_of(question)
+      if (place > 0) text = trim(row%name)//': '//trim(explanations(place)%text)
+      unit = unit_here(question, draft)
+      if (unit /= '') unit = ' ('//unit//')'
+      otherwise = 'if not given: '//default_text(row)
+      if (is_needed(question, draft, outline) .or. row%needed) otherwise = 'must be given'
+      if (question%is_new) otherwise = 'Enter where there is no more'
+      text = text//line_end//'Values: '//values_text(row)//unit//'; '//otherwise//'.'//line_end//'For example: '// &
+             example_of(row, place, coordinate_kind(question, draft), angle_unit(draft))
+    end associate
+  end function help_on_name
+
+  !> An example as it would be typed: in the unit of the coordinate that is meant.
+  pure function example_of(row, place, kind, angle) result(text)
+    type(item_row_type), intent(in) :: row
+    integer, intent(in) :: place                !< of the explanation; 0: none
+    character(len=*), intent(in) :: kind        !< of the pair whose coordinate is meant; empty: none is
+    character(len=*), intent(in) :: angle       !< unit of angles, rad or deg
+    character(len=:), allocatable :: text
+
+    text = unquoted(trim(row%example))
+    if (place == 0 .or. kind == 'user') return
+    associate (explanation => explanations(place))
+      text = trim(explanation%example)
+      if (angle == 'deg' .and. explanation%degrees /= '') text = trim(explanation%degrees)
+      if (kind == 'prismatic' .and. explanation%length /= '') text = trim(explanation%length)
+    end associate
+  end function example_of
+
+  !> What is said where Enter is pressed at a question that has nothing in brackets.
+  pure function refusal_of_enter(question) result(text)
+    type(question_type), intent(in) :: question
+    character(len=:), allocatable :: text
+
+    text = 'This must be given; ? explains it.'
+    if (item_table(question%row)%group == 'gravity') &
+      text = 'Gravity must be given: -y (which is 0, -9.81, 0), other components, or none; ? explains it.'
+  end function refusal_of_enter
+end module mech9_question_help

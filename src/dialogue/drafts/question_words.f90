@@ -1,0 +1,347 @@
+!> Questions in words: headings, prompts, what Enter answers, and what can be completed; all from the table of names.
+module mech9_question_words
+  use mech9_text, only: to_text, string_type
+  use mech9_grammar, only: group_table, item_table, rows_of_group, words_of
+  use mech9_data_help, only: default_text
+  use mech9_draft, only: draft_type, unquoted
+  use mech9_topics, only: groups_of_topic, can_be_left_out
+  use mech9_outline, only: outline_type, kind_in
+  use mech9_questions, only: question_type, entry_name, is_seldom, ask_item, ask_seldom, ask_way, &
+                             ask_guesses
+  implicit none
+  private
+  public :: default_type, default_of, prompt_of, heading_of, unit_here, coordinate_kind, angle_unit, words_for
+  public :: is_lacking, is_needed, seldom_names
+
+  !> What Enter answers.
+  type :: default_type
+    character(len=:), allocatable :: text       !< in the form of a data file; empty: nothing can be noted
+    character(len=:), allocatable :: shown      !< in the brackets of the prompt; empty: no brackets
+    logical :: noted = .false.                  !< it is noted in the data file like an answer that was typed
+  end type default_type
+
+contains
+
+  !> What Enter answers to a question about a name: what was answered before, what the group before
+  !> says where something must be said, or the default of the table.
+  pure function default_of(question, draft, outline, table_file) result(default)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    character(len=*), intent(in) :: table_file      !< a name for the table of results
+    type(default_type) :: default
+    character(len=:), allocatable :: group, name
+
+    default%text = ''
+    default%shown = ''
+    group = trim(group_table(question%group_row)%name)
+    name = entry_name(question)
+    associate (row => item_table(question%row))
+      if (question%is_new) then
+        default%shown = 'no more'
+        if (question%place == 1) default%shown = 'none'
+      else if (draft%has(group, question%place, name)) then
+        default%text = draft%value(group, question%place, name)
+      else if (group == 'output' .and. name == 'table') then
+        default%text = ''''//table_file//''''
+      else if (is_needed(question, draft, outline)) then
+        default%text = likely_value(question, draft)
+      else if (row%needed) then
+        default%shown = ''             ! of a group that a data file may leave out: here it must be said
+      else if (index(row%default, '(') /= 1 .and. row%default /= '''''') then
+        default%shown = unquoted(trim(row%default))
+      else
+        default%shown = default_text(row)
+      end if
+      default%noted = default%text /= '' .and. .not. draft%has(group, question%place, name)
+      if (default%text /= '') default%shown = unquoted(default%text)
+      if (row%type == 'logical') default%shown = switch_word(default%shown)
+    end associate
+  end function default_of
+
+  pure function switch_word(text) result(word)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: word
+
+    word = text
+    if (text == '.true.') word = 'yes'
+    if (text == '.false.') word = 'no'
+  end function switch_word
+
+  !> A value for what must be given: the axis of the turning pair before, the first of the words allowed, or zero at the
+  !> start; empty where nothing is likely. A slide proposes neither its kind nor its axis for the pair after it.
+  pure function likely_value(question, draft) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: text
+
+    text = ''
+    associate (row => item_table(question%row))
+      if (row%group == 'initial') then
+        text = trim(row%default)
+      else if (row%group == 'pair' .and. row%name == 'axis') then
+        text = axis_before(question%place, draft)
+      else if (group_table(question%group_row)%repeats .and. row%words /= '') then
+        text = ''''//row%words(:index(row%words, ' ') - 1)//''''
+      end if
+    end associate
+  end function likely_value
+
+  !> For a revolute pair the axis of the last revolute pair before it that has one; empty where there is none.
+  pure function axis_before(place, draft) result(text)
+    integer, intent(in) :: place                    !< of the pair among the pairs
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    if (kind_in(draft, draft%find('pair', place)) /= 'revolute') return
+    do i = place - 1, 1, -1
+      if (kind_in(draft, draft%find('pair', i)) == 'revolute') text = draft%value('pair', i, 'axis')
+      if (text /= '') return
+    end do
+  end function axis_before
+
+  !> Whether a question about a name must be answered, and is not.
+  pure logical function is_lacking(question, draft, outline)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+
+    is_lacking = .false.
+    if (question%kind /= ask_item .or. question%is_new) return
+    is_lacking = is_needed(question, draft, outline) .and. .not. &
+                 draft%has(trim(group_table(question%group_row)%name), question%place, entry_name(question))
+  end function is_lacking
+
+  !> Whether a name must be given. Counts and structural data must here, though a data file can leave
+  !> some of them to be counted; a group that is not repeated may be left out as a whole.
+  pure logical function is_needed(question, draft, outline)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+
+    associate (row => item_table(question%row))
+      is_needed = row%needed .or. index(row%default, '(needed') == 1
+      if (row%name == 'axis' .and. row%group == 'pair') is_needed = .not. draft%has('pair', question%place, 'dh')
+      if (row%needed .and. .not. group_table(question%group_row)%repeats) &
+        is_needed = draft%count_of(trim(row%group)) > 0
+      select case (row%group)
+      case ('mechanism')
+        is_needed = is_needed .or. row%name == 'links' .or. row%name == 'coordinates'
+      case ('structure')
+        select case (row%name)
+        case ('cq', 'c')
+          is_needed = outline%way /= 'vectors'
+        case ('nrg', 'nws', 'rdw')
+          is_needed = outline%way == 'vectors'
+        end select
+      case ('initial')
+        if (row%name /= 'coordinate' .and. outline%structure_known) &
+          is_needed = is_independent(outline, draft%number('initial', question%place, 'coordinate'))
+      end select
+    end associate
+  end function is_needed
+
+  pure logical function is_independent(outline, coordinate)
+    type(outline_type), intent(in) :: outline
+    integer, intent(in) :: coordinate
+
+    is_independent = .false.
+    if (coordinate >= 1 .and. coordinate <= size(outline%independent)) is_independent = outline%independent(coordinate)
+  end function is_independent
+
+  !> The line above the questions of one group: "Pair 5, from link 1 to link 2"; empty where there is but one.
+  pure function heading_of(question, draft) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: group, links
+    integer :: comma
+
+    text = ''
+    if (question%kind /= ask_item .or. question%is_new) return
+    if (.not. group_table(question%group_row)%repeats) return
+    group = trim(group_table(question%group_row)%name)
+    select case (group)
+    case ('pair')
+      if (item_table(question%row)%name == 'links') return
+      links = draft%value(group, question%place, 'links')
+      comma = index(links, ',')
+      text = 'Pair '//draft%value(group, question%place, 'coordinate')
+      if (comma > 0) text = text//', from link '//links(:comma - 1)//' (reference) to link '// &
+                            trim(adjustl(links(comma + 1:)))//' (moving)'
+    case ('drive')
+      text = 'Drive of coordinate '//draft%value(group, question%place, 'coordinate')
+    case ('initial')
+      text = 'Coordinate '//draft%value(group, question%place, 'coordinate')//' at the start'
+    case default
+      text = achar(iachar(group(1:1)) - 32)//group(2:)//' '//to_text(question%place)
+    end select
+  end function heading_of
+
+  !> The prompt: name, unit, what Enter answers.
+  pure function prompt_of(question, draft, default) result(text)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    type(default_type), intent(in) :: default
+    character(len=:), allocatable :: text, unit
+
+    associate (row => item_table(question%row))
+      text = '  '//trim(row%name)
+      if (.not. group_table(question%group_row)%repeats .and. size(groups_of_topic(question%topic)) > 1) &
+        text = '  '//trim(row%group)//', '//trim(row%name)
+      if (question%line > 0) text = '  row '//to_text(question%line)//' of c'
+      if (row%group == 'pair' .and. row%name == 'links') &
+        text = '  links of pair '//draft%value('pair', question%place, 'coordinate')
+      if (question%is_new) text = '  '//trim(row%group)//' '//to_text(question%place)//', '//trim(row%name)
+      unit = unit_here(question, draft)
+      if (unit /= '') text = text//' ('//unit//')'
+    end associate
+    if (default%shown /= '') text = text//' ['//default%shown//']'
+    text = text//': '
+  end function prompt_of
+
+  !> The unit of a name in this data file: angles in rad or degrees, coordinates as their pair moves, loads on
+  !> coordinates as these are.
+  pure function unit_here(question, draft) result(unit)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: unit
+    character(len=:), allocatable :: kind, q
+
+    unit = trim(item_table(question%row)%unit)
+    kind = coordinate_kind(question, draft)
+    q = angle_unit(draft)
+    if (kind == 'prismatic') q = 'm'
+    if (kind == 'user') q = ''
+    if (item_table(question%row)%group == 'load' .and. item_table(question%row)%kinds == 'coordinate') &
+      unit = unit_of_load(unit, kind)
+    call replace('angle', angle_unit(draft), unit)
+    if (q == '' .and. has_word(unit, 'q')) unit = ''
+    call replace('q', q, unit)
+    call replace('q', q, unit)
+  end function unit_here
+
+  !> Of the units of a length and of an angle, "N or N m", the one that fits the kind of pair.
+  pure function unit_of_load(both, kind) result(unit)
+    character(len=*), intent(in) :: both         !< separated by a comma or `or`; a single unit stays as it is
+    character(len=*), intent(in) :: kind         !< of the pair; empty: unknown
+    character(len=:), allocatable :: unit
+    integer :: gap, next
+
+    unit = both
+    gap = index(both, ', ')
+    next = gap + 2
+    if (gap == 0) then
+      gap = index(both, ' or ')
+      next = gap + 4
+    end if
+    if (gap == 0) return
+    if (kind == 'prismatic') unit = both(:gap - 1)
+    if (kind == 'revolute' .or. kind == 'helical') unit = both(next:)
+  end function unit_of_load
+
+  !> The kind of the pair whose coordinate the group of a question names; empty where it names none.
+  pure function coordinate_kind(question, draft) result(kind)
+    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft
+    character(len=:), allocatable :: kind
+    integer :: place
+
+    kind = ''
+    place = draft%with_number('pair', 'coordinate', draft%number(trim(group_table(question%group_row)%name), &
+                                                                 question%place, 'coordinate'))
+    if (place > 0) kind = kind_in(draft, draft%find('pair', place))
+  end function coordinate_kind
+
+  !> The unit of angles in this data file.
+  pure function angle_unit(draft) result(unit)
+    type(draft_type), intent(in) :: draft
+    character(len=3) :: unit
+
+    unit = 'rad'
+    if (unquoted(draft%value('mechanism', 1, 'angle_unit')) == 'deg') unit = 'deg'
+  end function angle_unit
+
+  !> Put a word in the place of another, once.
+  pure subroutine replace(word, by, text)
+    character(len=*), intent(in) :: word, by
+    character(len=:), allocatable, intent(inout) :: text
+    integer :: at
+
+    at = word_place(text, word)
+    if (at > 0) text = text(:at - 1)//by//text(at + len(word):)
+  end subroutine replace
+
+  pure logical function has_word(text, word)
+    character(len=*), intent(in) :: text, word
+
+    has_word = word_place(text, word) > 0
+  end function has_word
+
+  !> Where a word stands in a text that is made of words, blanks, commas and slashes; 0: nowhere.
+  pure integer function word_place(text, word) result(at)
+    character(len=*), intent(in) :: text, word
+
+    do at = 1, len(text) - len(word) + 1
+      if (text(at:at + len(word) - 1) /= word) cycle
+      if (at > 1) then
+        if (scan(text(at - 1:at - 1), ' ,/') == 0) cycle
+      end if
+      if (at + len(word) > len(text)) return
+      if (scan(text(at + len(word):at + len(word)), ' ,/') > 0) return
+    end do
+    at = 0
+  end function word_place
+
+  !> The names of a group that are asked for only when told so: "zero, moving_point".
+  pure function seldom_names(question, outline) result(text)
+    type(question_type), intent(in) :: question
+    type(outline_type), intent(in) :: outline
+    character(len=:), allocatable :: text
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    text = ''
+    rows = rows_of_group(group_table(question%group_row)%name)
+    do i = 1, size(rows)
+      if (.not. is_seldom(outline, item_table(rows(i)))) cycle
+      if (text /= '') text = text//', '
+      text = text//trim(item_table(rows(i))%name)
+    end do
+  end function seldom_names
+
+  !> What can be completed at a question: its words and the commands.
+  pure subroutine words_for(question, outline, words)
+    type(question_type), intent(in) :: question
+    type(outline_type), intent(in) :: outline
+    type(string_type), allocatable, intent(out) :: words(:)
+    character(len=:), allocatable :: list
+    integer :: i
+
+    select case (question%kind)
+    case (ask_way)
+      list = 'pairs matrix vectors '
+    case (ask_seldom)
+      list = seldom_names(question, outline)
+      do i = 1, len(list)
+        if (list(i:i) == ',') list(i:i) = ' '
+      end do
+      list = 'yes no '//list//' '
+    case (ask_guesses)
+      list = 'yes no '
+    case default
+      list = trim(item_table(question%row)%words)//' '
+      if (question%is_new) list = list//'none '
+      if (item_table(question%row)%type == 'logical') list = 'yes no '
+      if (can_be_left_out(question%group_row) .and. .not. question%is_new) list = list//'remove '
+    end select
+    associate (all_words => words_of(list//'back list default quit'))
+      allocate (words(size(all_words)))
+      do i = 1, size(words)
+        words(i)%text = trim(all_words(i))
+      end do
+    end associate
+  end subroutine words_for
+end module mech9_question_words

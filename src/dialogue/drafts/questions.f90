@@ -1,0 +1,317 @@
+!> The questions of a conversation, made from the tables of topics, groups and names and from what is known so far.
+!>
+!> The list is made anew after each answer, since an answer may open or close others. A question is the
+!> same in two lists if its label is.
+module mech9_questions
+  use mech9_text, only: to_text
+  use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group, takes_kind, find_item_rows
+  use mech9_draft, only: draft_type
+  use mech9_topics, only: topics, groups_of_topic, is_numbered, can_be_left_out
+  use mech9_outline, only: outline_type, kind_in
+  implicit none
+  private
+  public :: question_type, make_questions, label_of, find_question, entry_name, is_open, is_seldom
+  public :: ask_item, ask_seldom, ask_way, ask_guesses, check_structure, check_start, check_all
+
+  !> What a question is: about a name of a group, about which seldom names to ask for, how the structure is
+  !> given, whether dependent coordinates are guessed; or no question but a check that stands between them.
+  integer, parameter :: ask_item = 1, ask_seldom = 2, ask_way = 3, ask_guesses = 4
+  integer, parameter :: check_structure = 5, check_start = 6, check_all = 7
+
+  !> One question.
+  type :: question_type
+    integer :: kind = ask_item
+    integer :: topic = 0
+    integer :: group_row = 0       !< in group_table
+    integer :: place = 0           !< of the group among those of its name; one more than there are: a new one
+    integer :: row = 0             !< in item_table
+    integer :: line = 0            !< row of the coincidence matrix; 0: none
+    logical :: is_new = .false.    !< opens a new group, or none
+  end type question_type
+
+  !> Names that say in other words where a pair is.
+  character(len=*), parameter :: instead_of_dh = ' point axis zero moving_point moving_axis moving_zero '
+
+contains
+
+  !> All questions in order; the last one is the check of all.
+  pure subroutine make_questions(draft, outline, questions)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    type(question_type), allocatable, intent(out) :: questions(:)
+    integer, allocatable :: rows(:)
+    integer :: count, i, topic
+
+    allocate (questions(64))
+    count = 0
+    do topic = 1, size(topics)
+      rows = groups_of_topic(topic)
+      do i = 1, size(rows)
+        if (group_table(rows(i))%program /= 'both' .and. group_table(rows(i))%program /= outline%program_name) cycle
+        call ask_about_group(draft, outline, topic, rows(i), questions, count)
+      end do
+    end do
+    call append(questions, count, question_type(kind=check_all, topic=size(topics)))
+    questions = questions(:count)
+  end subroutine make_questions
+
+  pure subroutine ask_about_group(draft, outline, topic, group_row, questions, count)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    integer, intent(in) :: topic, group_row
+    type(question_type), allocatable, intent(inout) :: questions(:)
+    integer, intent(inout) :: count
+    character(len=:), allocatable :: group
+    integer, allocatable :: rows(:)
+    integer :: place
+
+    group = trim(group_table(group_row)%name)
+    rows = rows_of_group(group)
+    if (group == 'structure') then
+      call ask_about_structure(draft, outline, topic, group_row, questions, count)
+      return
+    end if
+    if (group == 'user' .and. .not. has_procedures(draft)) return
+    if (group == 'initial') then
+      if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
+        call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
+    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism') then
+      ! a conversation does not begin with what is seldom: that of the mechanism is changed by its name where it is needed
+      call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
+    end if
+    do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)
+      call ask_about_one(draft, outline, question_type(topic=topic, group_row=group_row, place=place), rows, questions, count)
+    end do
+    if (can_be_left_out(group_row)) &
+      call append(questions, count, question_type(topic=topic, group_row=group_row, place=draft%count_of(group) + 1, &
+                                                  row=rows(1), is_new=.true.))
+    if (group == 'initial') call append(questions, count, question_type(kind=check_start, topic=topic))
+  end subroutine ask_about_group
+
+  !> The names of one group.
+  pure subroutine ask_about_one(draft, outline, template, rows, questions, count)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: template
+    integer, intent(in) :: rows(:)
+    type(question_type), allocatable, intent(inout) :: questions(:)
+    integer, intent(inout) :: count
+    type(question_type) :: question
+    integer, allocatable :: order(:)
+    integer :: i
+
+    order = rows
+    if (group_table(template%group_row)%name == 'pair') order = dh_first(rows)
+    do i = 1, size(order)
+      question = template
+      question%row = order(i)
+      if (is_open(draft, outline, question)) call append(questions, count, question)
+    end do
+  end subroutine ask_about_one
+
+  !> The rows with that of the Denavit-Hartenberg parameters before those that they replace.
+  pure function dh_first(rows) result(order)
+    integer, intent(in) :: rows(:)
+    integer, allocatable :: order(:)
+    integer :: i
+
+    order = [pack(rows, [(.not. replaced(item_table(rows(i))%name) .and. item_table(rows(i))%name /= 'dh', i=1, size(rows))]), &
+             pack(rows, item_table(rows)%name == 'dh'), &
+             pack(rows, [(replaced(item_table(rows(i))%name), i=1, size(rows))])]
+  end function dh_first
+
+  pure logical function replaced(name)
+    character(len=*), intent(in) :: name
+
+    replaced = index(instead_of_dh, ' '//trim(name)//' ') > 0
+  end function replaced
+
+  !> Whether a name is asked for in its group as it stands.
+  pure logical function is_open(draft, outline, question)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: question
+    integer :: group
+    character(len=:), allocatable :: kind, name
+
+    name = trim(group_table(question%group_row)%name)
+    associate (row => item_table(question%row))
+      is_open = .false.
+      if (.not. is_used(outline, row)) return
+      group = draft%find(name, question%place)
+      kind = ''
+      if (group > 0) kind = kind_in(draft, group)
+      if (is_numbered(question%group_row) .and. row%name == 'coordinate') return
+      if (row%kinds /= '' .and. (kind == '' .or. .not. takes_kind(row, kind))) return
+      if (is_seldom(outline, row) .and. .not. outline%asked(question%row)) return
+      if (name == 'pair' .and. row%name == 'links' .and. outline%way == 'pairs') return
+      if (replaced(row%name) .and. draft%has(name, question%place, 'dh') &
+          .and. .not. draft%has(name, question%place, trim(row%name))) return
+      is_open = name /= 'initial' .or. is_open_at_start(draft, outline, question)
+    end associate
+  end function is_open
+
+  !> Whether a name is asked for only when told so. Links of pairs are, where the structure gives them.
+  pure logical function is_seldom(outline, row)
+    type(outline_type), intent(in) :: outline
+    type(item_row_type), intent(in) :: row
+
+    is_seldom = row%seldom .or. (row%group == 'pair' .and. row%name == 'links' .and. outline%way /= 'pairs')
+    is_seldom = is_seldom .and. is_used(outline, row)
+  end function is_seldom
+
+  !> Whether the program of the conversation uses a name.
+  pure logical function is_used(outline, row)
+    type(outline_type), intent(in) :: outline
+    type(item_row_type), intent(in) :: row
+
+    is_used = row%program == 'both' .or. row%program == outline%program_name
+  end function is_used
+
+  !> Values at the start: of independent coordinates where they are integrated, guesses of dependent ones.
+  pure logical function is_open_at_start(draft, outline, question) result(open)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: question
+    integer :: k
+
+    open = .false.
+    if (.not. outline%structure_known) return
+    k = draft%number('initial', question%place, 'coordinate')
+    if (k < 1 .or. k > size(outline%independent)) return
+    if (outline%independent(k)) then
+      open = outline%program_name == 'mech9d'
+    else
+      open = item_table(question%row)%name /= 'velocity'
+    end if
+  end function is_open_at_start
+
+  pure logical function has_procedures(draft)
+    type(draft_type), intent(in) :: draft
+    integer :: i
+
+    has_procedures = draft%count_of('user') > 0
+    do i = 1, size(draft%groups)
+      has_procedures = has_procedures .or. kind_in(draft, i) == 'user'
+    end do
+  end function has_procedures
+
+  !> How the structure is given, and that; then the independent coordinates and the check.
+  pure subroutine ask_about_structure(draft, outline, topic, group_row, questions, count)
+    type(draft_type), intent(in) :: draft
+    type(outline_type), intent(in) :: outline
+    integer, intent(in) :: topic, group_row
+    type(question_type), allocatable, intent(inout) :: questions(:)
+    integer, intent(inout) :: count
+    type(question_type) :: question
+    integer, allocatable :: rows(:)
+    integer :: i, pair_row
+
+    question = question_type(topic=topic, group_row=group_row, place=1)
+    call append(questions, count, question_type(kind=ask_way, topic=topic, group_row=group_row))
+    if (outline%way == 'pairs') then
+      rows = find_item_rows('pair', 'links')
+      pair_row = findloc(group_table%name, 'pair     ', dim=1)
+      do i = 1, draft%count_of('pair')
+        call append(questions, count, question_type(topic=topic, group_row=pair_row, place=i, row=rows(1)))
+      end do
+    end if
+    rows = rows_of_group('structure')
+    do i = 1, size(rows)
+      question%row = rows(i)
+      if (item_table(rows(i))%name == 'c') then
+        if (outline%way == 'matrix') call ask_about_matrix(draft, question, questions, count)
+      else if (has_place_in(outline%way, item_table(rows(i))%name) &
+               .or. draft%has('structure', 1, trim(item_table(rows(i))%name))) then
+        call append(questions, count, question)
+      end if
+    end do
+    call append(questions, count, question_type(kind=check_structure, topic=topic))
+  end subroutine ask_about_structure
+
+  !> The second set takes the place of cq; anything else is asked for in either case.
+  pure logical function has_place_in(way, name)
+    character(len=*), intent(in) :: way, name
+
+    select case (name)
+    case ('cq')
+      has_place_in = way /= 'vectors'
+    case ('nrg', 'nws', 'rdw', 'nrw')
+      has_place_in = way == 'vectors'
+    case default
+      has_place_in = .true.
+    end select
+  end function has_place_in
+
+  pure subroutine ask_about_matrix(draft, template, questions, count)
+    type(draft_type), intent(in) :: draft
+    type(question_type), intent(in) :: template
+    type(question_type), allocatable, intent(inout) :: questions(:)
+    integer, intent(inout) :: count
+    type(question_type) :: question
+    integer :: i
+
+    question = template
+    do i = 1, draft%number('mechanism', 1, 'links')
+      question%line = i
+      call append(questions, count, question)
+    end do
+  end subroutine ask_about_matrix
+
+  pure subroutine append(questions, count, question)
+    type(question_type), allocatable, intent(inout) :: questions(:)
+    integer, intent(inout) :: count
+    type(question_type), intent(in) :: question
+    type(question_type), allocatable :: longer(:)
+
+    if (count == size(questions)) then
+      allocate (longer(2*count))
+      longer(:count) = questions
+      call move_alloc(longer, questions)
+    end if
+    count = count + 1
+    questions(count) = question
+  end subroutine append
+
+  !> The name under which the draft keeps the answer.
+  pure function entry_name(question) result(name)
+    type(question_type), intent(in) :: question
+    character(len=:), allocatable :: name
+
+    name = trim(item_table(question%row)%name)
+    if (question%line > 0) name = name//'('//to_text(question%line)//',:)'
+  end function entry_name
+
+  !> What tells a question from all others: "pair(3).axis".
+  pure function label_of(question) result(label)
+    type(question_type), intent(in) :: question
+    character(len=:), allocatable :: label
+
+    select case (question%kind)
+    case (ask_item)
+      label = trim(group_table(question%group_row)%name)//'('//to_text(question%place)//').'//entry_name(question)
+    case (ask_seldom)
+      label = 'more of '//trim(group_table(question%group_row)%name)
+    case (ask_way)
+      label = 'way of structure'
+    case (ask_guesses)
+      label = 'guesses'
+    case (check_structure)
+      label = 'structure'
+    case (check_start)
+      label = 'start'
+    case default
+      label = 'all'
+    end select
+  end function label_of
+
+  !> Number of the question with a label; 0 where there is none.
+  pure integer function find_question(questions, label) result(number)
+    type(question_type), intent(in) :: questions(:)
+    character(len=*), intent(in) :: label
+
+    do number = size(questions), 1, -1
+      if (label_of(questions(number)) == label) return
+    end do
+  end function find_question
+end module mech9_questions

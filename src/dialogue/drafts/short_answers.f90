@@ -1,0 +1,127 @@
+!> Short ways to type an answer, and the full form in which a data file holds them.
+!>
+!> The reader of data files takes full forms only; short ones are understood where somebody can be asked again.
+module mech9_short_answers
+  use mech9_text, only: lower
+  use mech9_grammar, only: item_row_type, words_of
+  implicit none
+  private
+  public :: full_form, word_meant
+
+  !> Names that take a direction, with blanks around each.
+  character(len=*), parameter :: directions = ' axis zero moving_axis moving_zero '
+  character(len=*), parameter :: digits = '0123456789', blanks = ' '//achar(9)
+  !> Short answers are not longer than this.
+  integer, parameter :: longest = 40
+
+contains
+
+  !> The full form of an answer to the question about a name: "rev" and "hinge" are revolute, "-z" the axis 0, 0, -1,
+  !> "1-2" the links 1, 2, and for gravity "-y" is 0, -9.81, 0 and "none" 0, 0, 0. What is not short stays as it is.
+  pure function full_form(row, line) result(text)
+    type(item_row_type), intent(in) :: row          !< of the name
+    character(len=*), intent(in) :: line            !< what was typed, without blanks around it
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: word
+
+    text = line
+    if (len(line) > longest .or. line == '') return
+    if (row%words /= '') then
+      word = word_meant(line, words_of(trim(row%words)))
+      if (row%group == 'pair' .and. word == '') word = kind_of_pair(line)
+      if (word /= '') text = word
+    else if (row%type == 'real' .and. index(directions, ' '//trim(row%name)//' ') > 0) then
+      if (is_signed_axis(line)) text = along(line, '1')
+    else if (row%group == 'gravity' .and. row%name == 'acceleration') then
+      if (lower(line) == 'none' .or. lower(line) == 'no') text = '0, 0, 0'
+      if (is_signed_axis(line)) text = along(line, '9.81')
+    else if (row%name == 'links' .and. row%high == 2) then
+      text = two_numbers(line)
+    end if
+  end function full_form
+
+  !> What mechanics call the kinds of pairs; empty for other words.
+  pure function kind_of_pair(line) result(kind)
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: kind
+
+    select case (lower(line))
+    case ('hinge', 'pin')
+      kind = 'revolute'
+    case ('slide', 'slider')
+      kind = 'prismatic'
+    case ('screw')
+      kind = 'helical'
+    case default
+      kind = ''
+    end select
+  end function kind_of_pair
+
+  !> The one word of a list that begins with what was typed, or is it; empty where none does, or several do.
+  pure function word_meant(line, words) result(word)
+    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: words(:)        !< blank-padded, in lower case
+    character(len=:), allocatable :: word
+    character(len=:), allocatable :: typed
+    integer :: i, n
+
+    typed = trim(lower(line))
+    word = ''
+    n = 0
+    do i = 1, size(words)
+      if (words(i) == typed) then
+        word = typed
+        return
+      end if
+      if (index(words(i), typed) /= 1) cycle
+      n = n + 1
+      word = trim(words(i))
+    end do
+    if (n /= 1) word = ''
+  end function word_meant
+
+  !> Whether a line is x, y or z, perhaps behind a sign.
+  pure logical function is_signed_axis(line)
+    character(len=*), intent(in) :: line
+
+    is_signed_axis = .false.
+    if (len(line) > 2) return
+    if (len(line) == 2) then
+      if (scan(line(1:1), '+-') == 0) return
+    end if
+    is_signed_axis = scan(lower(line(len(line):)), 'xyz') == 1
+  end function is_signed_axis
+
+  !> Components of a vector along the axis that a line such as "-y" names.
+  pure function along(line, length) result(text)
+    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: length          !< of the vector, as a number is typed
+    character(len=:), allocatable :: text, component
+    integer :: i
+
+    text = ''
+    do i = 1, 3
+      component = '0'
+      if (index('xyz', lower(line(len(line):))) == i) component = length
+      if (component /= '0' .and. line(1:1) == '-') component = '-'//component
+      text = text//component
+      if (i < 3) text = text//', '
+    end do
+  end function along
+
+  !> "1, 2" for "1-2" and "1 - 2"; anything else as it is.
+  pure function two_numbers(line) result(text)
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: text, first, second
+    integer :: dash
+
+    text = line
+    dash = index(line, '-')
+    if (dash < 2 .or. dash == len(line)) return
+    first = line(:verify(line(:dash - 1), blanks, back=.true.))
+    second = line(dash + verify(line(dash + 1:)//'-', blanks):)
+    if (first == '' .or. second == '') return
+    if (verify(first, digits) > 0 .or. verify(second, digits) > 0) return
+    text = first//', '//second
+  end function two_numbers
+end module mech9_short_answers

@@ -1,0 +1,74 @@
+!> What a conversation speaks of, in the order a person thinks: each topic takes some groups of the data file.
+module mech9_topics
+  use mech9_grammar, only: group_table, find_group_row, words_of
+  implicit none
+  private
+  public :: topic_type, topics, groups_of_topic, is_numbered, can_be_left_out
+
+  !> One topic.
+  type :: topic_type
+    character(len=24) :: title
+    character(len=20) :: groups       !< their names; empty: those of no other topic
+    character(len=370) :: opening     !< what is said when it begins
+  end type topic_type
+
+  type(topic_type), parameter :: topics(*) = [ &
+    topic_type('The mechanism', 'mechanism', 'Link 1 is the frame; each pair between two links has one coordinate.'), &
+    topic_type('Structure', 'structure', ''), &
+    topic_type('Pairs', 'pair', 'Directions and points are three numbers, x y z. The easiest way: choose one position of the '// &
+               'mechanism and give all points and directions in the frame, as they are in that position; all coordinates are '// &
+               'then 0 there. Where links have systems of their own, they are given in the reference link, and again in the '// &
+               'moving link as moving_point, moving_axis and moving_zero.'), &
+    topic_type('Drives', 'drive', 'Each independent coordinate is a given function of time.'), &
+    topic_type('The start', 'initial', ''), &
+    topic_type('Bodies', 'body', 'Links without a body are massless. A body begun by mistake is left out by remove.'), &
+    topic_type('Gravity', 'gravity', 'It acts on all bodies: 0, -9.81, 0 on Earth where y points up; none where it is left out.'), &
+    topic_type('Loads', 'load', 'Forces, torques, springs and dampers, on links and on coordinates. '// &
+               'A load begun by mistake is left out by remove.'), &
+    topic_type('Points', 'point', 'Positions, velocities and accelerations of these points are recorded.'), &
+    topic_type('Time', 'time', ''), &
+    topic_type('Computation', 'solver', ''), &
+    topic_type('Results', 'output', ''), &
+    topic_type('User procedures', 'user', ''), &
+    topic_type('Further data', '', '')]
+
+contains
+
+  !> Rows of group_table that belong to a topic, in the topic's order.
+  pure function groups_of_topic(topic) result(rows)
+    integer, intent(in) :: topic
+    integer, allocatable :: rows(:)
+    integer :: i, j
+
+    if (topics(topic)%groups /= '') then
+      associate (names => words_of(trim(topics(topic)%groups)))
+        rows = [(find_group_row(trim(names(i))), i=1, size(names))]
+      end associate
+    else
+      rows = pack([(i, i=1, size(group_table))], &
+                  [(.not. any([(has_word(topics(j)%groups, group_table(i)%name), j=1, size(topics))]), &
+                    i=1, size(group_table))])
+    end if
+  end function groups_of_topic
+
+  pure logical function has_word(words, word)
+    character(len=*), intent(in) :: words, word
+
+    has_word = index(' '//trim(words)//' ', ' '//trim(word)//' ') > 0
+  end function has_word
+
+  !> Whether the groups of a name are told apart by the number of a coordinate: then there is one for each
+  !> coordinate concerned, and the number itself is not asked for.
+  pure logical function is_numbered(group_row)
+    integer, intent(in) :: group_row
+
+    is_numbered = group_table(group_row)%key == 'coordinate'
+  end function is_numbered
+
+  !> Whether there can be any number of groups of a name, which the user begins one by one.
+  pure logical function can_be_left_out(group_row)
+    integer, intent(in) :: group_row
+
+    can_be_left_out = group_table(group_row)%repeats .and. .not. is_numbered(group_row)
+  end function can_be_left_out
+end module mech9_topics

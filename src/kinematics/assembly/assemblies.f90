@@ -1,0 +1,147 @@
+!> The assemblies of a mechanism: all the positions in which its chains close for the same independent coordinates, as far as
+!> random starts lead to them.
+module mech9_assemblies
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_plan, only: plan_type, block_type, step_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type, new_block_work
+  use mech9_assembly, only: assemble_block, assembly_outcome_type
+  implicit none
+  private
+  public :: assembly_list_type, find_assemblies, close_from_random_starts
+
+  !> Coordinates that differ by less, in their units, belong to one assembly.
+  real(wp), parameter :: same = 1.0e-6_wp
+
+  !> Assemblies, in the order in which they were found.
+  type :: assembly_list_type
+    integer :: starts = 0                    !< that were tried
+    integer :: closed = 0                    !< starts that led to a closed position
+    real(wp), allocatable :: q(:, :)         !< (M, assemblies): coordinates; angles within half a turn
+    integer, allocatable :: found(:)         !< how many starts led to each
+  end type assembly_list_type
+
+contains
+
+  !> Assemblies for the independent coordinates of an assembled start, which is the first of them. The
+  !> starts are always the same ones.
+  subroutine find_assemblies(plan, start, n_starts, list)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    integer, intent(in) :: n_starts
+    type(assembly_list_type), intent(out) :: list
+    type(state_type) :: trial
+    type(random_type) :: random
+    integer :: i
+    logical :: closed
+
+    allocate (list%q(plan%n_coordinates, 0), list%found(0))
+    call enter(plan, start%q, list)
+    list%found(1) = 0
+    list%starts = n_starts
+    trial = start
+    do i = 1, n_starts
+      trial%q = start%q
+      call close_from(plan, plan%blocks, pi, random, trial, closed)
+      if (.not. closed) cycle
+      list%closed = list%closed + 1
+      call enter(plan, trial%q, list)
+    end do
+  end subroutine find_assemblies
+
+  !> Close blocks, of which the last one does not close on the others as they are, from starts ever
+  !> farther from the coordinates in `state`.
+  subroutine close_from_random_starts(plan, blocks, state, closed)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: blocks(:)
+    type(state_type), intent(inout) :: state       !< left as it is where no start helps
+    logical, intent(out) :: closed
+    type(state_type) :: trial
+    type(random_type) :: random
+    integer :: i, starts
+
+    ! the larger the mechanism, the fewer
+    starts = max(4, min(40, 4000/blocks(size(blocks))%last_step))
+    trial = state
+    do i = 1, starts
+      trial%q = state%q
+      call close_from(plan, blocks, pi*i/starts, random, trial, closed)
+      if (closed) then
+        state = trial
+        return
+      end if
+    end do
+  end subroutine close_from_random_starts
+
+  !> Change all dependent coordinates at random and close block after block.
+  subroutine close_from(plan, blocks, amount, random, state, closed)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: blocks(:)
+    real(wp), intent(in) :: amount                 !< in units of the coordinates
+    type(random_type), intent(inout) :: random
+    type(state_type), intent(inout) :: state
+    logical, intent(out) :: closed
+    type(block_work_type) :: work
+    type(assembly_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    integer :: b, i, k
+
+    closed = .true.
+    do b = 1, size(blocks)
+      do i = 1, size(blocks(b)%unknowns)
+        k = blocks(b)%coordinates(i)
+        state%q(k) = state%q(k) + amount*plan%unit_of(k)*random%symmetric()
+      end do
+      work = new_block_work(blocks(b))
+      call assemble_block(plan, blocks(b), state, work, .false., outcome, err)
+      closed = outcome%closed .and. .not. allocated(err)
+      if (.not. closed) return
+    end do
+  end subroutine close_from
+
+  !> Count an assembly, new or found before.
+  subroutine enter(plan, q, list)
+    type(plan_type), intent(in) :: plan
+    real(wp), intent(in) :: q(:)
+    type(assembly_list_type), intent(inout) :: list
+    real(wp), allocatable :: longer(:, :)
+    real(wp) :: difference
+    integer :: i, k, n
+
+    n = size(list%found)
+    do i = 1, n
+      do k = 1, size(q)
+        difference = q(k) - list%q(k, i)
+        if (turns(plan%steps(plan%step_of(k)))) difference = within_half_a_turn(difference)
+        if (abs(difference) > same*plan%unit_of(k)) exit
+      end do
+      if (k <= size(q)) cycle
+      list%found(i) = list%found(i) + 1
+      return
+    end do
+    allocate (longer(size(q), n + 1))
+    longer(:, :n) = list%q
+    longer(:, n + 1) = q
+    do k = 1, size(q)
+      if (plan%steps(plan%step_of(k))%dependent .and. turns(plan%steps(plan%step_of(k)))) &
+        longer(k, n + 1) = within_half_a_turn(q(k))
+    end do
+    call move_alloc(longer, list%q)
+    list%found = [list%found, 1]
+  end subroutine enter
+
+  !> Is a full turn of its coordinate the same position?
+  pure logical function turns(step)
+    type(step_type), intent(in) :: step
+
+    turns = step%is_screw .and. abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp
+  end function turns
+
+  pure real(wp) function within_half_a_turn(angle)
+    real(wp), intent(in) :: angle
+
+    within_half_a_turn = angle - 2.0_wp*pi*anint(angle/(2.0_wp*pi))
+  end function within_half_a_turn
+end module mech9_assemblies

@@ -1,0 +1,252 @@
+!> Assembly, that is, closing the chains of a block from a rough guess.
+!>
+!> Damped least squares (Levenberg and Marquardt), finished by Newton's method. Where the guess leads
+!> to no closed position, the guesses are changed by growing random amounts, always the same ones.
+module mech9_assembly
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
+  use mech9_least_squares, only: least_squares_type
+  use mech9_random, only: random_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, apply_change, closed_enough
+  use mech9_frame_motion, only: place_frames
+  use mech9_block_equations, only: block_jacobian, block_residual
+  implicit none
+  private
+  public :: assemble_block, assembly_outcome_type
+
+  integer, parameter :: most_restarts = 100
+  !> Large blocks are restarted less often: unknowns times restarts stay below this.
+  integer, parameter :: most_restarted = 3000
+  integer, parameter :: most_steps = 200
+  !> Steps in which the errors must have become clearly smaller.
+  integer, parameter :: patience = 25
+  !> From errors as small as this Newton's method takes over.
+  real(wp), parameter :: near_enough = 1.0e-8_wp
+  !> Newton's corrections from there, unless the position is singular.
+  real(wp), parameter :: regular_correction = 1.0e-5_wp
+  !> Errors that are left at a singular position where they fall slowly: still far below any tolerance.
+  real(wp), parameter :: closed_singular = 1.0e-12_wp
+
+  !> The length of the errors of a block, several closures together, against what one may stay open by.
+  real(wp), parameter :: may_stay_open = 10.0_wp
+
+  !> How an assembly went.
+  type :: assembly_outcome_type
+    logical :: closed = .false.
+    integer :: restarts = 0           !< changed guesses that were needed
+    integer :: worst_closure = 0      !< where it failed: the closure that is farthest from closed ...
+    real(wp) :: gap = 0.0_wp          !< ... and how far [m, rotations times the mechanism's size]
+  end type assembly_outcome_type
+
+contains
+
+  !> Close the chains of a block from the guesses in `state`. Where no closed position is found, the
+  !> coordinates are those that came nearest from the first guess.
+  subroutine assemble_block(plan, block, state, work, may_restart, outcome, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    logical, intent(in) :: may_restart
+    type(assembly_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: guess(size(block%unknowns)), nearest(size(block%unknowns))
+    type(random_type) :: random
+    integer :: restart, restarts, i, k
+
+    restarts = 0
+    if (may_restart) restarts = max(2, min(most_restarts, most_restarted/max(1, size(guess))))
+    guess = state%q(block%coordinates)
+    do restart = 0, restarts
+      do i = 1, size(guess)
+        k = block%coordinates(i)
+        state%q(k) = guess(i)
+        if (restart > 0) state%q(k) = guess(i) + plan%unit_of(k)*random%symmetric()*pi*restart/restarts
+      end do
+      call descend(plan, block, state, work, outcome, err)
+      if (allocated(err)) then
+        ! a user pair without a pose: only at the guess itself is that the user's affair
+        if (restart == 0) return
+        cycle
+      end if
+      outcome%restarts = restart
+      if (outcome%closed) then
+        call unwind(plan, block, guess, state, err)
+        return
+      end if
+      if (restart == 0) nearest = state%q(block%coordinates)
+    end do
+    outcome = assembly_outcome_type(restarts=restarts)
+    state%q(block%coordinates) = nearest
+    call place_frames(plan, block, state, err)
+    if (allocated(err)) return
+    call find_worst(plan, block, state, outcome)
+  end subroutine assemble_block
+
+  !> Damped least squares from the coordinates in `state`, then Newton's method to round-off. At a
+  !> singular position Newton's method would leave the chains closed anyhow but the coordinates
+  !> elsewhere: there damped least squares goes on as far as it gets.
+  subroutine descend(plan, block, state, work, outcome, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(assembly_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: newton
+    real(wp) :: before(size(block%unknowns)), residual_norm, enough
+
+    ! redundant equations that may stay open must be as near to closed as they get
+    enough = near_enough
+    if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) enough = closed_enough
+    call reduce_errors(plan, block, state, work, enough, 1.0e-2_wp, residual_norm, err)
+    if (allocated(err)) return
+    outcome%closed = residual_norm <= max(near_enough, may_stay_open*plan%data_tolerance)
+    if (outcome%closed) then
+      before = state%q(block%coordinates)
+      call close_block(plan, block, state, work, newton, err)
+      if (allocated(err)) return
+      if (.not. newton%converged .or. newton%correction > regular_correction) then
+        state%q(block%coordinates) = before
+        call reduce_errors(plan, block, state, work, closed_enough, 1.0e-10_wp, residual_norm, err)
+        if (allocated(err)) return
+        outcome%closed = residual_norm <= max(closed_singular, may_stay_open*plan%data_tolerance)
+      end if
+    end if
+    call find_worst(plan, block, state, outcome)
+    ! all six components of every closure count here, also those outside its space of motions
+    outcome%closed = outcome%closed .and. outcome%gap <= max(1.0e-10_wp, plan%data_tolerance)*plan%length
+  end subroutine descend
+
+  !> Damped least squares (Levenberg and Marquardt) until the errors are as small as asked for, or get
+  !> no smaller.
+  subroutine reduce_errors(plan, block, state, work, enough, damping_at_first, residual_norm, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    real(wp), intent(in) :: enough
+    real(wp), intent(in) :: damping_at_first
+    real(wp), intent(out) :: residual_norm            !< length of the errors that are left
+    type(error_type), allocatable, intent(out) :: err
+    type(least_squares_type) :: damped
+    real(wp) :: right(block%equations + size(block%unknowns)), before(size(block%unknowns))
+    real(wp) :: damping, trial_norm, norm_then
+    integer :: step
+
+    damping = damping_at_first
+    call damped%create(block%equations + size(block%unknowns), size(block%unknowns))
+    call measure(plan, block, state, work, residual_norm, err)
+    if (allocated(err)) return
+    norm_then = residual_norm
+    do step = 1, most_steps
+      if (residual_norm <= enough .or. size(before) == 0) exit
+      call damped_change(plan, block, state, damping, damped, right, work)
+      before = state%q(block%coordinates)
+      call apply_change(plan, block, work%change, state)
+      call measure(plan, block, state, work, trial_norm, err)
+      ! where a user pair has no pose the step was too long, like any other that does not help
+      if (allocated(err)) deallocate (err)
+      if (trial_norm < residual_norm) then
+        damping = max(damping*0.2_wp, 1.0e-20_wp)
+        residual_norm = trial_norm
+      else
+        state%q(block%coordinates) = before
+        call measure(plan, block, state, work, residual_norm, err)
+        if (allocated(err)) return
+        damping = max(damping, 1.0e-16_wp)*5.0_wp
+        if (damping > 1.0e6_wp) exit
+      end if
+      if (mod(step, patience) == 0) then
+        if (residual_norm > 0.7_wp*norm_then) exit     ! a least distance that is not zero
+        norm_then = residual_norm
+      end if
+    end do
+  end subroutine reduce_errors
+
+  !> The change of the unknowns that a damped linear step asks for, in work%change. The errors stand
+  !> in work%right.
+  subroutine damped_change(plan, block, state, damping, damped, right, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    real(wp), intent(in) :: damping
+    type(least_squares_type), intent(inout) :: damped
+    real(wp), intent(out) :: right(:)
+    type(block_work_type), intent(inout) :: work
+    integer :: i, m
+
+    m = block%equations
+    call block_jacobian(plan, block, state, work%column_of, damped%a(:m, :))
+    damped%a(m + 1:, :) = 0.0_wp
+    do i = 1, size(block%unknowns)
+      damped%a(m + i, i) = sqrt(damping)
+    end do
+    right(:m) = -work%right
+    right(m + 1:) = 0.0_wp
+    call damped%factorize()
+    call damped%solve(right, work%change)
+    ! no more than about a radian at once: beyond it the closures bend too much to follow
+    work%change = work%change/max(1.0_wp, maxval(abs(work%change)))
+  end subroutine damped_change
+
+  !> Length of the block's errors at the coordinates in `state`; the errors stay in work%right.
+  subroutine measure(plan, block, state, work, residual_norm, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    real(wp), intent(out) :: residual_norm
+    type(error_type), allocatable, intent(out) :: err
+
+    residual_norm = huge(residual_norm)
+    call place_frames(plan, block, state, err)
+    if (allocated(err)) return
+    call block_residual(plan, block, state, work%right)
+    residual_norm = norm2(work%right)
+  end subroutine measure
+
+  !> The closure of a block that is farthest from closed.
+  subroutine find_worst(plan, block, state, outcome)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(assembly_outcome_type), intent(inout) :: outcome
+    real(wp) :: gap
+    integer :: c
+
+    outcome%gap = 0.0_wp
+    do c = block%first_closure, block%last_closure
+      gap = plan%constraints(c)%item%gap(plan, state)
+      if (gap > outcome%gap .or. outcome%worst_closure == 0) then
+        outcome%gap = gap
+        outcome%worst_closure = c
+      end if
+    end do
+  end subroutine find_worst
+
+  !> Take full turns off the coordinates of revolute pairs, so that each is within half a turn of its guess.
+  subroutine unwind(plan, block, guess, state, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    real(wp), intent(in) :: guess(:)
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+    logical :: changed
+
+    changed = .false.
+    do i = 1, size(block%unknowns)
+      associate (step => plan%steps(block%unknowns(i)))
+        if (.not. step%is_screw .or. abs(step%slide) > 0.0_wp) cycle
+        if (abs(state%q(step%coordinate) - guess(i)) <= pi) cycle
+        state%q(step%coordinate) = state%q(step%coordinate) &
+                                   - 2.0_wp*pi*anint((state%q(step%coordinate) - guess(i))/(2.0_wp*pi))
+        changed = .true.
+      end associate
+    end do
+    if (changed) call place_frames(plan, block, state, err)
+  end subroutine unwind
+end module mech9_assembly

@@ -1,0 +1,181 @@
+!> A closed position away from the start: where ranks are judged when the start is, or may be, singular.
+module mech9_generic_position
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type, new_block_work
+  use mech9_assembly, only: assemble_block, assembly_outcome_type
+  implicit none
+  private
+  public :: generic_position_type, find_generic_position, free_block
+
+  !> The position, closed up to some step; made when it is first asked for.
+  type :: generic_position_type
+    type(state_type) :: state
+    logical :: exists = .false.
+    integer :: closed_to = 0               !< last step of the blocks that are closed there
+    integer :: trials = 0                  !< whole positions that were tried
+    type(random_type) :: random
+  end type generic_position_type
+
+  !> Positions that are tried in all, however many blocks ask.
+  integer, parameter :: most_trials = 40
+  !> And positions tried for one block.
+  integer, parameter :: most_trials_each = 12
+  !> Blocks up to this size are also closed with their independent coordinates free.
+  integer, parameter :: largest_free_block = 200
+  !> Less than this, in its units, is no motion of a coordinate. Round-off of a closure moves coordinates of
+  !> a singular position by its root.
+  real(wp), parameter :: moved = 1.0e-4_wp
+
+contains
+
+  !> Make the position closed for all the given blocks; whether that succeeded is in `closed`.
+  !>
+  !> First the independent coordinates are changed at random, by less and less, and the blocks closed
+  !> from coordinates that are changed too: where branches meet at the start, any of them will do. Where
+  !> the independent coordinates cannot move both ways at the start, half of the trials are in vain;
+  !> where no trial closes, all coordinates are set free.
+  subroutine find_generic_position(plan, blocks, start, generic, closed)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: blocks(:)      !< from the first one on
+    type(state_type), intent(in) :: start          !< closed for these blocks
+    type(generic_position_type), intent(inout) :: generic
+    logical, intent(out) :: closed
+    integer :: trial, n
+
+    n = size(blocks)
+    closed = generic%exists .and. generic%closed_to >= blocks(n)%last_step
+    if (closed) return
+    if (generic%exists .and. generic%closed_to >= blocks(n)%first_step - 1) then
+      do trial = 1, 3
+        call extend(plan, blocks(n), start, amount_of(trial), generic, closed)
+        if (closed) return
+      end do
+    end if
+    do trial = 1, most_trials_each
+      if (generic%trials >= most_trials) exit
+      call try_inputs(plan, blocks, start, amount_of(trial), generic, closed)
+      if (closed) return
+    end do
+    if (blocks(n)%last_step <= largest_free_block) call try_all_free(plan, blocks(n), start, generic, closed)
+  end subroutine find_generic_position
+
+  !> How much coordinates are changed in a trial, in their units.
+  pure real(wp) function amount_of(trial)
+    integer, intent(in) :: trial
+
+    amount_of = 0.3_wp/2.0_wp**modulo(trial - 1, 5)
+  end function amount_of
+
+  subroutine try_inputs(plan, blocks, start, amount, generic, closed)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: blocks(:)
+    type(state_type), intent(in) :: start
+    real(wp), intent(in) :: amount
+    type(generic_position_type), intent(inout) :: generic
+    logical, intent(out) :: closed
+    real(wp) :: change
+    integer :: i, k
+
+    generic%trials = generic%trials + 1
+    generic%exists = .true.
+    generic%state = start
+    generic%closed_to = 0
+    closed = .true.
+    do i = 1, size(plan%independent)
+      k = plan%independent(i)
+      change = generic%random%symmetric()
+      ! never by so little that contradicting chains seem to stay closed
+      generic%state%q(k) = start%q(k) + amount*plan%unit_of(k)*(change + sign(0.5_wp, change))
+    end do
+    do i = 1, size(blocks)
+      call extend(plan, blocks(i), start, amount, generic, closed)
+      if (.not. closed) return
+    end do
+  end subroutine try_inputs
+
+  !> Close one more block, from its coordinates at the start, somewhat changed.
+  subroutine extend(plan, block, start, amount, generic, closed)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: start
+    real(wp), intent(in) :: amount
+    type(generic_position_type), intent(inout) :: generic
+    logical, intent(out) :: closed
+    type(block_work_type) :: work
+    type(assembly_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    integer :: i, k
+
+    work = new_block_work(block)
+    do i = 1, size(block%unknowns)
+      k = block%coordinates(i)
+      generic%state%q(k) = start%q(k) + amount*plan%unit_of(k)*generic%random%symmetric()
+    end do
+    call assemble_block(plan, block, generic%state, work, .false., outcome, err)
+    closed = outcome%closed .and. .not. allocated(err)
+    if (closed) generic%closed_to = block%last_step
+  end subroutine extend
+
+  !> Change and close everything up to a block at once, the independent coordinates with the others.
+  subroutine try_all_free(plan, last, start, generic, closed)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: last           !< the last block that must be closed
+    type(state_type), intent(in) :: start
+    type(generic_position_type), intent(inout) :: generic
+    logical, intent(out) :: closed
+    type(block_type) :: block
+    integer :: trial
+
+    block = free_block(plan, last%last_step, last%last_closure)
+    do trial = 1, 3
+      generic%state = start
+      generic%exists = .true.
+      generic%closed_to = 0
+      call extend(plan, block, start, amount_of(trial), generic, closed)
+      ! a chain that cannot move comes back to where it was, and shows nothing new
+      closed = closed .and. has_moved(plan, last, start, generic%state)
+      if (closed) return
+      generic%closed_to = 0
+    end do
+  end subroutine try_all_free
+
+  !> Does some coordinate on the loops of a block differ between two positions?
+  pure logical function has_moved(plan, block, start, state)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: start, state
+    integer :: c, i, k
+
+    has_moved = block%last_closure < block%first_closure
+    do c = block%first_closure, block%last_closure
+      do i = 1, size(plan%closures(c)%loop%steps)
+        k = plan%steps(plan%closures(c)%loop%steps(i))%coordinate
+        has_moved = has_moved .or. abs(state%q(k) - start%q(k)) > moved*plan%unit_of(k)
+      end do
+    end do
+  end function has_moved
+
+  !> All steps and closures up to some as one block with every coordinate unknown. Its equations are right
+  !> only while the paths of the closures are those of whole loops.
+  pure function free_block(plan, last_step, last_closure) result(block)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: last_step, last_closure
+    type(block_type) :: block
+    integer :: i
+
+    block%whole_loops = .true.
+    block%arithmetic = 1
+    block%first_step = 1
+    block%last_step = last_step
+    block%first_closure = 1
+    block%last_closure = last_closure
+    block%unknowns = [(i, i=1, last_step)]
+    block%coordinates = plan%steps(block%unknowns)%coordinate
+    block%equations = sum(plan%closures(:last_closure)%rank)
+    block%chains = plan%closures(:last_closure)%chain
+  end function free_block
+end module mech9_generic_position

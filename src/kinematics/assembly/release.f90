@@ -1,0 +1,86 @@
+!> Closing a mechanism with its independent coordinates set free, and carrying these back to their values.
+!>
+!> A position in which all chains close is found more easily when every coordinate may give way. It
+!> tells what the mechanism can do, and it is a start from which the given values may be reached. The
+!> paths of the closures must be those of whole loops.
+module mech9_release
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block
+  use mech9_assembly, only: assemble_block, assembly_outcome_type
+  use mech9_generic_position, only: free_block
+  implicit none
+  private
+  public :: close_free, carry_inputs, most_free_coordinates
+
+  !> Larger mechanisms are not closed in one piece.
+  integer, parameter :: most_free_coordinates = 500
+  !> The least part of the way that is gone at once.
+  real(wp), parameter :: least_part = 1.0e-4_wp
+
+contains
+
+  !> Close all chains from the coordinates in `state`, all of which may change.
+  subroutine close_free(plan, state, may_restart, outcome, err)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(inout) :: state
+    logical, intent(in) :: may_restart
+    type(assembly_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    type(block_type) :: block
+    type(block_work_type) :: work
+
+    block = free_block(plan, plan%n_coordinates, size(plan%closures))
+    work = new_block_work(block)
+    call assemble_block(plan, block, state, work, may_restart, outcome, err)
+  end subroutine close_free
+
+  !> From a position with all chains closed, move the independent coordinates to given values and keep
+  !> the chains closed; `arrived` says whether that was possible. Angles go the shorter way round.
+  subroutine carry_inputs(plan, target, state, arrived)
+    type(plan_type), intent(in) :: plan
+    real(wp), intent(in) :: target(:)        !< (M): values of the independent coordinates count
+    type(state_type), intent(inout) :: state
+    logical, intent(out) :: arrived
+    type(block_type) :: block
+    type(block_work_type) :: work
+    type(newton_outcome_type) :: newton
+    type(error_type), allocatable :: err
+    real(wp) :: from(size(plan%independent)), way(size(plan%independent)), before(plan%n_coordinates)
+    real(wp) :: done, part
+    integer :: s
+
+    block = free_block(plan, plan%n_coordinates, size(plan%closures))
+    block%unknowns = pack([(s, s=1, plan%n_coordinates)], plan%steps%dependent)
+    block%coordinates = plan%steps(block%unknowns)%coordinate
+    work = new_block_work(block)
+    from = state%q(plan%independent)
+    way = target(plan%independent) - from
+    do s = 1, size(way)
+      associate (step => plan%steps(plan%step_of(plan%independent(s))))
+        if (step%is_screw .and. .not. abs(step%slide) > 0.0_wp) way(s) = way(s) - 2.0_wp*pi*anint(way(s)/(2.0_wp*pi))
+      end associate
+    end do
+    done = 0.0_wp
+    part = 0.1_wp
+    before = state%q
+    do while (done < 1.0_wp .and. part >= least_part)
+      part = min(part, 1.0_wp - done)
+      state%q = before
+      state%q(plan%independent) = from + (done + part)*way
+      if (done + part >= 1.0_wp) state%q(plan%independent) = target(plan%independent)
+      call close_block(plan, block, state, work, newton, err)
+      if (.not. allocated(err) .and. newton%converged .and. newton%correction < 0.5_wp) then
+        before = state%q
+        done = done + part
+        part = 2.0_wp*part
+      else
+        part = 0.25_wp*part
+      end if
+    end do
+    arrived = done >= 1.0_wp
+    state%q = before
+  end subroutine carry_inputs
+end module mech9_release

@@ -1,0 +1,280 @@
+!> One block at one time: Newton's method for its positions, then its exact rates and accelerations.
+module mech9_block_solver
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type
+  use mech9_least_squares, only: least_squares_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
+  use mech9_frame_motion, only: place_frames, nudge_frames, spread_velocities, spread_accelerations
+  use mech9_block_equations, only: block_jacobian, block_rates, block_residual
+  implicit none
+  private
+  public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, solve_motion
+  public :: apply_change, closed_enough, newton_outcome_type, work_count_type, work_of
+
+  !> A chain counts as closed when its independent equations hold to this many times round-off,
+  !> rotations in rad, translations in lengths of the mechanism: a sum over the steps of a loop
+  !> loses a few units.
+  real(wp), parameter :: closed_enough = 32.0_wp*epsilon(1.0_wp)
+  !> Once a correction is this small, the next error is its square: round-off.
+  real(wp), parameter :: last_correction = 1.0e-9_wp
+  !> Angles that change by less are turned on to second order: what is left out is round-off.
+  real(wp), parameter :: small_turn = 1.0e-5_wp
+  !> A correction by less than this is round-off of poses and Jacobians, which stay as they are.
+  real(wp), parameter :: same_place = 8.0_wp*epsilon(1.0_wp)
+  integer, parameter :: most_iterations = 12
+
+  !> How much was done.
+  type :: work_count_type
+    integer(long) :: frames_placed = 0       !< poses of frames
+    integer(long) :: frames_moved = 0        !< their velocities, and their accelerations
+    integer(long) :: factorizations = 0      !< Jacobians of blocks
+    integer(long) :: rates = 0               !< blocks solved for their rates
+    integer(long) :: accelerations = 0       !< blocks solved for their accelerations
+  end type work_count_type
+
+  !> Scratch of one block, sized once.
+  type :: block_work_type
+    real(wp), allocatable :: jacobian(:, :)    !< (equations,unknowns), as it was factorized last
+    type(least_squares_type) :: equations      !< its factors
+    type(planar_chain_type) :: chain           !< the block in arithmetic of its own, where that is used
+    integer, allocatable :: column_of(:)       !< unknown of each of the block's steps, 0 for none
+    real(wp), allocatable :: right(:)          !< (equations)
+    real(wp), allocatable :: change(:)         !< (unknowns)
+    logical :: factors_stay = .false.          !< the Jacobian never changes, and was factorized
+    type(work_count_type) :: count             !< of what was done for the block
+  end type block_work_type
+
+  !> How Newton's method went.
+  type :: newton_outcome_type
+    logical :: converged = .false.
+    integer :: iterations = 0
+    real(wp) :: correction = 0.0_wp      !< of all iterations together, largest coordinate in its unit
+    real(wp) :: contraction = 0.0_wp     !< second correction against the first; 0 where one was enough
+    logical :: factorized = .false.      !< the Jacobian's factors are those of the closed position
+  end type newton_outcome_type
+
+contains
+
+  !> Scratch for a block. With its plan complete, a planar chain of three unknowns gets arithmetic of its own.
+  pure function new_block_work(block, plan) result(work)
+    type(block_type), intent(in) :: block
+    type(plan_type), intent(in), optional :: plan
+    type(block_work_type) :: work
+    integer :: i
+
+    call work%equations%create(block%equations, size(block%unknowns))
+    allocate (work%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
+    allocate (work%column_of(block%last_step - block%first_step + 1), source=0)
+    do i = 1, size(block%unknowns)
+      work%column_of(block%unknowns(i) - block%first_step + 1) = i
+    end do
+    if (present(plan)) work%chain = new_planar_chain(plan, block)
+    allocate (work%right(block%equations), work%change(size(block%unknowns)), source=0.0_wp)
+  end function new_block_work
+
+  !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its
+  !> frames are in place. Whether it converged, and how, is in `outcome`. Fails only where a pair has no pose.
+  subroutine close_block(plan, block, state, work, outcome, err, at_least)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(newton_outcome_type), intent(out) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+    integer, intent(in), optional :: at_least        !< iterations also where the chains are closed enough
+    real(wp) :: size_of_change, previous, residual_norm
+    integer :: least
+
+    least = 0
+    if (present(at_least)) least = at_least
+    previous = 0.0_wp
+    call place_frames(plan, block, state, err)
+    if (allocated(err)) return
+    work%count%frames_placed = work%count%frames_placed + steps_of(block)
+    outcome%converged = size(block%unknowns) == 0
+    do while (.not. outcome%converged)
+      call block_residual(plan, block, state, work%right)
+      residual_norm = maxval(abs(work%right))
+      outcome%converged = residual_norm <= closed_enough .and. outcome%iterations >= least
+      if (outcome%converged) return
+      ! not a number, or no progress
+      if (outcome%iterations == most_iterations .or. .not. residual_norm < huge(residual_norm)) return
+      call factorize_block(plan, block, state, work)
+      work%right = -work%right
+      call work%equations%solve(work%right, work%change)
+      call apply_change(plan, block, work%change, state)
+      outcome%iterations = outcome%iterations + 1
+      size_of_change = maxval(abs(work%change))
+      if (size_of_change <= same_place) then
+        outcome%factorized = .true.
+      else
+        work%count%frames_placed = work%count%frames_placed + steps_of(block)
+        if (size_of_change <= small_turn) then
+          call nudge_frames(plan, block, work%change, state, err)
+        else
+          call place_frames(plan, block, state, err)
+        end if
+      end if
+      if (allocated(err)) return
+      outcome%converged = size_of_change <= last_correction
+      outcome%correction = outcome%correction + size_of_change
+      if (outcome%iterations == 2) outcome%contraction = size_of_change/max(previous, tiny(previous))
+      previous = size_of_change
+    end do
+  end subroutine close_block
+
+  !> Jacobian of a block at the position in `state`, factorized.
+  subroutine factorize_block(plan, block, state, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(inout) :: work
+
+    if (work%factors_stay) return
+    if (work%chain%used) then
+      call chain_jacobian(plan%planar, work%chain, state%planar, work%jacobian)
+    else
+      call block_jacobian(plan, block, state, work%column_of, work%jacobian)
+    end if
+    call work%equations%factorize(work%jacobian)
+    work%count%factorizations = work%count%factorizations + 1
+    work%factors_stay = block%is_constant
+  end subroutine factorize_block
+
+  !> What was done for all blocks together, and before them.
+  pure function work_of(blocks, before) result(all)
+    type(block_work_type), intent(in) :: blocks(:)
+    type(work_count_type), intent(in), optional :: before   !< nothing unless given
+    type(work_count_type) :: all
+
+    if (present(before)) all = before
+    all%frames_placed = all%frames_placed + sum(blocks%count%frames_placed)
+    all%frames_moved = all%frames_moved + sum(blocks%count%frames_moved)
+    all%factorizations = all%factorizations + sum(blocks%count%factorizations)
+    all%rates = all%rates + sum(blocks%count%rates)
+    all%accelerations = all%accelerations + sum(blocks%count%accelerations)
+  end function work_of
+
+  !> Frames that a block makes.
+  pure integer function steps_of(block)
+    type(block_type), intent(in) :: block
+
+    steps_of = block%last_step - block%first_step + 1
+  end function steps_of
+
+  !> Add a change, given in units of the coordinates, to the block's dependent coordinates.
+  pure subroutine apply_change(plan, block, change, state)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    real(wp), intent(in), contiguous :: change(:)
+    type(state_type), intent(inout) :: state
+
+    call add_at(size(change), block%coordinates, change, plan%unit_of, state%q)
+  end subroutine apply_change
+
+  !> Rates of the block's dependent coordinates, J_d dq_d = -J_i dq_i, and velocities of its frames.
+  !> The Jacobian must be factorized at this position.
+  subroutine solve_rates(plan, block, state, work, remainder, no_more)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    real(wp), intent(out), optional :: remainder   !< what no rates of the unknowns can make up for
+    logical, intent(in), optional :: no_more       !< accelerations are not asked for: velocities only as `last_moved` wants
+    integer :: last
+
+    work%count%rates = work%count%rates + 1
+    if (work%chain%used .and. work%equations%by_cofactors .and. .not. present(remainder)) then
+      last = block%last_step
+      if (present(no_more)) last = merge(work%chain%last_moved, last, no_more)
+      call chain_rates(plan%planar, work%chain, work%equations%inverse, last, state%dq, state%planar)
+      work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
+      return
+    end if
+    if (present(remainder)) remainder = 0.0_wp
+    call clear_at(size(block%unknowns), block%coordinates, state%dq)
+    if (block%equations == 0) then
+      call spread_velocities(plan, block, state)
+      work%count%frames_moved = work%count%frames_moved + steps_of(block)
+      return
+    end if
+    call block_rates(plan, block, 1, state, work%right)
+    work%right = -work%right
+    if (present(remainder)) then
+      call work%equations%solve(work%right, work%change, remainder)
+    else
+      call work%equations%solve(work%right, work%change)
+    end if
+    call add_at(size(work%change), block%coordinates, work%change, plan%unit_of, state%dq)
+    call spread_velocities(plan, block, state)
+    work%count%frames_moved = work%count%frames_moved + steps_of(block)
+  end subroutine solve_rates
+
+  !> Rates and accelerations of the block's dependent coordinates and the motion of its frames. The Jacobian must be
+  !> factorized at this position.
+  subroutine solve_motion(plan, block, state, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+
+    if (work%chain%used .and. work%equations%by_cofactors) then
+      call chain_motion(plan%planar, work%chain, work%equations%inverse, state%dq, state%ddq, state%planar)
+      work%count%rates = work%count%rates + 1
+      work%count%accelerations = work%count%accelerations + 1
+      work%count%frames_moved = work%count%frames_moved + steps_of(block) &
+                                + (work%chain%last_moved - block%first_step + 1)
+    else
+      call solve_rates(plan, block, state, work)
+      call solve_accelerations(plan, block, state, work)
+    end if
+  end subroutine solve_motion
+
+  !> Accelerations of the block's dependent coordinates, J_d ddq_d = -J_i ddq_i - dJ/dt dq, and of its frames.
+  !> The Jacobian must be factorized at this position and the rates be known.
+  subroutine solve_accelerations(plan, block, state, work)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    integer :: last
+
+    work%count%accelerations = work%count%accelerations + 1
+    last = min(block%last_step, block%last_moved)
+    call clear_at(size(block%unknowns), block%coordinates, state%ddq)
+    if (size(block%unknowns) > 0) then
+      call block_rates(plan, block, 2, state, work%right)
+      work%right = -work%right
+      call work%equations%solve(work%right, work%change)
+      call add_at(size(work%change), block%coordinates, work%change, plan%unit_of, state%ddq)
+    end if
+    call spread_accelerations(plan, block, last, state)
+    work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
+  end subroutine solve_accelerations
+
+  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+
+  pure subroutine clear_at(n, places, values)
+    integer, intent(in) :: n, places(n)
+    real(wp), intent(inout) :: values(*)
+    integer :: i
+
+    do i = 1, n
+      values(places(i)) = 0.0_wp
+    end do
+  end subroutine clear_at
+
+  !> Add a change, given in units, to some of the values.
+  pure subroutine add_at(n, places, change, unit_of, values)
+    integer, intent(in) :: n, places(n)
+    real(wp), intent(in) :: change(n), unit_of(*)
+    real(wp), intent(inout) :: values(*)
+    integer :: i
+
+    do i = 1, n
+      values(places(i)) = values(places(i)) + change(i)*unit_of(places(i))
+    end do
+  end subroutine add_at
+end module mech9_block_solver

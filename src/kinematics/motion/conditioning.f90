@@ -1,0 +1,80 @@
+!> How near closed chains are to a singular position: the least singular value of their Jacobians.
+!>
+!> Rotations count in rad, lengths in the mechanism's; 1 where there is no closed chain.
+module mech9_conditioning
+  use mech9_kinds, only: wp
+  use mech9_block_solver, only: block_work_type
+  implicit none
+  private
+  public :: conditioning_type
+
+  !> The least singular value is looked at when the least pivot has fallen to this part.
+  real(wp), parameter :: worth_a_look = 0.99_wp
+  !> Of values that differ by no more than round-off, after a whole turn for example, the first one counts.
+  real(wp), parameter :: clearly_less = 1.0_wp - 1.0e-12_wp
+
+  !> The worst of several positions.
+  type :: conditioning_type
+    real(wp) :: least = 1.0_wp            !< least singular value of any block
+    real(wp) :: t = 0.0_wp                !< when it was met [s]
+    integer :: block = 0                  !< and in which block; 0: none yet
+    real(wp) :: pivot = huge(1.0_wp)      !< least pivot when it was looked at last
+  contains
+    procedure :: glance
+    procedure :: look
+  end type conditioning_type
+
+contains
+
+  !> Take a position into account whose Jacobians stand factorized in `work`. Not every one is looked at: pivots
+  !> tell when it is worth while.
+  subroutine glance(self, t, work)
+    class(conditioning_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    type(block_work_type), intent(inout) :: work(:)
+    real(wp) :: pivot, least
+    integer :: b
+
+    pivot = huge(pivot)
+    do b = 1, size(work)
+      if (work(b)%equations%n > 0) pivot = min(pivot, work(b)%equations%least_pivot())
+    end do
+    if (pivot >= worth_a_look*self%pivot) return
+    self%pivot = pivot
+    call self%look(t, work, least)
+  end subroutine glance
+
+  !> The same without exception; `least` is that of this position.
+  subroutine look(self, t, work, least)
+    class(conditioning_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    type(block_work_type), intent(inout) :: work(:)
+    real(wp), intent(out) :: least
+    integer :: block
+
+    call find_conditioning(work, least, block)
+    if (block == 0 .or. (least >= clearly_less*self%least .and. self%block > 0)) return
+    self%least = least
+    self%t = t
+    self%block = block
+  end subroutine look
+
+  !> Least singular value of any block, and which; 1 and 0 where there is no closed chain.
+  subroutine find_conditioning(work, least, block)
+    type(block_work_type), intent(inout) :: work(:)
+    real(wp), intent(out) :: least
+    integer, intent(out) :: block
+    real(wp) :: value
+    integer :: b
+
+    least = 1.0_wp
+    block = 0
+    do b = 1, size(work)
+      if (work(b)%equations%n == 0) cycle
+      value = work(b)%equations%least_singular_value()
+      if (block > 0 .and. value >= least) cycle
+      least = value
+      block = b
+    end do
+  end subroutine find_conditioning
+end module mech9_conditioning

@@ -1,0 +1,146 @@
+!> Frames that keep one normal: poses, velocities and accelerations in the plane's axes, and how these look in space.
+module mech9_planar_arithmetic
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_pose, only: transformed
+  use mech9_plan, only: plan_type, arithmetic_type
+  use mech9_planar_motion, only: new_planar_motion, place_in_plane, nudge_in_plane, planar_velocities, planar_accelerations, &
+    to_space
+  use mech9_state, only: state_type
+  implicit none
+  private
+  public :: planar_arithmetic_type
+
+  !> Chosen for each block; it has no data of its own.
+  type, extends(arithmetic_type) :: planar_arithmetic_type
+  contains
+    procedure, nopass :: make_frames
+    procedure, nopass :: place
+    procedure, nopass :: nudge
+    procedure, nopass :: spread_velocities
+    procedure, nopass :: spread_accelerations
+    procedure, nopass :: link_motion
+    procedure, nopass :: point_motion
+    procedure, nopass :: step_screw
+  end type planar_arithmetic_type
+
+contains
+
+  !> Room in a state for frames 0 .. m, all in the place of frame 0 and at rest.
+  pure subroutine make_frames(m, state)
+    integer, intent(in) :: m                      !< steps
+    type(state_type), intent(inout) :: state
+
+    state%planar = new_planar_motion(m)
+  end subroutine make_frames
+
+  !> Poses of frames and the ways of their slides, from the coordinates in `state`.
+  subroutine place(plan, first, last, state, err)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err   !< never allocated: user pairs are not planar
+
+    call place_in_plane(plan%planar, first, last, state%q, state%planar)
+  end subroutine place
+
+  !> The same after a small change of the coordinates of some steps.
+  subroutine nudge(plan, first, last, changed, change, state, err)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    integer, intent(in) :: changed(:)             !< steps
+    real(wp), intent(in) :: change(:)             !< of their coordinates, in units of these
+    type(state_type), intent(inout) :: state      !< its coordinates are changed already
+    type(error_type), allocatable, intent(out) :: err   !< never allocated
+
+    call nudge_in_plane(plan%planar, first, last, changed, change, state%q, state%planar)
+  end subroutine nudge
+
+  !> Velocities of frames from the rates in `state`.
+  pure subroutine spread_velocities(plan, first, last, state)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    type(state_type), intent(inout) :: state
+
+    call planar_velocities(plan%planar, first, last, state%dq, state%planar)
+  end subroutine spread_velocities
+
+  !> Accelerations of frames from the rates and accelerations in `state`.
+  pure subroutine spread_accelerations(plan, first, last, state)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    type(state_type), intent(inout) :: state
+
+    call planar_accelerations(plan%planar, first, last, state%dq, state%ddq, state%planar)
+  end subroutine spread_accelerations
+
+  !> A link's own system and its motion, in the system of link 1.
+  pure subroutine link_motion(plan, state, link, r, p, omega, v)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: link
+    real(wp), intent(out) :: r(3, 3)              !< rotation
+    real(wp), intent(out) :: p(3)                 !< origin [m]
+    real(wp), intent(out) :: omega(3)             !< [rad/s]
+    real(wp), intent(out) :: v(3)                 !< of the origin [m/s]
+    real(wp) :: x, y
+    integer :: i, j
+
+    i = plan%frame_of(link)
+    associate (f => state%planar%pose(:, i), velocity => state%planar%velocity(:, i), in_frame => plan%planar%link_in_frame(link))
+      do j = 1, 3
+        r(:, j) = to_space(plan%planar, f(1)*in_frame%r(1, j) - f(2)*in_frame%r(2, j), &
+                           f(2)*in_frame%r(1, j) + f(1)*in_frame%r(2, j), in_frame%r(3, j))
+      end do
+      x = f(1)*in_frame%p(1) - f(2)*in_frame%p(2)
+      y = f(2)*in_frame%p(1) + f(1)*in_frame%p(2)
+      p = to_space(plan%planar, f(3) + x, f(4) + y, in_frame%p(3)) + plan%origin
+      omega = to_space(plan%planar, 0.0_wp, 0.0_wp, velocity(1))
+      v = to_space(plan%planar, velocity(2) - velocity(1)*y, velocity(3) + velocity(1)*x, 0.0_wp)
+    end associate
+  end subroutine link_motion
+
+  !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1.
+  pure subroutine point_motion(plan, state, link, place, position, velocity, acceleration)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: link
+    real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
+    real(wp), intent(out) :: position(3)          !< [m]
+    real(wp), intent(out), optional :: velocity(3)      !< [m/s]
+    real(wp), intent(out), optional :: acceleration(3)  !< [m/s^2]
+    real(wp) :: in_frame(3), x, y
+    integer :: i
+
+    i = plan%frame_of(link)
+    in_frame = transformed(plan%planar%link_in_frame(link), place)
+    associate (f => state%planar%pose(:, i), v => state%planar%velocity(:, i), a => state%planar%acceleration(:, i))
+      x = f(1)*in_frame(1) - f(2)*in_frame(2)
+      y = f(2)*in_frame(1) + f(1)*in_frame(2)
+      position = to_space(plan%planar, f(3) + x, f(4) + y, in_frame(3)) + plan%origin
+      if (present(velocity)) velocity = to_space(plan%planar, v(2) - v(1)*y, v(3) + v(1)*x, 0.0_wp)
+      if (present(acceleration)) &
+        acceleration = to_space(plan%planar, a(2) - a(1)*y - v(1)**2*x, a(3) + a(1)*x - v(1)**2*y, 0.0_wp)
+    end associate
+  end subroutine point_motion
+
+  !> The screw of a step at its new frame's origin, in the axes of frame 0.
+  pure subroutine step_screw(plan, state, s, w, v, place)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: s                      !< step
+    real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
+    real(wp), intent(out) :: v(3)                 !< [m per unit of q]
+    real(wp), intent(out) :: place(3)             !< [m]
+
+    associate (planar => plan%planar, pose => state%planar%pose(:, s), slide => state%planar%slide(:, s))
+      w = to_space(planar, 0.0_wp, 0.0_wp, planar%steps(s)%turn)
+      v = to_space(planar, slide(1), slide(2), 0.0_wp)
+      place = to_space(planar, pose(3), pose(4), planar%height(s))
+    end associate
+  end subroutine step_screw
+end module mech9_planar_arithmetic

@@ -1,0 +1,263 @@
+!> Closures in planar arithmetic: three equations each, an angle and two ways in lengths of the mechanism, written at the origin
+!> of the loop's base frame, as in space.
+module mech9_planar_closure
+  use mech9_kinds, only: wp
+  use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
+  use mech9_planar_formulas, only: step_column, add_rate, add_swing, stem_difference, rows_at_base
+  use mech9_plan, only: plan_type, loop_type, constraint_type
+  use mech9_state, only: planar_motion_type, state_type
+  implicit none
+  private
+  public :: planar_closure_constraint_type, planar_bias_rates, planar_difference
+
+  !> The constraint of one closure.
+  type, extends(constraint_type) :: planar_closure_constraint_type
+    integer :: closure = 0                        !< its number
+  contains
+    procedure :: residual
+    procedure :: jacobian
+    procedure :: column
+    procedure :: rates
+    procedure :: gap
+  end type planar_closure_constraint_type
+
+contains
+
+  !> The angle and the way from the target to the closing frame.
+  pure subroutine residual(self, plan, state, values)
+    class(planar_closure_constraint_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: values(:)      !< (3)
+    real(wp) :: error(3)
+
+    associate (closure => plan%planar%closures(self%closure), m => size(plan%planar%steps))
+      call find_error(closure, m, state%planar%pose, error)
+      call rows_at_base(closure, 1.0_wp/plan%length, m, state%planar%pose, error, values)
+    end associate
+  end subroutine residual
+
+  !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
+  pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
+    class(planar_closure_constraint_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    type(loop_type), intent(in) :: loop                 !< the steps
+    integer, intent(in) :: first                        !< earlier steps are left out
+    integer, intent(in), contiguous :: column_of(:)     !< column of step `first` and each later one; 0: none
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: row                          !< before the first row
+    real(wp), intent(inout), contiguous :: matrix(:, :)
+
+    call fill_columns(size(plan%planar%steps), plan%planar%steps, plan%planar%closures(self%closure)%base, &
+                      1.0_wp/plan%length, size(loop%steps), loop%steps, loop%signs, first, size(column_of), column_of, &
+                      state%planar%pose, state%planar%slide, size(matrix, 1), size(matrix, 2), row, matrix)
+  end subroutine jacobian
+
+  !> Derivatives with respect to the coordinate of one step, in its unit.
+  pure subroutine column(self, plan, s, sign, state, values)
+    class(planar_closure_constraint_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: s                            !< step
+    real(wp), intent(in) :: sign                        !< of the step in the loop
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: values(:)      !< (3)
+
+    call step_column(plan%planar%steps(s), sign, state%planar%pose(:, s), state%planar%slide(:, s), &
+                     state%planar%pose(3:4, plan%planar%closures(self%closure)%base), 1.0_wp/plan%length, values)
+  end subroutine column
+
+  !> Time derivatives at the rates, or rates and accelerations, in `state`. For the second ones velocities must be known of all
+  !> frames of the loop.
+  pure subroutine rates(self, plan, order, state, values)
+    class(planar_closure_constraint_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: order                        !< 1 or 2
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: values(:)      !< (3)
+    real(wp) :: opening(3)
+
+    associate (closure => plan%planar%closures(self%closure), part => plan%closures(self%closure)%part, &
+               steps => plan%planar%steps, motion => state%planar)
+      if (order == 1) then
+        call sum_rates(closure, size(steps), steps, size(part%steps), part%steps, part%signs, part%stems, state%dq, &
+                       motion%pose, motion%slide, motion%velocity, opening)
+      else
+        call sum_rates(closure, size(steps), steps, size(part%steps), part%steps, part%signs, part%stems, state%ddq, &
+                       motion%pose, motion%slide, motion%acceleration, opening)
+        call sum_swing(closure, size(steps), steps, size(part%steps), part%steps, part%signs, state%dq, motion%pose, &
+                       motion%slide, motion%velocity, opening)
+      end if
+      call rows_at_base(closure, 1.0_wp/plan%length, size(steps), motion%pose, opening, values)
+    end associate
+  end subroutine rates
+
+  !> How far the closure is from closed: a length [m], its angle times the mechanism's size.
+  pure real(wp) function gap(self, plan, state)
+    class(planar_closure_constraint_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    real(wp) :: error(3)
+
+    call find_error(plan%planar%closures(self%closure), size(plan%planar%steps), state%planar%pose, error)
+    gap = max(sqrt(error(2)**2 + error(3)**2), plan%length*abs(error(1)))
+  end function gap
+
+  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+
+  !> The angle and the way from the target to the closing frame.
+  pure subroutine find_error(closure, m, f, error)
+    type(planar_closure_type), intent(in) :: closure
+    integer, intent(in) :: m                            !< steps
+    real(wp), intent(in) :: f(4, 0:m)                   !< poses of the frames [m]
+    real(wp), intent(out) :: error(3)                   !< [rad, m, m]
+    real(wp) :: c, s
+    integer :: i, t
+
+    i = closure%closing
+    t = closure%target
+    c = f(1, t)*closure%cosine - f(2, t)*closure%sine
+    s = f(2, t)*closure%cosine + f(1, t)*closure%sine
+    error(1) = angle_of(c*f(1, i) + s*f(2, i), c*f(2, i) - s*f(1, i))
+    error(2) = f(3, i) - f(3, t) - (f(1, t)*closure%place(1) - f(2, t)*closure%place(2))
+    error(3) = f(4, i) - f(4, t) - (f(2, t)*closure%place(1) + f(1, t)*closure%place(2))
+  end subroutine find_error
+
+  !> The angle with a given cosine and sine; small ones by the series of the arc sine.
+  pure real(wp) function angle_of(c, s) result(angle)
+    real(wp), intent(in) :: c                           !< cosine
+    real(wp), intent(in) :: s                           !< sine
+
+    if (c > 0.0_wp .and. abs(s) < 1.0e-2_wp) then
+      angle = s*(1.0_wp + s**2*(1.0_wp/6.0_wp + s**2*(3.0_wp/40.0_wp + s**2*(5.0_wp/112.0_wp))))
+    else
+      angle = atan2(s, c)
+    end if
+  end function angle_of
+
+  !> Columns of the Jacobian, see `jacobian`.
+  pure subroutine fill_columns(k, flat, base, per_length, n_steps, steps, signs, first, n_columns, column_of, f, slide, &
+                               m, n, row, matrix)
+    integer, intent(in) :: k                            !< steps of the plan
+    type(planar_step_type), intent(in) :: flat(k)
+    integer, intent(in) :: base                         !< frame at which the closure is written
+    real(wp), intent(in) :: per_length                  !< one over the mechanism's size [1/m]
+    integer, intent(in) :: n_steps                      !< of the loop
+    integer, intent(in) :: steps(n_steps)
+    real(wp), intent(in) :: signs(n_steps)              !< of the steps in the loop
+    integer, intent(in) :: first                        !< earlier steps are left out
+    integer, intent(in) :: n_columns                    !< steps from `first` on
+    integer, intent(in) :: column_of(n_columns)         !< column of each of these; 0: none
+    real(wp), intent(in) :: f(4, 0:k)                   !< poses of the frames [m]
+    real(wp), intent(in) :: slide(2, k)                 !< velocities of the origins per unit rate
+    integer, intent(in) :: m                            !< rows
+    integer, intent(in) :: n                            !< columns
+    integer, intent(in) :: row                          !< before the first row
+    real(wp), intent(inout) :: matrix(m, n)
+    integer :: i, j, s
+
+    do i = 1, n_steps
+      s = steps(i)
+      if (s < first) cycle
+      j = column_of(s - first + 1)
+      if (j == 0) cycle
+      call step_column(flat(s), signs(i), f(:, s), slide(:, s), f(3:4, base), per_length, matrix(row + 1:row + 3, j))
+    end do
+  end subroutine fill_columns
+
+  !> Motion of the closing frame relative to the target, at the closing frame's origin, that rates (or accelerations) of the
+  !> coordinates in the closure's part give, and the frames at which that begins.
+  pure subroutine sum_rates(closure, m, flat, n_steps, steps, signs, stems, rates, f, slide, v, opening)
+    type(planar_closure_type), intent(in) :: closure
+    integer, intent(in) :: m                            !< steps of the plan
+    type(planar_step_type), intent(in) :: flat(m)
+    integer, intent(in) :: n_steps                      !< of the part
+    integer, intent(in) :: steps(n_steps)
+    real(wp), intent(in) :: signs(n_steps)              !< of the steps in the loop
+    integer, intent(in) :: stems(2)                     !< frames at which the part begins
+    real(wp), intent(in) :: rates(m)                    !< of the coordinates
+    real(wp), intent(in) :: f(4, 0:m)                   !< poses of the frames [m]
+    real(wp), intent(in) :: slide(2, m)                 !< velocities of the origins per unit rate
+    real(wp), intent(in) :: v(3, 0:m)                   !< motions of the frames
+    real(wp), intent(out) :: opening(3)
+    integer :: i, s
+
+    call stem_difference(m, stems, f(3:4, closure%closing), f, v, opening)
+    do i = 1, n_steps
+      s = steps(i)
+      call add_rate(flat(s), signs(i)*rates(flat(s)%coordinate), f(:, s), slide(:, s), f(3:4, closure%closing), opening)
+    end do
+  end subroutine sum_rates
+
+  !> Add the accelerations that velocities give: of the steps in the closure's part, and of the target that turns.
+  pure subroutine sum_swing(closure, m, flat, n_steps, steps, signs, dq, f, slide, v, opening)
+    type(planar_closure_type), intent(in) :: closure
+    integer, intent(in) :: m                            !< steps of the plan
+    type(planar_step_type), intent(in) :: flat(m)
+    integer, intent(in) :: n_steps                      !< of the part
+    integer, intent(in) :: steps(n_steps)
+    real(wp), intent(in) :: signs(n_steps)              !< of the steps in the loop
+    real(wp), intent(in) :: dq(m)                       !< rates of the coordinates [rad/s, m/s]
+    real(wp), intent(in) :: f(4, 0:m)                   !< poses of the frames [m]
+    real(wp), intent(in) :: slide(2, m)                 !< velocities of the origins per unit rate
+    real(wp), intent(in) :: v(3, 0:m)                   !< velocities of the frames [rad/s, m/s]
+    real(wp), intent(inout) :: opening(3)               !< [rad/s^2, m/s^2]
+    integer :: i, s, p
+
+    do i = 1, n_steps
+      s = steps(i)
+      p = flat(s)%parent
+      call add_swing(flat(s), signs(i), dq(flat(s)%coordinate), f(3, s) - f(3, p), f(4, s) - f(4, p), slide(:, s), v(1, p), &
+                     opening(2:3))
+    end do
+    opening(2:3) = opening(2:3) + v(1, closure%target)**2*(f(3:4, closure%closing) - f(3:4, closure%target))
+  end subroutine sum_swing
+
+  !> Second time derivatives of the closures first .. last, from the accelerations of their frames.
+  pure subroutine planar_bias_rates(planar, first, last, motion, rates)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: first                        !< closure
+    integer, intent(in) :: last                         !< closure
+    type(planar_motion_type), intent(in) :: motion
+    real(wp), intent(out) :: rates(3, first:last)
+    integer :: c
+
+    do c = first, last
+      associate (closure => planar%closures(c), a => motion%acceleration)
+        call find_difference(closure, 1.0_wp/planar%length, size(planar%steps), motion%pose, a(:, closure%closing), &
+                             a(:, closure%target), motion%velocity(1, closure%target)**2, rates(:, c))
+      end associate
+    end do
+  end subroutine planar_bias_rates
+
+  !> Rows of the difference of two velocities: that of the closing frame less the one that the target carries along there.
+  pure subroutine planar_difference(planar, c, motion, closing, target, rows)
+    type(planar_plan_type), intent(in) :: planar
+    integer, intent(in) :: c                            !< closure
+    type(planar_motion_type), intent(in) :: motion
+    real(wp), intent(in) :: closing(3)                  !< angular velocity, and velocity of the frame's own origin
+    real(wp), intent(in) :: target(3)                   !< the same of the target
+    real(wp), intent(out) :: rows(3)
+
+    call find_difference(planar%closures(c), 1.0_wp/planar%length, size(planar%steps), motion%pose, closing, target, &
+                         0.0_wp, rows)
+  end subroutine planar_difference
+
+  !> Rows of the difference of two motions.
+  pure subroutine find_difference(closure, per_length, m, f, closing, target, square, rows)
+    type(planar_closure_type), intent(in) :: closure
+    real(wp), intent(in) :: per_length                  !< one over the mechanism's size [1/m]
+    integer, intent(in) :: m                            !< steps
+    real(wp), intent(in) :: f(4, 0:m)                   !< poses of the frames [m]
+    real(wp), intent(in) :: closing(3)                  !< motion of the closing frame
+    real(wp), intent(in) :: target(3)                   !< motion of the target
+    real(wp), intent(in) :: square                      !< of the target's angular velocity, between accelerations
+    real(wp), intent(out) :: rows(3)
+    real(wp) :: x, y
+
+    x = f(3, closure%closing) - f(3, closure%target)
+    y = f(4, closure%closing) - f(4, closure%target)
+    call rows_at_base(closure, per_length, m, f, [closing(1) - target(1), &
+                                                  closing(2) - target(2) + target(1)*y + square*x, &
+                                                  closing(3) - target(3) - target(1)*x + square*y], rows)
+  end subroutine find_difference
+end module mech9_planar_closure

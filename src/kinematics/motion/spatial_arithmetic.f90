@@ -1,0 +1,294 @@
+!> Frames in space: poses (10), velocities and accelerations along the steps of a plan, (14)-(16) by recursion.
+module mech9_spatial_arithmetic
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_sine_cosine, only: cosines_and_sines
+  use mech9_rotation, only: turn, combine, cross, turn_on
+  use mech9_pose, only: transformed
+  use mech9_pair, only: pair_motion_type, reversed_motion
+  use mech9_plan, only: plan_type, step_type, arithmetic_type
+  use mech9_state, only: state_type
+  implicit none
+  private
+  public :: spatial_arithmetic_type
+
+  !> Chosen for each block; it has no data of its own.
+  type, extends(arithmetic_type) :: spatial_arithmetic_type
+  contains
+    procedure, nopass :: make_frames
+    procedure, nopass :: place
+    procedure, nopass :: nudge
+    procedure, nopass :: spread_velocities
+    procedure, nopass :: spread_accelerations
+    procedure, nopass :: link_motion
+    procedure, nopass :: point_motion
+    procedure, nopass :: step_screw
+  end type spatial_arithmetic_type
+
+contains
+
+  !> Room in a state for frames 0 .. m, all in the place of frame 0 and at rest.
+  pure subroutine make_frames(m, state)
+    integer, intent(in) :: m                      !< steps
+    type(state_type), intent(inout) :: state
+    integer :: i
+
+    allocate (state%r(3, 3, 0:m), state%p(3, 0:m), source=0.0_wp)
+    allocate (state%angle(m), state%turn(2, m), source=0.0_wp)
+    state%turn(1, :) = 1.0_wp
+    allocate (state%axis_w(3, m), state%axis_v(3, m), source=0.0_wp)
+    allocate (state%axis_w_rate(3, m), state%axis_v_rate(3, m), source=0.0_wp)
+    allocate (state%omega(3, 0:m), state%v(3, 0:m), state%alpha(3, 0:m), state%a(3, 0:m), source=0.0_wp)
+    do i = 1, 3
+      state%r(i, i, :) = 1.0_wp
+    end do
+  end subroutine make_frames
+
+  !> Poses of frames and the screws of their steps, from the coordinates in `state`.
+  subroutine place(plan, first, last, state, err)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    integer :: s
+
+    do s = first, last
+      state%angle(s) = plan%steps(s)%turn*(state%q(plan%steps(s)%coordinate) + plan%steps(s)%offset)
+    end do
+    call cosines_and_sines(last - first + 1, state%angle(first:last), state%turn(:, first:last))
+    call compose_frames(plan, first, last, state, err)
+  end subroutine place
+
+  !> The same after a small change of the coordinates of some steps.
+  subroutine nudge(plan, first, last, changed, change, state, err)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    integer, intent(in) :: changed(:)             !< steps
+    real(wp), intent(in) :: change(:)             !< of their coordinates, in units of these
+    type(state_type), intent(inout) :: state      !< its coordinates are changed already
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    do i = 1, size(changed)
+      associate (step => plan%steps(changed(i)))
+        if (abs(step%turn) > 0.0_wp) &
+          call turn_on(step%turn*change(i)*plan%unit_of(step%coordinate), state%turn(:, changed(i)))
+      end associate
+    end do
+    call compose_frames(plan, first, last, state, err)
+  end subroutine nudge
+
+  !> Poses of frames from the cosines and sines of their steps.
+  subroutine compose_frames(plan, first, last, state, err)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    integer :: s
+
+    do s = first, last
+      if (plan%steps(s)%is_screw) then
+        call place_screw(plan%steps(s), state%q(plan%steps(s)%coordinate), state%turn(1, s), state%turn(2, s), &
+                         state%r(:, :, plan%steps(s)%parent), state%p(:, plan%steps(s)%parent), &
+                         state%r(:, :, s), state%p(:, s), state%axis_w(:, s), state%axis_v(:, s))
+      else
+        call place_user(plan, s, state, err)
+        if (allocated(err)) return
+      end if
+    end do
+  end subroutine compose_frames
+
+  !> One step along a fixed axis: constant pose, then turn about and slide along z.
+  pure subroutine place_screw(step, q, c, s, r_parent, p_parent, r, p, axis_w, axis_v)
+    type(step_type), intent(in) :: step
+    real(wp), intent(in) :: q                     !< its coordinate [rad, m]
+    real(wp), intent(in) :: c                     !< cosine of its turn
+    real(wp), intent(in) :: s                     !< sine of its turn
+    real(wp), intent(in) :: r_parent(3, 3)        !< rotation of the parent frame, in the axes of frame 0
+    real(wp), intent(in) :: p_parent(3)           !< origin of the parent frame, from that of frame 0 [m]
+    real(wp), intent(out) :: r(3, 3)              !< rotation of the new frame
+    real(wp), intent(out) :: p(3)                 !< its origin [m]
+    real(wp), intent(out) :: axis_w(3)            !< angular velocity per unit rate
+    real(wp), intent(out) :: axis_v(3)            !< velocity of the origin per unit rate
+    real(wp) :: advance, ex(3), ey(3), ez(3)
+    integer :: i
+
+    advance = step%slide*(q + step%offset)
+    do i = 1, 3
+      ex(i) = r_parent(i, 1)*step%before%r(1, 1) + r_parent(i, 2)*step%before%r(2, 1) + r_parent(i, 3)*step%before%r(3, 1)
+      ey(i) = r_parent(i, 1)*step%before%r(1, 2) + r_parent(i, 2)*step%before%r(2, 2) + r_parent(i, 3)*step%before%r(3, 2)
+      ez(i) = r_parent(i, 1)*step%before%r(1, 3) + r_parent(i, 2)*step%before%r(2, 3) + r_parent(i, 3)*step%before%r(3, 3)
+      p(i) = p_parent(i) + r_parent(i, 1)*step%before%p(1) + r_parent(i, 2)*step%before%p(2) &
+             + r_parent(i, 3)*step%before%p(3) + advance*ez(i)
+    end do
+    r(:, 1) = c*ex + s*ey
+    r(:, 2) = c*ey - s*ex
+    r(:, 3) = ez
+    axis_w = step%turn*ez
+    axis_v = step%slide*ez
+  end subroutine place_screw
+
+  !> One step through a pair that has no fixed axis.
+  subroutine place_user(plan, s, state, err)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: s                      !< step
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    type(pair_motion_type) :: motion
+    real(wp) :: r_departing(3, 3), p_departing(3)
+
+    associate (step => plan%steps(s))
+      call plan%pairs(step%coordinate)%pair%evaluate(state%q(step%coordinate), motion, err)
+      if (allocated(err)) return
+      if (step%reversed) motion = reversed_motion(motion)
+      r_departing = combine(state%r(:, :, step%parent), step%before%r)
+      p_departing = state%p(:, step%parent) + turn(state%r(:, :, step%parent), step%before%p)
+    end associate
+    state%r(:, :, s) = combine(r_departing, motion%pose%r)
+    state%p(:, s) = p_departing + turn(r_departing, motion%pose%p)
+    state%axis_w(:, s) = turn(r_departing, motion%w)
+    state%axis_v(:, s) = turn(r_departing, motion%v)
+    state%axis_w_rate(:, s) = turn(r_departing, motion%w_rate)
+    state%axis_v_rate(:, s) = turn(r_departing, motion%v_rate)
+  end subroutine place_user
+
+  !> Velocities of frames from the rates in `state`.
+  pure subroutine spread_velocities(plan, first, last, state)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    type(state_type), intent(inout) :: state
+
+    call find_velocities(size(plan%steps), plan%steps, first, last, state%dq, state%p, state%axis_w, state%axis_v, &
+                         state%omega, state%v)
+  end subroutine spread_velocities
+
+  !> Accelerations of frames from the rates and accelerations in `state`.
+  pure subroutine spread_accelerations(plan, first, last, state)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    type(state_type), intent(inout) :: state
+
+    call find_accelerations(size(plan%steps), plan%steps, first, last, state%dq, state%ddq, state%p, state%axis_w, &
+                            state%axis_v, state%axis_w_rate, state%axis_v_rate, state%omega, state%v, state%alpha, state%a)
+  end subroutine spread_accelerations
+
+  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+
+  !> Velocities of frames from plain arrays, indexed as in the state.
+  pure subroutine find_velocities(m, steps, first, last, dq, p, axis_w, axis_v, omega, v)
+    integer, intent(in) :: m                      !< steps
+    type(step_type), intent(in) :: steps(m)
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    real(wp), intent(in) :: dq(m)                 !< rates of the coordinates [rad/s, m/s]
+    real(wp), intent(in) :: p(3, 0:m)             !< origins [m]
+    real(wp), intent(in) :: axis_w(3, m)          !< angular velocity per unit rate
+    real(wp), intent(in) :: axis_v(3, m)          !< velocity of the origin per unit rate
+    real(wp), intent(inout) :: omega(3, 0:m)      !< angular velocities [rad/s]
+    real(wp), intent(inout) :: v(3, 0:m)          !< velocities of the origins [m/s]
+    real(wp) :: rate, arm(3)
+    integer :: s, i
+
+    do s = first, last
+      i = steps(s)%parent
+      rate = dq(steps(s)%coordinate)
+      arm = p(:, s) - p(:, i)
+      omega(:, s) = omega(:, i) + rate*axis_w(:, s)
+      v(:, s) = v(:, i) + cross(omega(:, i), arm) + rate*axis_v(:, s)
+    end do
+  end subroutine find_velocities
+
+  !> Accelerations of frames from plain arrays, indexed as in the state.
+  pure subroutine find_accelerations(m, steps, first, last, dq, ddq, p, axis_w, axis_v, axis_w_rate, axis_v_rate, omega, v, &
+                                     alpha, a)
+    integer, intent(in) :: m                      !< steps
+    type(step_type), intent(in) :: steps(m)
+    integer, intent(in) :: first                  !< frames from this one
+    integer, intent(in) :: last                   !< to this one
+    real(wp), intent(in) :: dq(m)                 !< rates of the coordinates [rad/s, m/s]
+    real(wp), intent(in) :: ddq(m)                !< accelerations of the coordinates [rad/s^2, m/s^2]
+    real(wp), intent(in) :: p(3, 0:m)             !< origins [m]
+    real(wp), intent(in) :: axis_w(3, m)          !< angular velocity per unit rate
+    real(wp), intent(in) :: axis_v(3, m)          !< velocity of the origin per unit rate
+    real(wp), intent(in) :: axis_w_rate(3, m)     !< derivative of axis_w in q, of user pairs
+    real(wp), intent(in) :: axis_v_rate(3, m)     !< derivative of axis_v in q, of user pairs
+    real(wp), intent(in) :: omega(3, 0:m)         !< angular velocities [rad/s]
+    real(wp), intent(in) :: v(3, 0:m)             !< velocities of the origins [m/s]
+    real(wp), intent(inout) :: alpha(3, 0:m)      !< angular accelerations [rad/s^2]
+    real(wp), intent(inout) :: a(3, 0:m)          !< accelerations of the origins [m/s^2]
+    real(wp) :: rate, arm(3), slip(3), turning(3)
+    integer :: s, i
+
+    do s = first, last
+      i = steps(s)%parent
+      rate = dq(steps(s)%coordinate)
+      arm = p(:, s) - p(:, i)
+      turning = rate*axis_w(:, s)
+      slip = cross(omega(:, i), arm) + 2.0_wp*rate*axis_v(:, s)
+      alpha(:, s) = alpha(:, i) + ddq(steps(s)%coordinate)*axis_w(:, s) + cross(omega(:, i), turning)
+      a(:, s) = a(:, i) + cross(alpha(:, i), arm) + ddq(steps(s)%coordinate)*axis_v(:, s) + cross(omega(:, i), slip)
+      if (steps(s)%is_screw) cycle
+      alpha(:, s) = alpha(:, s) + rate**2*axis_w_rate(:, s)
+      a(:, s) = a(:, s) + rate**2*axis_v_rate(:, s)
+    end do
+  end subroutine find_accelerations
+
+  !> A link's own system and its motion, in the system of link 1.
+  pure subroutine link_motion(plan, state, link, r, p, omega, v)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: link
+    real(wp), intent(out) :: r(3, 3)              !< rotation
+    real(wp), intent(out) :: p(3)                 !< origin [m]
+    real(wp), intent(out) :: omega(3)             !< [rad/s]
+    real(wp), intent(out) :: v(3)                 !< of the origin [m/s]
+    real(wp) :: arm(3)
+    integer :: f
+
+    f = plan%frame_of(link)
+    arm = turn(state%r(:, :, f), plan%link_in_frame(link)%p)
+    r = combine(state%r(:, :, f), plan%link_in_frame(link)%r)
+    p = state%p(:, f) + arm + plan%origin
+    omega = state%omega(:, f)
+    v = state%v(:, f) + cross(state%omega(:, f), arm)
+  end subroutine link_motion
+
+  !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1.
+  pure subroutine point_motion(plan, state, link, place, position, velocity, acceleration)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: link
+    real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
+    real(wp), intent(out) :: position(3)          !< [m]
+    real(wp), intent(out), optional :: velocity(3)      !< [m/s]
+    real(wp), intent(out), optional :: acceleration(3)  !< [m/s^2]
+    real(wp) :: arm(3)
+    integer :: f
+
+    f = plan%frame_of(link)
+    arm = turn(state%r(:, :, f), transformed(plan%link_in_frame(link), place))
+    position = state%p(:, f) + arm + plan%origin
+    if (present(velocity)) velocity = state%v(:, f) + cross(state%omega(:, f), arm)
+    if (present(acceleration)) acceleration = state%a(:, f) + cross(state%alpha(:, f), arm) &
+                                              + cross(state%omega(:, f), cross(state%omega(:, f), arm))
+  end subroutine point_motion
+
+  !> The screw of a step at its new frame's origin, in the axes of frame 0.
+  pure subroutine step_screw(plan, state, s, w, v, place)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: s                      !< step
+    real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
+    real(wp), intent(out) :: v(3)                 !< [m per unit of q]
+    real(wp), intent(out) :: place(3)             !< [m]
+
+    w = state%axis_w(:, s)
+    v = state%axis_v(:, s)
+    place = state%p(:, s)
+  end subroutine step_screw
+end module mech9_spatial_arithmetic

@@ -1,0 +1,259 @@
+!> Closures in space, (12): the screw of the error pose, in independent equations.
+!>
+!> The twelve scalars of (12) hold at most six independent ones. They are replaced by the screw of the error pose: the rotation
+!> vector that turns the target onto the closing frame, and the distance between the two. The screw is written at the base
+!> frame of the loop, where the space of motions of the loop is constant, and the closure's constant rows pick its independent
+!> components.
+module mech9_spatial_closure
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: turn, turn_back, combine, cross, rotation_vector
+  use mech9_plan, only: plan_type, closure_type, loop_type, constraint_type
+  use mech9_state, only: state_type
+  implicit none
+  private
+  public :: spatial_closure_type, loop_screw, reduced_screw
+
+  !> The constraint of one closure.
+  type, extends(constraint_type) :: spatial_closure_type
+    integer :: closure = 0                        !< its number
+  contains
+    procedure :: residual
+    procedure :: jacobian
+    procedure :: column
+    procedure :: rates
+    procedure :: gap
+  end type spatial_closure_type
+
+contains
+
+  !> The independent components of the error pose's screw.
+  pure subroutine residual(self, plan, state, values)
+    class(spatial_closure_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: values(:)     !< (equations)
+    real(wp) :: w(3), v(3), place(3)
+
+    call error_screw(plan%closures(self%closure), state, w, v, place)
+    call reduced_screw(plan, plan%closures(self%closure), state, w, v, place, values)
+  end subroutine residual
+
+  !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
+  pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
+    class(spatial_closure_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    type(loop_type), intent(in) :: loop           !< the steps
+    integer, intent(in) :: first                  !< earlier steps are left out
+    integer, intent(in), contiguous :: column_of(:)     !< column of step `first` and each later one; 0: none
+    type(state_type), intent(in) :: state
+    integer, intent(in) :: row                    !< before the first row
+    real(wp), intent(inout), contiguous :: matrix(:, :)
+    integer :: i, s
+
+    do i = 1, size(loop%steps)
+      s = loop%steps(i)
+      if (s < first) cycle
+      if (column_of(s - first + 1) == 0) cycle
+      call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + self%equations, column_of(s - first + 1)))
+    end do
+  end subroutine jacobian
+
+  !> Derivatives with respect to the coordinate of one step, in its unit.
+  pure subroutine column(self, plan, s, sign, state, values)
+    class(spatial_closure_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: s                      !< step
+    real(wp), intent(in) :: sign                  !< of the step in the loop
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: values(:)     !< (equations)
+    real(wp) :: arm(3), w(3), v(3), unit
+
+    associate (place => state%p(:, plan%closures(self%closure)%closing))
+      unit = sign*plan%unit_of(plan%steps(s)%coordinate)
+      w = unit*state%axis_w(:, s)
+      arm = place - state%p(:, s)
+      v = unit*state%axis_v(:, s) + cross(w, arm)
+      call reduced_screw(plan, plan%closures(self%closure), state, w, v, place, values)
+    end associate
+  end subroutine column
+
+  !> Time derivatives at the rates, or rates and accelerations, in `state`. The frames of earlier blocks must move as these say;
+  !> of its own frames no accelerations are needed, and no velocities for the first derivatives.
+  pure subroutine rates(self, plan, order, state, values)
+    class(spatial_closure_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: order                  !< 1 or 2
+    type(state_type), intent(in) :: state
+    real(wp), intent(out), contiguous :: values(:)     !< (equations)
+    real(wp) :: w(3), v(3)
+
+    associate (closure => plan%closures(self%closure))
+      if (order == 1) then
+        call opening_velocity(plan, closure, state, w, v)
+      else
+        call opening_acceleration(plan, closure, state, w, v)
+      end if
+      call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), values)
+    end associate
+  end subroutine rates
+
+  !> How far the closure is from closed, all six components: a length [m], rotations times the mechanism's size.
+  pure real(wp) function gap(self, plan, state)
+    class(spatial_closure_type), intent(in) :: self
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    real(wp) :: w(3), v(3), place(3)
+
+    call error_screw(plan%closures(self%closure), state, w, v, place)
+    gap = max(norm2(v), plan%length*norm2(w))
+  end function gap
+
+  !> Velocity of the closing frame relative to the target, from the rates of the coordinates in the closure's part.
+  pure subroutine opening_velocity(plan, closure, state, w, v)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(out) :: w(3)                 !< relative angular motion, axes of frame 0
+    real(wp), intent(out) :: v(3)                 !< relative motion at the closing frame's origin, axes of frame 0
+    real(wp) :: place(3), arm(3), spin(3), rate
+    integer :: i, s
+
+    place = state%p(:, closure%closing)
+    call stem_difference(closure, place, state%p, state%omega, state%v, w, v)
+    do i = 1, size(closure%part%steps)
+      s = closure%part%steps(i)
+      rate = closure%part%signs(i)*state%dq(plan%steps(s)%coordinate)
+      if (.not. abs(rate) > 0.0_wp) cycle
+      spin = rate*state%axis_w(:, s)
+      arm = place - state%p(:, s)
+      w = w + spin
+      v = v + rate*state%axis_v(:, s) + cross(spin, arm)
+    end do
+  end subroutine opening_velocity
+
+  !> Difference at a place between the motions that the two frames carry along at which the part of a loop begins: of their
+  !> velocities, or of accelerations without those of turning on.
+  pure subroutine stem_difference(closure, place, p, omega, v_frame, w, v)
+    type(closure_type), intent(in) :: closure
+    real(wp), intent(in) :: place(3)              !< [m]
+    real(wp), intent(in) :: p(:, 0:)              !< origins of the frames [m]
+    real(wp), intent(in) :: omega(:, 0:)          !< their angular velocities or accelerations
+    real(wp), intent(in) :: v_frame(:, 0:)        !< velocities or accelerations of their origins
+    real(wp), intent(out) :: w(3)                 !< difference of the angular ones
+    real(wp), intent(out) :: v(3)                 !< difference at the place
+    real(wp) :: arm(3)
+    integer :: f, g
+
+    f = closure%part%stems(1)
+    g = closure%part%stems(2)
+    w = 0.0_wp
+    v = 0.0_wp
+    if (f == g) return
+    arm = place - p(:, f)
+    v = v_frame(:, f) + cross(omega(:, f), arm)
+    arm = place - p(:, g)
+    v = v - v_frame(:, g) - cross(omega(:, g), arm)
+    w = omega(:, f) - omega(:, g)
+  end subroutine stem_difference
+
+  !> Acceleration of the closing frame relative to the target, from the rates and accelerations in the closure's part.
+  pure subroutine opening_acceleration(plan, closure, state, w, v)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(out) :: w(3)                 !< relative angular motion, axes of frame 0
+    real(wp), intent(out) :: v(3)                 !< relative motion at the closing frame's origin, axes of frame 0
+    real(wp) :: place(3), arm(3), spin(3), slip(3), rate, acceleration
+    integer :: i, s, f
+
+    place = state%p(:, closure%closing)
+    call stem_difference(closure, place, state%p, state%alpha, state%a, w, v)
+    do i = 1, size(closure%part%steps)
+      s = closure%part%steps(i)
+      f = plan%steps(s)%parent
+      rate = state%dq(plan%steps(s)%coordinate)
+      acceleration = state%ddq(plan%steps(s)%coordinate)
+      arm = state%p(:, s) - state%p(:, f)
+      spin = rate*state%axis_w(:, s)
+      slip = cross(state%omega(:, f), arm) + 2.0_wp*rate*state%axis_v(:, s)
+      spin = acceleration*state%axis_w(:, s) + cross(state%omega(:, f), spin)
+      slip = acceleration*state%axis_v(:, s) + cross(state%omega(:, f), slip)
+      if (.not. plan%steps(s)%is_screw) then
+        spin = spin + rate**2*state%axis_w_rate(:, s)
+        slip = slip + rate**2*state%axis_v_rate(:, s)
+      end if
+      w = w + closure%part%signs(i)*spin
+      arm = place - state%p(:, s)
+      v = v + closure%part%signs(i)*(slip + cross(spin, arm))
+    end do
+    f = closure%target
+    arm = place - state%p(:, f)
+    slip = cross(state%omega(:, f), arm)
+    v = v - cross(state%omega(:, f), slip)
+  end subroutine opening_acceleration
+
+  !> Error pose of a closure as a screw at the closing frame's origin, in the axes of frame 0.
+  pure subroutine error_screw(closure, state, w, v, place)
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(out) :: w(3)                 !< rotation vector from the target to the closing frame [rad]
+    real(wp), intent(out) :: v(3)                 !< from the target's place to the closing frame [m]
+    real(wp), intent(out) :: place(3)             !< the closing frame's origin [m]
+    real(wp) :: r_target(3, 3), r_error(3, 3)
+    integer :: i
+
+    associate (g => closure%target)
+      r_target = combine(state%r(:, :, g), closure%in_target%r)
+      place = state%p(:, closure%closing)
+      v = place - state%p(:, g) - turn(state%r(:, :, g), closure%in_target%p)
+      do i = 1, 3
+        r_error(:, i) = turn_back(r_target, state%r(:, i, closure%closing))
+      end do
+      w = turn(r_target, rotation_vector(r_error))
+    end associate
+  end subroutine error_screw
+
+  !> The independent components of a screw that is given at `place` in the axes of frame 0.
+  pure subroutine reduced_screw(plan, closure, state, w, v, place, components)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(in) :: w(3)                  !< angular part [rad]
+    real(wp), intent(in) :: v(3)                  !< part of the place [m]
+    real(wp), intent(in) :: place(3)              !< [m]
+    real(wp), intent(out) :: components(:)        !< (rank), rotations in rad, translations in lengths of the mechanism
+    real(wp) :: screw(6)
+    integer :: i
+
+    if (closure%rank == 6) then
+      components(1:3) = w
+      components(4:6) = v/plan%length
+      return
+    end if
+    screw = loop_screw(plan, closure, state, w, v, place)
+    do i = 1, closure%rank
+      components(i) = dot_product(closure%rows(:, i), screw)
+    end do
+  end subroutine reduced_screw
+
+  !> A screw given at `place` in the axes of frame 0, moved to the base frame of a loop, lengths scaled.
+  pure function loop_screw(plan, closure, state, w, v, place) result(screw)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(state_type), intent(in) :: state
+    real(wp), intent(in) :: w(3)                  !< angular part [rad]
+    real(wp), intent(in) :: v(3)                  !< part of the place [m]
+    real(wp), intent(in) :: place(3)              !< [m]
+    real(wp) :: screw(6), v_base(3), arm(3)
+
+    arm = state%p(:, closure%base) - place
+    v_base = (v + cross(w, arm))/plan%length
+    if (closure%base == 0) then
+      screw(1:3) = w
+      screw(4:6) = v_base
+    else
+      screw(1:3) = turn_back(state%r(:, :, closure%base), w)
+      screw(4:6) = turn_back(state%r(:, :, closure%base), v_base)
+    end if
+  end function loop_screw
+end module mech9_spatial_closure

@@ -1,0 +1,48 @@
+!> The state of motion of a mechanism.
+module mech9_state
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: state_type, planar_motion_type, nothing_known, position_known, velocity_known, acceleration_known
+
+  !> How far a state is worked out.
+  integer, parameter :: nothing_known = 0
+  integer, parameter :: position_known = 1
+  integer, parameter :: velocity_known = 2
+  integer, parameter :: acceleration_known = 3
+
+  !> The motion of frames in planar arithmetic: in the plane's axes, from the origin of frame 0. A pose is (cosine, sine, x, y); a
+  !> velocity is the angular velocity about the normal and the velocity of the frame's origin, and accelerations alike.
+  type :: planar_motion_type
+    real(wp), allocatable :: pose(:, :)           !< (4,0:M) cosine, sine, x, y [m]
+    real(wp), allocatable :: angle(:)             !< (M) that each step turns by [rad]
+    real(wp), allocatable :: turn(:, :)           !< (2,M) its cosine and sine
+    real(wp), allocatable :: slide(:, :)          !< (2,M) velocity of the new origin per unit rate
+    real(wp), allocatable :: velocity(:, :)       !< (3,0:M) [rad/s, m/s]
+    real(wp), allocatable :: acceleration(:, :)   !< (3,0:M) [rad/s^2, m/s^2]
+  end type planar_motion_type
+
+  !> All vectors in the axes of frame 0; positions from its origin. Index: the frame, or the step that
+  !> made it. `known` says which of the quantities below belong to the coordinates. In planar arithmetic
+  !> the motion of the frames is in `planar` only, and those of space are not allocated.
+  type :: state_type
+    real(wp) :: t = 0.0_wp                       !< [s]
+    integer :: known = nothing_known
+    real(wp), allocatable :: q(:)                !< coordinates [rad, m]
+    real(wp), allocatable :: dq(:)               !< rates
+    real(wp), allocatable :: ddq(:)              !< accelerations
+    real(wp), allocatable :: angle(:)            !< (M) that each step turns by [rad]
+    real(wp), allocatable :: turn(:, :)          !< (2,M) its cosine and sine
+    real(wp), allocatable :: r(:, :, :)          !< (3,3,0:M) rotation of each frame
+    real(wp), allocatable :: p(:, :)             !< (3,0:M) origin of each frame [m]
+    real(wp), allocatable :: axis_w(:, :)        !< (3,M) angular velocity that each step gives per unit rate
+    real(wp), allocatable :: axis_v(:, :)        !< (3,M) velocity of the new origin per unit rate
+    real(wp), allocatable :: axis_w_rate(:, :)   !< (3,M) derivatives of both in q, at fixed departing link;
+    real(wp), allocatable :: axis_v_rate(:, :)   !<       zero but for user pairs
+    real(wp), allocatable :: omega(:, :)         !< (3,0:M) angular velocity [rad/s]
+    real(wp), allocatable :: v(:, :)             !< (3,0:M) velocity of the origin [m/s]
+    real(wp), allocatable :: alpha(:, :)         !< (3,0:M) angular acceleration [rad/s^2]
+    real(wp), allocatable :: a(:, :)             !< (3,0:M) acceleration of the origin [m/s^2]
+    type(planar_motion_type) :: planar           !< of the frames, where the plan is planar
+  end type state_type
+end module mech9_state

@@ -1,0 +1,176 @@
+!> Which closed chain determines which unknown: pure integers.
+!>
+!> Each chain can determine as many unknowns of its loop as it offers equations. Chains whose unknowns
+!> it can all determine go first and alone, one making the next possible; what then remains is matched
+!> so that as many unknowns as possible have a chain (augmenting paths).
+module mech9_chain_matching
+  implicit none
+  private
+  public :: loop_lists_type, match_chains
+
+  !> The unknowns of each chain's loop, one list behind the other.
+  type :: loop_lists_type
+    integer :: n_chains = 0
+    integer :: n_unknowns = 0
+    integer, allocatable :: first(:)      !< (n_chains+1): the loop of chain c is unknowns(first(c):first(c+1)-1)
+    integer, allocatable :: unknowns(:)
+  end type loop_lists_type
+
+contains
+
+  !> The chain that determines each unknown, 0 for none.
+  subroutine match_chains(loops, offers, owner)
+    type(loop_lists_type), intent(in) :: loops
+    integer, intent(in) :: offers(:)      !< (n_chains) equations of each chain
+    integer, intent(out) :: owner(:)      !< (n_unknowns)
+    type(loop_lists_type) :: passing
+    integer :: free(loops%n_chains), c, i
+
+    owner = 0
+    passing = chains_through(loops)
+    call take_alone(loops, passing, offers, owner, free)
+    do c = 1, loops%n_chains
+      do i = loops%first(c), loops%first(c + 1) - 1
+        if (free(c) == 0) exit
+        if (owner(loops%unknowns(i)) /= 0) cycle
+        owner(loops%unknowns(i)) = c
+        free(c) = free(c) - 1
+      end do
+    end do
+    call augment(loops, passing, owner, free)
+  end subroutine match_chains
+
+  !> The chains whose loops pass through each unknown: lists with chains and unknowns exchanged.
+  pure function chains_through(loops) result(passing)
+    type(loop_lists_type), intent(in) :: loops
+    type(loop_lists_type) :: passing
+    integer :: place(loops%n_unknowns + 1), c, i, u
+
+    passing%n_chains = loops%n_unknowns
+    passing%n_unknowns = loops%n_chains
+    allocate (passing%first(loops%n_unknowns + 1), source=0)
+    allocate (passing%unknowns(size(loops%unknowns)))
+    passing%first(1) = 1
+    do i = 1, size(loops%unknowns)
+      passing%first(loops%unknowns(i) + 1) = passing%first(loops%unknowns(i) + 1) + 1
+    end do
+    do u = 1, loops%n_unknowns
+      passing%first(u + 1) = passing%first(u) + passing%first(u + 1)
+    end do
+    place = passing%first
+    do c = 1, loops%n_chains
+      do i = loops%first(c), loops%first(c + 1) - 1
+        u = loops%unknowns(i)
+        passing%unknowns(place(u)) = c
+        place(u) = place(u) + 1
+      end do
+    end do
+  end function chains_through
+
+  !> Chains that can determine all that is unknown on their loops take it; their successors follow.
+  subroutine take_alone(loops, passing, offers, owner, free)
+    type(loop_lists_type), intent(in) :: loops, passing
+    integer, intent(in) :: offers(:)
+    integer, intent(inout) :: owner(:)
+    integer, intent(out) :: free(:)       !< equations that are left to each chain
+    integer :: unknown(loops%n_chains), queue(loops%n_chains), head, tail, c, i, j, u
+    logical :: queued(loops%n_chains)
+
+    free = offers
+    queued = .false.
+    tail = 0
+    do c = 1, loops%n_chains
+      unknown(c) = loops%first(c + 1) - loops%first(c)
+      if (unknown(c) <= offers(c)) call append(c)
+    end do
+    head = 0
+    do while (head < tail)
+      head = head + 1
+      c = queue(head)
+      do i = loops%first(c), loops%first(c + 1) - 1
+        u = loops%unknowns(i)
+        if (owner(u) /= 0) cycle
+        owner(u) = c
+        do j = passing%first(u), passing%first(u + 1) - 1
+          unknown(passing%unknowns(j)) = unknown(passing%unknowns(j)) - 1
+          if (unknown(passing%unknowns(j)) <= offers(passing%unknowns(j))) call append(passing%unknowns(j))
+        end do
+      end do
+      free(c) = 0
+    end do
+
+  contains
+
+    subroutine append(chain)
+      integer, intent(in) :: chain
+
+      if (queued(chain)) return
+      queued(chain) = .true.
+      tail = tail + 1
+      queue(tail) = chain
+    end subroutine append
+  end subroutine take_alone
+
+  !> Give the unknowns without a chain one by exchanges, where exchanges can. The search goes through
+  !> chains in breadth; a chain that led nowhere once never will, so that failures cost little.
+  subroutine augment(loops, passing, owner, free)
+    type(loop_lists_type), intent(in) :: loops, passing
+    integer, intent(inout) :: owner(:), free(:)
+    integer :: queue(loops%n_chains), wish(loops%n_chains), head, tail, u, i, c
+    logical :: seen(loops%n_chains), found
+
+    seen = .false.
+    do u = 1, loops%n_unknowns
+      if (owner(u) /= 0) cycle
+      head = 0
+      tail = 0
+      call visit(u)
+      do while (head < tail .and. .not. found)
+        head = head + 1
+        c = queue(head)
+        do i = loops%first(c), loops%first(c + 1) - 1
+          if (owner(loops%unknowns(i)) == c) call visit(loops%unknowns(i))
+          if (found) exit
+        end do
+      end do
+      if (.not. found) cycle
+      call exchange(queue(tail), wish, owner, free)
+      seen(queue(:tail)) = .false.
+    end do
+
+  contains
+
+    !> Ask all chains through an unknown that were not asked yet; stop at one with an equation left.
+    subroutine visit(unknown)
+      integer, intent(in) :: unknown
+      integer :: j, chain
+
+      found = .false.
+      do j = passing%first(unknown), passing%first(unknown + 1) - 1
+        chain = passing%unknowns(j)
+        if (seen(chain)) cycle
+        seen(chain) = .true.
+        tail = tail + 1
+        queue(tail) = chain
+        wish(chain) = unknown
+        found = free(chain) > 0
+        if (found) return
+      end do
+    end subroutine visit
+  end subroutine augment
+
+  !> Along a path that ends at a chain with an equation left, each unknown moves to the next chain.
+  pure subroutine exchange(last, wish, owner, free)
+    integer, intent(in) :: last, wish(:)
+    integer, intent(inout) :: owner(:), free(:)
+    integer :: c, before
+
+    free(last) = free(last) - 1
+    c = last
+    do while (c /= 0)
+      before = owner(wish(c))
+      owner(wish(c)) = c
+      c = before
+    end do
+  end subroutine exchange
+end module mech9_chain_matching

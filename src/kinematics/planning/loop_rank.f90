@@ -1,0 +1,124 @@
+!> How many independent equations each closed chain offers while it moves on its own.
+!>
+!> Most loops offer as many as their space of motions has dimensions. Overconstrained ones, such as
+!> Bennett's, offer fewer: their screws are dependent at every closed position, though not at others.
+!> So a loop that might be one is closed alone, all its coordinates free, away from its guess.
+module mech9_loop_rank
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_plan, only: plan_type, closure_type, block_type, new_state
+  use mech9_state, only: state_type
+  use mech9_arithmetics, only: set_in_space
+  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
+  use mech9_assembly, only: assemble_block, assembly_outcome_type
+  implicit none
+  private
+  public :: find_offers
+
+  !> Planar and spherical loops, and smaller ones, lose no rank at a general closed position.
+  integer, parameter :: never_overconstrained = 3
+  !> Longer loops are not closed alone: they have freedom enough.
+  integer, parameter :: longest_loop = 60
+  !> Pivots below this fraction of the largest count as zero.
+  real(wp), parameter :: rank_tolerance = 1.0e-9_wp
+  !> Pivots that inexact dimensions make, against their error.
+  real(wp), parameter :: inexact = 10.0_wp
+
+contains
+
+  !> Set `offers` of all closures. Their ranks must be known; the paths must be those of whole loops,
+  !> in ascending order.
+  subroutine find_offers(plan, guess)
+    type(plan_type), intent(inout) :: plan
+    real(wp), intent(in) :: guess(:)       !< (M)
+    integer :: c, n
+
+    do c = 1, size(plan%closures)
+      n = size(plan%closures(c)%loop%steps)
+      plan%closures(c)%offers = min(plan%closures(c)%rank, n)
+      if (plan%closures(c)%rank <= never_overconstrained .or. n > longest_loop) cycle
+      call find_rank_alone(loop_alone(plan, plan%closures(c)), &
+                           guess(plan%steps(plan%closures(c)%loop%steps)%coordinate), plan%closures(c)%offers)
+    end do
+  end subroutine find_offers
+
+  !> Rank of a loop at closed positions near the guess: the largest of two. `rank` stays as it is
+  !> where the loop does not close.
+  subroutine find_rank_alone(loop, guess, rank)
+    type(plan_type), intent(in) :: loop
+    real(wp), intent(in) :: guess(:)
+    integer, intent(inout) :: rank         !< on entry the most that is possible
+    real(wp), parameter :: amounts(4) = [0.3_wp, 0.1_wp, 0.5_wp, 0.03_wp]
+    type(state_type) :: state
+    type(block_work_type) :: work
+    type(assembly_outcome_type) :: outcome
+    type(random_type) :: random
+    type(error_type), allocatable :: err
+    integer :: trial, k, found, best, closed
+
+    state = new_state(loop)
+    work = new_block_work(loop%blocks(1))
+    best = 0
+    closed = 0
+    do trial = 1, size(amounts)
+      state%q = guess
+      do k = 1, size(guess)
+        if (loop%steps(k)%is_screw) state%q(k) = guess(k) + amounts(trial)*loop%unit_of(k)*random%symmetric()
+      end do
+      call assemble_block(loop, loop%blocks(1), state, work, trial == 1, outcome, err)
+      ! a user pair without a pose here: the other trials may do
+      if (allocated(err)) cycle
+      if (.not. outcome%closed) cycle
+      call factorize_block(loop, loop%blocks(1), state, work)
+      found = work%equations%rank(max(rank_tolerance, inexact*loop%data_tolerance))
+      best = max(best, found)
+      closed = closed + 1
+      if (best == rank .or. closed == 2) exit
+    end do
+    if (closed > 0) rank = best
+  end subroutine find_rank_alone
+
+  !> A plan of one loop alone: its base frame is frame 0 and all its coordinates are unknown.
+  function loop_alone(plan, closure) result(loop)
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    type(plan_type) :: loop
+    integer :: i, k, n
+
+    n = size(closure%loop%steps)
+    loop%n_coordinates = n
+    loop%length = plan%length
+    loop%data_tolerance = plan%data_tolerance
+    loop%steps = plan%steps(closure%loop%steps)
+    loop%unit_of = plan%unit_of(loop%steps%coordinate)
+    allocate (loop%pairs(n))
+    do i = 1, n
+      k = loop%steps(i)%coordinate
+      if (.not. loop%steps(i)%is_screw) allocate (loop%pairs(i)%pair, source=plan%pairs(k)%pair)
+      loop%steps(i)%coordinate = i
+      loop%steps(i)%parent = place_of(loop%steps(i)%parent, closure%loop%steps)
+      loop%steps(i)%dependent = .true.
+    end do
+    loop%closures = [closure]
+    loop%closures(1)%base = 0
+    loop%closures(1)%closing = place_of(closure%closing, closure%loop%steps)
+    loop%closures(1)%target = place_of(closure%target, closure%loop%steps)
+    loop%closures(1)%loop%steps = [(i, i=1, n)]
+    loop%closures(1)%loop%stems = 0
+    loop%closures(1)%part = loop%closures(1)%loop
+    allocate (loop%blocks(1))
+    loop%blocks(1) = block_type(first_step=1, last_step=n, first_closure=1, last_closure=1, chains=[1], &
+                                equations=closure%rank, unknowns=[(i, i=1, n)], coordinates=[(i, i=1, n)])
+    call set_in_space(loop)
+  end function loop_alone
+
+  !> Place of a frame in a list of frames; 0 where it is not there.
+  pure integer function place_of(frame, frames)
+    integer, intent(in) :: frame, frames(:)
+
+    do place_of = size(frames), 1, -1
+      if (frames(place_of) == frame) return
+    end do
+  end function place_of
+end module mech9_loop_rank

@@ -1,0 +1,77 @@
+!> The space of motions of each loop: planar, spherical, translations, ... or all six dimensions.
+module mech9_loop_space
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_rotation, only: cross
+  use mech9_screw, only: generated_algebra
+  use mech9_plan, only: plan_type, closure_type, new_state
+  use mech9_state, only: state_type
+  use mech9_spatial_closure, only: loop_screw
+  implicit none
+  private
+  public :: find_loop_spaces
+
+  !> Screws count as lying in a smaller space within this: well above the round-off of directions given
+  !> with 16 digits, well below any deliberate deviation.
+  real(wp), parameter :: tolerance = 1.0e-11_wp
+  !> Screws of inexact dimensions are so many times less exact: products of several of them count.
+  real(wp), parameter :: inexact = 10.0_wp
+
+contains
+
+  !> Rank and rows of all closures. The screws are taken at random coordinates near the guesses: the
+  !> space they generate does not depend on the position, whether the loops are closed or not.
+  subroutine find_loop_spaces(plan, guess, err)
+    type(plan_type), intent(inout) :: plan
+    real(wp), intent(in) :: guess(:)       !< (M)
+    type(error_type), allocatable, intent(out) :: err
+    type(state_type) :: state
+    type(random_type) :: random
+    integer :: c, k
+
+    state = new_state(plan)
+    do k = 1, plan%n_coordinates
+      state%q(k) = guess(k)
+      ! a user pair may not have a pose just anywhere
+      if (plan%steps(plan%step_of(k))%is_screw) state%q(k) = guess(k) + plan%unit_of(k)*random%symmetric()
+    end do
+    call plan%arithmetics(1)%kind%place(plan, 1, plan%n_coordinates, state, err)
+    if (allocated(err)) return
+    do c = 1, size(plan%closures)
+      call find_space(plan, state, plan%closures(c))
+      plan%constraints(c)%item%equations = plan%closures(c)%rank
+    end do
+  end subroutine find_loop_spaces
+
+  subroutine find_space(plan, state, closure)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    type(closure_type), intent(inout) :: closure
+    real(wp) :: screws(6, 2*size(closure%loop%steps))
+    integer :: i, n, s
+    real(wp) :: within
+
+    within = max(tolerance, inexact*plan%data_tolerance)
+    n = 0
+    do i = 1, size(closure%loop%steps)
+      s = closure%loop%steps(i)
+      n = n + 1
+      screws(:, n) = loop_screw(plan, closure, state, state%axis_w(:, s), state%axis_v(:, s), state%p(:, s))
+      screws(:, n) = screws(:, n)/norm2(screws(:, n))
+      if (plan%steps(s)%is_screw) cycle
+      ! the axis of a user pair moves: where it goes next counts too
+      n = n + 1
+      screws(:, n) = loop_screw(plan, closure, state, state%axis_w_rate(:, s), &
+                                state%axis_v_rate(:, s) - cross(state%axis_w(:, s), state%axis_v(:, s)), &
+                                state%p(:, s))
+      if (norm2(screws(:, n)) > within) then
+        screws(:, n) = screws(:, n)/norm2(screws(:, n))
+      else
+        n = n - 1
+      end if
+    end do
+    call generated_algebra(screws(:, :n), within, closure%rows, closure%rank)
+    if (closure%rank == 6) closure%rows = 0.0_wp
+  end subroutine find_space
+end module mech9_loop_space

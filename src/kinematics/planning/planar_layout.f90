@@ -1,0 +1,164 @@
+!> Second part of the plan: is the mechanism planar, and its plan in the plane.
+module mech9_planar_layout
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_rotation, only: identity
+  use mech9_pose, only: pose_type, pose_from_axis, default_zero
+  use mech9_plan, only: plan_type
+  use mech9_planar_plan, only: planar_plan_type
+  implicit none
+  private
+  public :: lay_out_in_plane
+
+  !> Directions and heights may differ from the plane's by this much: round-off of data with 16 digits.
+  !> Lengths count in lengths of the mechanism.
+  real(wp), parameter :: round_off = 64.0_wp*epsilon(1.0_wp)
+
+contains
+
+  !> Lay out the plan in its plane, if it has one: all axes of revolute pairs along one normal, all of
+  !> prismatic pairs across it, and every closed chain bound in all three dimensions of the plane. The ranks
+  !> of the closures must be known. `planar%used` and `planar%why_not` tell.
+  pure subroutine lay_out_in_plane(plan)
+    type(plan_type), intent(inout) :: plan
+    type(planar_plan_type) :: planar
+    real(wp) :: to_frame(3, 3, 0:plan%n_coordinates)
+    logical :: fits
+    integer :: s, c
+
+    do c = 1, size(plan%closures)
+      if (plan%closures(c)%rank == 3) cycle
+      plan%planar%why_not = 'the motions of closed chain '//to_text(plan%closures(c)%chain)//' have '// &
+                            to_text(plan%closures(c)%rank)//' dimensions, not 3'
+      return
+    end do
+    call find_axes(plan, planar, fits)
+    if (.not. fits) plan%planar%why_not = 'no pair turns'
+    if (.not. fits) return
+    planar%length = plan%length
+    allocate (planar%steps(plan%n_coordinates), planar%closures(size(plan%closures)))
+    allocate (planar%height(0:plan%n_coordinates), source=0.0_wp)
+    to_frame(:, :, 0) = transpose(planar%axes)
+    do s = 1, plan%n_coordinates
+      fits = plan%steps(s)%is_screw
+      if (fits) call lay_out_step(plan, s, planar, to_frame, fits)
+      if (fits) cycle
+      plan%planar%why_not = 'pair '//to_text(plan%steps(s)%coordinate)//' neither turns about the plane''s normal '// &
+                            'nor slides across it'
+      return
+    end do
+    do c = 1, size(plan%closures)
+      call lay_out_closure(plan, c, to_frame, planar, fits)
+      if (fits) cycle
+      plan%planar%why_not = 'closed chain '//to_text(plan%closures(c)%chain)//' does not close in a plane'
+      return
+    end do
+    allocate (planar%link_in_frame(plan%n_links))
+    do s = 1, plan%n_links
+      planar%link_in_frame(s) = seen_from_plane(planar, to_frame, plan%frame_of(s), plan%link_in_frame(s))
+    end do
+    planar%used = .true.
+    plan%planar = planar
+  end subroutine lay_out_in_plane
+
+  !> The axes of the plane, from the first revolute pair. `fits` is false where there is none.
+  pure subroutine find_axes(plan, planar, fits)
+    type(plan_type), intent(in) :: plan
+    type(planar_plan_type), intent(inout) :: planar
+    logical, intent(out) :: fits
+    real(wp) :: normal(3), r(3, 3)
+    type(pose_type) :: frame
+    integer :: s, f
+
+    fits = .false.
+    do s = 1, plan%n_coordinates
+      if (abs(plan%steps(s)%turn) > 0.0_wp) exit
+    end do
+    if (s > plan%n_coordinates) return
+    ! out to link 1, over pairs that have no rotation
+    normal = plan%steps(s)%before%r(:, 3)
+    f = plan%steps(s)%parent
+    do while (f > 0)
+      r = plan%steps(f)%before%r
+      normal = matmul(r, normal)
+      f = plan%steps(f)%parent
+    end do
+    planar%upright = norm2(normal(1:2)) <= round_off
+    fits = .true.
+    if (planar%upright) return
+    call pose_from_axis([0.0_wp, 0.0_wp, 0.0_wp], normal, default_zero(normal), frame, fits)
+    planar%axes = frame%r
+  end subroutine find_axes
+
+  !> One step. `to_frame` turns components in a frame of the plan into those of the same frame in the plane.
+  pure subroutine lay_out_step(plan, s, planar, to_frame, fits)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: s
+    type(planar_plan_type), intent(inout) :: planar
+    real(wp), intent(inout) :: to_frame(:, :, 0:)
+    logical, intent(out) :: fits
+    real(wp) :: r(3, 3), p(3), side
+
+    associate (step => plan%steps(s), flat => planar%steps(s))
+      r = matmul(to_frame(:, :, step%parent), step%before%r)
+      p = matmul(to_frame(:, :, step%parent), step%before%p)
+      flat%parent = step%parent
+      flat%coordinate = step%coordinate
+      flat%place = p(1:2)
+      planar%height(s) = planar%height(step%parent) + p(3)
+      flat%turns = abs(step%turn) > 0.0_wp
+      if (flat%turns) then
+        ! its axis may point either way along the normal
+        side = sign(1.0_wp, r(3, 3))
+        fits = norm2(r(1:2, 3)) <= round_off .and. .not. abs(step%slide) > 0.0_wp
+        flat%turn = side*step%turn
+        flat%angle = flat%turn*step%offset + atan2(r(2, 1), r(1, 1))
+        to_frame(:, :, s) = identity
+        to_frame(2, 2, s) = side
+        to_frame(3, 3, s) = side
+      else
+        fits = abs(r(3, 3)) <= round_off
+        flat%slide = step%slide*r(1:2, 3)
+        flat%place = flat%place + step%offset*flat%slide
+        to_frame(:, :, s) = r
+      end if
+    end associate
+  end subroutine lay_out_step
+
+  !> Where a closing frame must be, if that is in the plane.
+  pure subroutine lay_out_closure(plan, c, to_frame, planar, fits)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: c
+    real(wp), intent(in) :: to_frame(:, :, 0:)
+    type(planar_plan_type), intent(inout) :: planar
+    logical, intent(out) :: fits
+    real(wp) :: r_closing(3, 3), r(3, 3), p(3)
+
+    associate (closure => plan%closures(c), flat => planar%closures(c))
+      flat%closing = closure%closing
+      flat%target = closure%target
+      flat%base = closure%base
+      r_closing = transpose(to_frame(:, :, closure%closing))
+      r = matmul(to_frame(:, :, closure%target), matmul(closure%in_target%r, r_closing))
+      p = matmul(to_frame(:, :, closure%target), closure%in_target%p)
+      flat%place = p(1:2)
+      flat%cosine = r(1, 1)
+      flat%sine = r(2, 1)
+      fits = norm2(r(1:2, 3)) <= round_off .and. r(3, 3) > 0.0_wp .and. &
+             abs(planar%height(closure%target) + p(3) - planar%height(closure%closing)) <= round_off*plan%length
+    end associate
+  end subroutine lay_out_closure
+
+  !> A pose in a frame of the plan, in the same frame in the plane and at the height of frame 0.
+  pure function seen_from_plane(planar, to_frame, frame, pose) result(seen)
+    type(planar_plan_type), intent(in) :: planar
+    real(wp), intent(in) :: to_frame(:, :, 0:)
+    integer, intent(in) :: frame
+    type(pose_type), intent(in) :: pose
+    type(pose_type) :: seen
+
+    seen%r = matmul(to_frame(:, :, frame), pose%r)
+    seen%p = matmul(to_frame(:, :, frame), pose%p)
+    seen%p(3) = seen%p(3) + planar%height(frame)
+  end function seen_from_plane
+end module mech9_planar_layout

@@ -1,0 +1,308 @@
+!> Making the plan: frames, spaces of motion, blocks, and the assembled start.
+!>
+!> Structure and ranks of the loops propose the blocks. Whether a block determines its coordinates is
+!> then judged by the rank of its Jacobian at a closed position: at the start, and where that is
+!> singular, also away from it. A block that does not is joined with the next ones until it does.
+module mech9_planning
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_structure
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type, new_state
+  use mech9_state, only: state_type
+  use mech9_requested, only: requested_type, leave_out
+  use mech9_spanning_tree, only: lay_out_frames
+  use mech9_arithmetics, only: set_in_space, set_in_plane
+  use mech9_planar_layout, only: lay_out_in_plane
+  use mech9_loop_space, only: find_loop_spaces
+  use mech9_loop_rank, only: find_offers
+  use mech9_tree_paths, only: split_loops
+  use mech9_blocks, only: make_blocks, count_block
+  use mech9_random, only: random_type
+  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
+  use mech9_assembly, only: assemble_block, assembly_outcome_type
+  use mech9_assemblies, only: close_from_random_starts
+  use mech9_generic_position, only: generic_position_type, find_generic_position
+  use mech9_release, only: carry_inputs
+  use mech9_diagnosis, only: judge_choice, refuse_open, refuse_undetermined, refuse_locked
+  use mech9_finite_motion, only: locked_chain_type, find_locked_chain
+  implicit none
+  private
+  public :: make_plan, chain_names
+
+  !> Pivots below this fraction of the largest count as zero when ranks are found.
+  real(wp), parameter :: rank_tolerance = 1.0e-9_wp
+  !> Pivots, and rates that chains cannot follow, that inexact dimensions make, against their error.
+  real(wp), parameter :: inexact = 10.0_wp
+  !> Unknowns of one block for which there is memory and time: its equations are a full matrix.
+  integer, parameter :: most_unknowns = 3000
+  !> Rates that the chains cannot follow, against rates of one, where the inputs contradict each other.
+  real(wp), parameter :: contradiction = 1.0e-7_wp
+
+contains
+
+  !> The plan of a mechanism and its assembled start: positions of all coordinates for the given
+  !> independent ones. Fails with exit_structure where the dependent coordinates are not determined
+  !> by the independent ones, with exit_assembly where the chains do not close.
+  subroutine make_plan(mechanism, start, plan, state, err, in_space, requested)
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), intent(in) :: start(:)        !< (M): independent coordinates as given, guesses of the others
+    type(plan_type), intent(out) :: plan
+    type(state_type), intent(out) :: state  !< assembled
+    type(error_type), allocatable, intent(out) :: err
+    logical, intent(in), optional :: in_space   !< no planar arithmetic, even where it could be used
+    type(requested_type), intent(in), optional :: requested   !< what does not serve them is left out and not assembled
+    type(generic_position_type) :: generic
+    logical :: spatial
+
+    call lay_out_frames(mechanism, plan)
+    call set_in_space(plan)
+    state = new_state(plan)
+    state%q = start
+    call find_loop_spaces(plan, start, err)
+    if (allocated(err)) return
+    call find_offers(plan, start)
+    call propose_blocks(plan, state, err)
+    if (allocated(err)) return
+    call set_in_space(plan)
+    if (present(requested)) call leave_out(plan, requested)
+    spatial = .false.
+    if (present(in_space)) spatial = in_space
+    if (.not. spatial) then
+      call lay_out_in_plane(plan)
+      call set_in_plane(plan)
+    end if
+    state = new_state(plan)
+    state%q = start
+    call settle_blocks(plan, state, generic, err)
+    if (allocated(err)) return
+    call check_inputs(plan, state, generic, err)
+    if (allocated(err)) return
+    ! a plan for other independent coordinates, made with `requested`, is one of a mechanism that moves
+    if (.not. present(requested)) call check_motion(plan, state, err)
+    if (allocated(err)) return
+    if (present(requested)) call leave_out(plan, requested)
+    call find_constants(plan)
+  end subroutine make_plan
+
+  !> Blocks by structure and ranks of the loops. An error says that they cannot determine all
+  !> coordinates.
+  subroutine propose_blocks(plan, state, err)
+    type(plan_type), intent(inout) :: plan
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    integer, allocatable :: undetermined(:)
+    logical :: closed
+
+    call make_blocks(plan, undetermined)
+    if (size(undetermined) > 0) then
+      ! ranks found with a loop alone do not bind it in company: the dimensions of its motions do
+      plan%closures%offers = plan%closures%rank
+      call make_blocks(plan, undetermined)
+    end if
+    if (size(undetermined) > 0) then
+      call judge_choice(plan, state, closed, err)
+      if (.not. allocated(err)) call refuse_undetermined(undetermined, err)
+    else if (maxval(unknowns_of(plan%blocks)) > most_unknowns) then
+      call raise(err, exit_structure, to_text(maxval(unknowns_of(plan%blocks)))//' coordinates could only be solved '// &
+                 'for together, and at most '//to_text(most_unknowns)//' can be; take independent coordinates (cq) '// &
+                 'nearer to link 1')
+    end if
+  end subroutine propose_blocks
+
+  !> Assemble the proposed blocks one after the other and join those that prove too small.
+  subroutine settle_blocks(plan, state, generic, err)
+    type(plan_type), intent(inout) :: plan
+    type(state_type), intent(inout) :: state
+    type(generic_position_type), intent(inout) :: generic
+    type(error_type), allocatable, intent(out) :: err
+    type(block_type), allocatable :: blocks(:)
+    type(state_type) :: trial
+    integer :: b, n
+    logical :: complete, closed
+
+    allocate (blocks(size(plan%blocks)))
+    n = 0
+    complete = .true.
+    do b = 1, size(plan%blocks)
+      if (complete) then
+        n = n + 1
+        blocks(n) = plan%blocks(b)
+      else
+        blocks(n)%last_step = plan%blocks(b)%last_step
+        blocks(n)%last_closure = plan%blocks(b)%last_closure
+        call count_block(plan, blocks(n))
+        call split_loops(blocks(n), plan)
+      end if
+      call settle_block(plan, blocks(:n), state, generic, complete, err)
+      if (allocated(err)) return
+    end do
+    plan%blocks = blocks(:n)
+    if (complete) return
+    trial = state
+    call judge_choice(plan, trial, closed, err)
+    if (.not. allocated(err)) call raise(err, exit_structure, chain_names(blocks(n))// &
+      ' cannot determine all dependent coordinates from the independent ones near the start: it is singular there')
+  end subroutine settle_blocks
+
+  !> Assemble the last block, the others being closed, and say whether its coordinates are all determined.
+  subroutine settle_block(plan, blocks, state, generic, complete, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: blocks(:)
+    type(state_type), intent(inout) :: state
+    type(generic_position_type), intent(inout) :: generic
+    logical, intent(out) :: complete
+    type(error_type), allocatable, intent(out) :: err
+    type(block_work_type) :: work
+    type(assembly_outcome_type) :: outcome
+    logical :: closed
+
+    complete = .false.
+    associate (block => blocks(size(blocks)))
+      work = new_block_work(block)
+      call assemble_block(plan, block, state, work, .true., outcome, err)
+      if (allocated(err)) return
+      if (.not. outcome%closed) then
+        call assemble_otherwise(plan, blocks, outcome, state, err)
+        if (allocated(err)) return
+        generic%exists = .false.
+      end if
+      call factorize_block(plan, block, state, work)
+      complete = work%equations%rank(max(rank_tolerance, inexact*plan%data_tolerance)) == size(block%unknowns)
+      if (complete .and. .not. generic%exists) return
+      ! a singular start, or a rank that is small everywhere?
+      call find_generic_position(plan, blocks, state, generic, closed)
+      if (complete .or. .not. closed) return
+      call factorize_block(plan, block, generic%state, work)
+      complete = work%equations%rank(max(rank_tolerance, inexact*plan%data_tolerance)) == size(block%unknowns)
+    end associate
+  end subroutine settle_block
+
+  !> The last block does not close on the blocks before it as they are: try other assemblies of these,
+  !> then the way through a position in which the independent coordinates give way. An error tells why
+  !> neither helps.
+  subroutine assemble_otherwise(plan, blocks, outcome, state, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: blocks(:)
+    type(assembly_outcome_type), intent(in) :: outcome   !< how it failed
+    type(state_type), intent(inout) :: state
+    type(error_type), allocatable, intent(out) :: err
+    type(state_type) :: trial
+    logical :: closed
+
+    if (size(blocks) > 1) then
+      call close_from_random_starts(plan, blocks, state, closed)
+      if (closed) return
+    end if
+    trial = state
+    call judge_choice(plan, trial, closed, err)
+    if (allocated(err)) return
+    if (closed) then
+      call carry_inputs(plan, state%q, trial, closed)
+      if (closed) then
+        state = trial
+        return
+      end if
+    end if
+    call refuse_open(plan, outcome, err)
+  end subroutine assemble_otherwise
+
+  !> The independent coordinates must be free to move at any rates, and by more than nothing.
+  subroutine check_inputs(plan, state, generic, err)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    type(generic_position_type), intent(inout) :: generic
+    type(error_type), allocatable, intent(out) :: err
+    type(state_type) :: trial
+    type(block_work_type) :: work
+    type(random_type) :: random
+    real(wp) :: remainder
+    integer :: b, i
+    logical :: closed, free
+
+    free = .true.
+    trial = state
+    ! more equations than unknowns: they must agree not only at the start
+    if (generic%exists .or. any(plan%blocks%equations > unknowns_of(plan%blocks))) then
+      call find_generic_position(plan, plan%blocks, state, generic, closed)
+      if (closed) then
+        trial = generic%state
+      else
+        call judge_choice(plan, trial, closed, err)
+        if (allocated(err)) return
+        trial = state
+      end if
+    end if
+    do i = 1, size(plan%independent)
+      trial%dq(plan%independent(i)) = plan%unit_of(plan%independent(i))*random%symmetric()
+    end do
+    do b = 1, size(plan%blocks)
+      work = new_block_work(plan%blocks(b))
+      if (plan%blocks(b)%equations > 0) call factorize_block(plan, plan%blocks(b), trial, work)
+      call solve_rates(plan, plan%blocks(b), trial, work, remainder)
+      free = remainder <= max(contradiction, inexact*plan%data_tolerance)
+      if (.not. free) exit
+    end do
+    if (free) return
+    trial = state
+    call judge_choice(plan, trial, closed, err)
+    if (.not. allocated(err)) call raise(err, exit_structure, 'the independent coordinates cannot all move freely: '// &
+      chain_names(plan%blocks(b))//' would not stay closed')
+  end subroutine check_inputs
+
+  !> Chains with redundant equations must stay closed when they move.
+  subroutine check_motion(plan, state, err)
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state      !< assembled
+    type(error_type), allocatable, intent(out) :: err
+    type(locked_chain_type) :: locked
+
+    call find_locked_chain(plan, state, locked)
+    if (locked%exists) call refuse_locked(plan, locked, err)
+  end subroutine check_motion
+
+  pure elemental integer function unknowns_of(block)
+    type(block_type), intent(in) :: block
+
+    unknowns_of = size(block%unknowns)
+  end function unknowns_of
+
+  pure integer function chain_names_length(block) result(length)
+    type(block_type), intent(in) :: block
+
+    length = len('an open chain')
+    if (size(block%chains) == 1) length = len('closed chain ') + len(to_text(block%chains))
+    if (size(block%chains) > 1) length = len('closed chains  together') + len(to_text(block%chains))
+  end function chain_names_length
+
+  !> "closed chain 2" or "closed chains 1, 3 together".
+  pure function chain_names(block) result(names)
+    type(block_type), intent(in) :: block
+    character(len=chain_names_length(block)) :: names
+
+    if (size(block%chains) == 0) then
+      names = 'an open chain'
+    else if (size(block%chains) == 1) then
+      names = 'closed chain '//to_text(block%chains)
+    else
+      names = 'closed chains '//to_text(block%chains)//' together'
+    end if
+  end function chain_names
+
+  !> Blocks whose Jacobian never changes, since all steps of their loops slide.
+  pure subroutine find_constants(plan)
+    type(plan_type), intent(inout) :: plan
+    integer :: b, c
+
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b))
+        block%is_constant = size(block%unknowns) > 0
+        do c = block%first_closure, block%last_closure
+          associate (loop => plan%steps(plan%closures(c)%loop%steps))
+            block%is_constant = block%is_constant .and. all(loop%is_screw) .and. .not. any(abs(loop%turn) > 0.0_wp)
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine find_constants
+end module mech9_planning

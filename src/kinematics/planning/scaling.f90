@@ -1,0 +1,79 @@
+!> What counts as one: the size of a mechanism, its origin, and the units of its coordinates.
+module mech9_scaling
+  use mech9_kinds, only: wp
+  use mech9_pose, only: pose_type, inverse
+  use mech9_pair, only: screw_factors_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  implicit none
+  private
+  public :: find_size, find_units
+
+  !> Distances below this part of the distance from the links' origins are no size: round-off of the places would be more than
+  !> 1e-12 of them. Errors of a spherical mechanism's centre are such distances.
+  real(wp), parameter :: no_size = 1.0e-4_wp
+
+contains
+
+  !> Size of the mechanism and a good origin: the middle of link 1's pairs.
+  !> The size is the largest distance between two pairs of one link. Where all links have their pairs
+  !> in one point, as in spherical mechanisms, it is the largest distance of a point or pair from the
+  !> origin of its link, or 1 if that is nothing.
+  subroutine find_size(mechanism, plan)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(inout) :: plan
+    real(wp) :: low(3, mechanism%structure%n_links), high(3, mechanism%structure%n_links)
+    type(screw_factors_type) :: factors
+    type(pose_type) :: frame
+    real(wp) :: reach
+    logical :: is_screw
+    integer :: k
+
+    low = huge(low)
+    high = -huge(high)
+    do k = 1, plan%n_coordinates
+      associate (pair => mechanism%pairs(k)%pair)
+        call pair%as_screw(factors, is_screw)
+        if (.not. is_screw) factors = screw_factors_type()
+        frame = inverse(factors%after)
+        low(:, pair%reference) = min(low(:, pair%reference), factors%before%p)
+        high(:, pair%reference) = max(high(:, pair%reference), factors%before%p)
+        low(:, pair%moving) = min(low(:, pair%moving), frame%p)
+        high(:, pair%moving) = max(high(:, pair%moving), frame%p)
+      end associate
+    end do
+    plan%origin = 0.5_wp*(low(:, 1) + high(:, 1))
+    plan%length = 0.0_wp
+    do k = 1, plan%n_links
+      plan%length = max(plan%length, norm2(high(:, k) - low(:, k)))
+    end do
+    do k = 1, plan%n_coordinates
+      if (.not. mechanism%pairs(k)%pair%angular) &
+        plan%length = max(plan%length, abs(mechanism%initial_position(k)))
+    end do
+    reach = 0.0_wp
+    do k = 1, plan%n_links
+      reach = max(reach, maxval(abs(high(:, k))), maxval(abs(low(:, k))))
+    end do
+    do k = 1, size(mechanism%points)
+      reach = max(reach, maxval(abs(mechanism%points(k)%position)))
+    end do
+    if (plan%length <= no_size*reach) plan%length = reach
+    if (plan%length <= 1.0e-14_wp) plan%length = 1.0_wp
+  end subroutine find_size
+
+  !> What counts as one in each coordinate.
+  subroutine find_units(mechanism, plan)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(inout) :: plan
+    type(screw_factors_type) :: factors
+    logical :: is_screw
+    integer :: k
+
+    allocate (plan%unit_of(plan%n_coordinates), source=1.0_wp)
+    do k = 1, plan%n_coordinates
+      call mechanism%pairs(k)%pair%as_screw(factors, is_screw)
+      if (is_screw .and. .not. mechanism%pairs(k)%pair%angular) plan%unit_of(k) = plan%length
+    end do
+  end subroutine find_units
+end module mech9_scaling

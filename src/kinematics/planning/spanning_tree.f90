@@ -1,0 +1,236 @@
+!> First part of the plan: steps and frames from the structural vectors, with constant poses folded.
+!>
+!> A closed chain joins two known links by links that are new. These are reached from both ends, so
+!> that no frame is farther from the frame of link 1 than need be; the last step meets a link that
+!> is reached already and makes its second frame. Either frame of a link may be gone on from: the
+!> one is taken that makes the loop short.
+module mech9_spanning_tree
+  use mech9_kinds, only: wp
+  use mech9_pose, only: pose_type, compose, inverse, identity_pose
+  use mech9_pair, only: screw_factors_type
+  use mech9_structural_vectors, only: chain_type, chains_of
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, step_type, closure_type
+  use mech9_tree_paths, only: find_loop, distance_between
+  use mech9_scaling, only: find_size, find_units
+  implicit none
+  private
+  public :: lay_out_frames
+
+  !> As many further frames of a link are remembered: the latest.
+  integer, parameter :: most_remembered = 3
+
+  !> What is known of frames while they are laid out.
+  type :: layout_type
+    integer :: steps = 0                               !< made so far
+    integer :: closures = 0
+    integer, allocatable :: depth(:)                   !< (0:M) steps from frame 0
+    type(pose_type), allocatable :: link_in(:)         !< (0:M) the link's own system in the frame
+    integer, allocatable :: further(:, :)              !< (most_remembered,N) further frames of each link, 0: none
+  end type layout_type
+
+contains
+
+  !> Steps, frames and closures (their ranks and rows are found later) chain by chain; no blocks yet.
+  subroutine lay_out_frames(mechanism, plan)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(out) :: plan
+    type(chain_type), allocatable :: chains(:)
+    type(layout_type) :: layout
+    integer :: i
+
+    associate (structure => mechanism%structure)
+      plan%n_links = structure%n_links
+      plan%n_coordinates = structure%n_coordinates
+      plan%independent = pack([(i, i=1, structure%n_coordinates)], structure%independent)
+    end associate
+    plan%data_tolerance = mechanism%data_tolerance
+    allocate (plan%steps(plan%n_coordinates), plan%step_of(plan%n_coordinates))
+    allocate (plan%frame_of(plan%n_links), source=0)
+    allocate (plan%link_in_frame(plan%n_links), plan%pairs(plan%n_coordinates))
+    allocate (plan%closures(plan%n_coordinates - plan%n_links + 1))
+    call find_size(mechanism, plan)
+    call find_units(mechanism, plan)
+    plan%link_in_frame(1)%p = -plan%origin
+    allocate (layout%depth(0:plan%n_coordinates), source=0)
+    allocate (layout%link_in(0:plan%n_coordinates))
+    allocate (layout%further(most_remembered, plan%n_links), source=0)
+    layout%link_in(0) = plan%link_in_frame(1)
+    chains = chains_of(mechanism%vectors)
+    do i = 1, size(chains)
+      associate (nrg => mechanism%vectors%nrg(chains(i)%first - 1:chains(i)%last), &
+                 nws => mechanism%vectors%nws(chains(i)%first:chains(i)%last))
+        call lay_out_chain(mechanism, i, nrg, nws, chains(i)%closed, plan, layout)
+      end associate
+    end do
+  end subroutine lay_out_frames
+
+  !> One chain: an open one, and the stem of one that closes on itself, from its known end outwards.
+  subroutine lay_out_chain(mechanism, chain, links, coordinates, closed, plan, layout)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: chain
+    integer, intent(in) :: links(0:)         !< the known link it starts at, then the link of each step
+    integer, intent(in) :: coordinates(:)
+    logical, intent(in) :: closed
+    type(plan_type), intent(inout) :: plan
+    type(layout_type), intent(inout) :: layout
+    integer :: i, n, stem, frame, reached
+
+    n = size(coordinates)
+    stem = n
+    if (closed) then
+      do stem = n - 1, 1, -1
+        if (links(stem) == links(n)) exit
+      end do
+    end if
+    frame = plan%frame_of(links(0))
+    do i = 1, stem
+      call add_step(mechanism, chain, links(i - 1), links(i), coordinates(i), frame, plan, layout, reached)
+      call make_first(links(i), reached, plan, layout)
+      frame = reached
+    end do
+    if (closed) call lay_out_loop(mechanism, chain, links(stem:), coordinates(stem + 1:), plan, layout)
+  end subroutine lay_out_chain
+
+  !> New links between two known ones, reached from both ends, and the closure where they meet.
+  subroutine lay_out_loop(mechanism, chain, links, coordinates, plan, layout)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: chain
+    integer, intent(in) :: links(0:)         !< known, new ..., known
+    integer, intent(in) :: coordinates(:)
+    type(plan_type), intent(inout) :: plan
+    type(layout_type), intent(inout) :: layout
+    integer :: n, here, there, from_here, i, reached
+
+    n = size(coordinates)
+    call nearest_frames(plan, layout, links(0), links(n), here, there)
+    from_here = (n + layout%depth(there) - layout%depth(here))/2
+    from_here = max(0, min(n - 1, from_here))
+    do i = 1, from_here
+      call add_step(mechanism, chain, links(i - 1), links(i), coordinates(i), here, plan, layout, reached)
+      call make_first(links(i), reached, plan, layout)
+      here = reached
+    end do
+    do i = n - 1, from_here + 1, -1
+      call add_step(mechanism, chain, links(i + 1), links(i), coordinates(i + 1), there, plan, layout, reached)
+      call make_first(links(i), reached, plan, layout)
+      there = reached
+    end do
+    call add_step(mechanism, chain, links(from_here), links(from_here + 1), coordinates(from_here + 1), here, &
+                  plan, layout, reached)
+    layout%closures = layout%closures + 1
+    call make_closure(plan, layout, reached, there, plan%closures(layout%closures))
+    layout%further(:, links(from_here + 1)) = [reached, layout%further(:most_remembered - 1, links(from_here + 1))]
+  end subroutine lay_out_loop
+
+  !> A frame of each of two links, so that there are few steps from one to the other.
+  pure subroutine nearest_frames(plan, layout, a, b, frame_a, frame_b)
+    type(plan_type), intent(in) :: plan
+    type(layout_type), intent(in) :: layout
+    integer, intent(in) :: a, b
+    integer, intent(out) :: frame_a, frame_b
+    integer :: frames_a(0:most_remembered), frames_b(0:most_remembered), i, j, most, distance, least
+
+    frames_a = [plan%frame_of(a), layout%further(:, a)]
+    frames_b = [plan%frame_of(b), layout%further(:, b)]
+    ! look near first: a long way between two frames would take as long to walk
+    most = 8
+    do
+      least = most + 1
+      do i = 0, most_remembered
+        if (i > 0 .and. frames_a(i) == 0) exit
+        do j = 0, most_remembered
+          if (j > 0 .and. frames_b(j) == 0) exit
+          distance = distance_between(plan%steps, frames_a(i), frames_b(j), least)
+          if (distance >= least) cycle
+          least = distance
+          frame_a = frames_a(i)
+          frame_b = frames_b(j)
+        end do
+      end do
+      if (least <= most) return
+      most = 8*most
+    end do
+  end subroutine nearest_frames
+
+  !> The frame by which a link is known.
+  pure subroutine make_first(link, frame, plan, layout)
+    integer, intent(in) :: link, frame
+    type(plan_type), intent(inout) :: plan
+    type(layout_type), intent(in) :: layout
+
+    plan%frame_of(link) = frame
+    plan%link_in_frame(link) = layout%link_in(frame)
+  end subroutine make_first
+
+  !> One more step, from a frame of one link through a pair to a new frame of another.
+  subroutine add_step(mechanism, chain, from, to, coordinate, parent, plan, layout, reached)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: chain, from, to, coordinate
+    integer, intent(in) :: parent            !< frame of link `from`
+    type(plan_type), intent(inout) :: plan
+    type(layout_type), intent(inout) :: layout
+    integer, intent(out) :: reached
+
+    layout%steps = layout%steps + 1
+    reached = layout%steps
+    plan%step_of(coordinate) = reached
+    layout%depth(reached) = layout%depth(parent) + 1
+    call make_step(mechanism, from, to, coordinate, layout%link_in(parent), plan, plan%steps(reached), &
+                   layout%link_in(reached))
+    plan%steps(reached)%parent = parent
+    plan%steps(reached)%chain = chain
+  end subroutine add_step
+
+  !> The step from link `from` to link `to` through the pair of a coordinate; `after` is the arriving
+  !> link's system in the new frame.
+  subroutine make_step(mechanism, from, to, coordinate, link_in_frame, plan, step, after)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: from, to, coordinate
+    type(pose_type), intent(in) :: link_in_frame    !< the departing link's system in the frame it departs from
+    type(plan_type), intent(inout) :: plan
+    type(step_type), intent(out) :: step
+    type(pose_type), intent(out) :: after
+    type(screw_factors_type) :: factors
+    real(wp) :: direction
+
+    associate (pair => mechanism%pairs(coordinate)%pair)
+      step%coordinate = coordinate
+      step%link = to
+      step%reversed = pair%reference /= from
+      step%dependent = .not. mechanism%structure%independent(coordinate)
+      call pair%as_screw(factors, step%is_screw)
+      if (step%is_screw) then
+        direction = merge(-1.0_wp, 1.0_wp, step%reversed)
+        step%turn = direction*factors%turn
+        step%slide = direction*factors%slide
+        step%offset = factors%offset
+        if (step%reversed) then
+          step%before = compose(link_in_frame, inverse(factors%after))
+          after = inverse(factors%before)
+        else
+          step%before = compose(link_in_frame, factors%before)
+          after = factors%after
+        end if
+      else
+        allocate (plan%pairs(coordinate)%pair, source=pair)
+        step%before = link_in_frame
+        after = identity_pose
+      end if
+    end associate
+  end subroutine make_step
+
+  !> The closure where two frames of a link must coincide, and the loop it belongs to.
+  subroutine make_closure(plan, layout, closing, target, closure)
+    type(plan_type), intent(in) :: plan
+    type(layout_type), intent(in) :: layout
+    integer, intent(in) :: closing, target
+    type(closure_type), intent(out) :: closure
+
+    closure%chain = layout%closures
+    closure%closing = closing
+    closure%target = target
+    closure%in_target = compose(layout%link_in(target), inverse(layout%link_in(closing)))
+    call find_loop(plan%steps, closure)
+  end subroutine make_closure
+end module mech9_spanning_tree

@@ -1,0 +1,301 @@
+!> Passing a special position where branches cross, on the branch whose velocities are continuous.
+!>
+!> There the equations of the block do not tell one branch from the other, but each branch is smooth:
+!> the polynomial through regular positions before it leads to regular positions after it, where
+!> Newton's method has only one solution near by. What lies between is the polynomial through all of
+!> them, with its positions closed in the directions that the equations do determine.
+module mech9_branch_crossing
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_hermite, only: hermite_type, build_hermite
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type, acceleration_known
+  use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, apply_change
+  use mech9_singularity_monitor, only: singularity_monitor_type, factorize_trial
+  use mech9_branch_stepping, only: branch_stepper_type, settle, step_towards, set_inputs
+  use mech9_frame_motion, only: place_frames, spread_velocities, spread_accelerations
+  use mech9_block_equations, only: block_rates, block_residual
+  implicit none
+  private
+  public :: branch_crossing_type, build_crossing, position_within, land_near, walk
+
+  !> The way through, from one regular position to another.
+  type :: branch_crossing_type
+    logical :: exists = .false.
+    real(wp) :: from = 0.0_wp, to = 0.0_wp       !< [s]
+    type(hermite_type) :: way                    !< all coordinates over time
+    type(branch_stepper_type) :: beyond                !< at its end
+    logical :: ends = .false.                    !< at the special position: the drives have no value beyond
+  end type branch_crossing_type
+
+  !> Halves of the passage that are tried, against the distance at which the position was found near.
+  integer, parameter :: most_trials = 4
+  real(wp), parameter :: shorter = 1.0_wp/3.0_wp
+  !> A landing must be that close to its prediction: against the least pivot, ...
+  real(wp), parameter :: trusted_correction = 0.02_wp
+  !> ... and rates against the largest one.
+  real(wp), parameter :: trusted_rates = 0.02_wp
+  !> A block is interpolated where its least pivot is below this part of the largest it was.
+  real(wp), parameter :: near = 0.03_wp
+
+contains
+
+  !> The way through the crossing at time t of the branch on which `stepper` departs, which must be near but
+  !> regular. It does not exist where no smooth motion goes on. Fails where a pair has no pose.
+  subroutine build_crossing(mechanism, plan, stepper, t, crossing, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(in) :: stepper
+    real(wp), intent(in) :: t
+    type(branch_crossing_type), intent(inout) :: crossing
+    type(error_type), allocatable, intent(out) :: err
+    type(branch_stepper_type) :: scout
+    real(wp) :: half
+    integer :: trial
+
+    half = t - stepper%predictor%t
+    crossing%exists = .false.
+    do trial = 1, most_trials
+      scout = stepper
+      scout%with_accelerations = .true.
+      if (trial > 1) call walk(mechanism, plan, scout, t - half, crossing%exists, err)
+      if (allocated(err)) return
+      if (trial == 1 .or. crossing%exists) call try_passage(mechanism, plan, scout, t, half, crossing, err)
+      if (allocated(err) .or. crossing%exists) return
+      half = half*shorter
+    end do
+  end subroutine build_crossing
+
+  !> Two positions before, two after.
+  subroutine try_passage(mechanism, plan, scout, t, half, crossing, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(inout) :: scout       !< departs at t - half
+    real(wp), intent(in) :: t, half
+    type(branch_crossing_type), intent(inout) :: crossing
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: no_drive
+    real(wp), dimension(plan%n_coordinates, 4) :: q, dq, ddq
+    real(wp) :: times(4)
+    logical :: ok
+
+    times = t + half*[-1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp]
+    call take(1)
+    call walk(mechanism, plan, scout, times(2), crossing%exists, err)
+    if (allocated(err) .or. .not. crossing%exists) return
+    call take(2)
+    crossing%from = times(1)
+    crossing%to = times(4)
+    crossing%ends = .false.
+    call build_hermite(times(:2), q(:, :2), dq(:, :2), ddq(:, :2), crossing%way)
+    call land(mechanism, plan, crossing%way, times(3), 1.0_wp, scout, ok, err, no_drive)
+    crossing%exists = ok
+    if (allocated(no_drive)) then
+      call end_there()
+      return
+    end if
+    if (allocated(err) .or. .not. ok) return
+    call take(3)
+    call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%way)
+    call land(mechanism, plan, crossing%way, times(4), 1.0_wp, scout, ok, err, no_drive)
+    crossing%exists = ok
+    if (allocated(err) .or. .not. ok) return
+    call take(4)
+    call build_hermite(times, q, dq, ddq, crossing%way)
+    crossing%beyond = scout
+
+  contains
+
+    subroutine take(i)
+      integer, intent(in) :: i
+
+      q(:, i) = scout%predictor%q
+      dq(:, i) = scout%predictor%dq
+      ddq(:, i) = scout%predictor%ddq
+    end subroutine take
+
+    !> The last result may lie just there: one more position before it.
+    subroutine end_there()
+      times(3) = t - 0.25_wp*half
+      call walk(mechanism, plan, scout, times(3), crossing%exists, err)
+      if (allocated(err) .or. .not. crossing%exists) return
+      call take(3)
+      call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%way)
+      crossing%ends = .true.
+    end subroutine end_there
+  end subroutine try_passage
+
+  !> Regular steps to a time.
+  subroutine walk(mechanism, plan, scout, t, arrived, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(inout) :: scout
+    real(wp), intent(in) :: t
+    logical, intent(out) :: arrived
+    type(error_type), allocatable, intent(out) :: err
+    logical :: stuck
+    integer :: refused_by
+
+    stuck = .false.
+    do while (abs(t - scout%predictor%t) > 0.0_wp .and. .not. stuck)
+      call step_towards(mechanism, plan, scout, t, stuck, refused_by, err)
+      if (allocated(err)) exit
+    end do
+    arrived = .not. (stuck .or. allocated(err))
+  end subroutine walk
+
+  !> Land at time t straight on from a start where nothing but positions and rates is known.
+  subroutine land_near(mechanism, plan, t, scout, ok, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    real(wp), intent(in) :: t
+    type(branch_stepper_type), intent(inout) :: scout
+    logical, intent(out) :: ok
+    type(error_type), allocatable, intent(out) :: err        !< a pair has no pose, or a drive no value
+    type(error_type), allocatable :: no_drive
+    type(hermite_type) :: way
+    real(wp), dimension(plan%n_coordinates, 1) :: q, dq, ddq
+
+    q(:, 1) = scout%state%q
+    dq(:, 1) = scout%state%dq
+    ddq = 0.0_wp
+    call build_hermite([scout%state%t], q, dq, ddq, way)
+    call land(mechanism, plan, way, t, 10.0_wp, scout, ok, err, no_drive)
+    if (allocated(no_drive)) call move_alloc(no_drive, err)
+  end subroutine land_near
+
+  !> Close all blocks at time t from their prediction; `ok` if each is as good as met, and so are the rates.
+  subroutine land(mechanism, plan, way, t, slack, scout, ok, err, no_drive)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(hermite_type), intent(in) :: way
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: slack                            !< how many times as far off it may be
+    type(branch_stepper_type), intent(inout) :: scout
+    logical, intent(out) :: ok
+    type(error_type), allocatable, intent(out) :: err        !< a pair has no pose
+    type(error_type), allocatable, intent(out) :: no_drive   !< a drive has no value
+    real(wp), dimension(plan%n_coordinates) :: q, dq, ddq
+    type(newton_outcome_type) :: newton
+    integer :: b
+
+    ok = .false.
+    call way%evaluate(t, q, dq, ddq)
+    scout%state%t = t
+    scout%state%q = q
+    call set_inputs(mechanism, t, scout%state%q, scout%state%dq, scout%state%ddq, no_drive)
+    if (allocated(no_drive)) then
+      scout%state%q = scout%predictor%q
+      return
+    end if
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b), work => scout%work(b), monitor => scout%monitors(b))
+        call close_block(plan, block, scout%state, work, newton, err, 1)
+        scout%iterations = scout%iterations + newton%iterations
+        if (allocated(err) .or. .not. newton%converged) return
+        call factorize_trial(plan, block, scout%state, work, monitor)
+        if (size(block%unknowns) > 0 .and. newton%correction > slack*trusted_correction*monitor%trial_pivot) return
+        call solve_rates(plan, block, scout%state, work)
+        call solve_accelerations(plan, block, scout%state, work)
+      end associate
+    end do
+    ok = maxval(abs(scout%state%dq - dq)/plan%unit_of) <= slack*trusted_rates*maxval(abs(dq)/plan%unit_of)
+    if (.not. ok) return
+    scout%steps = scout%steps + 1
+    call settle(scout)
+  end subroutine land
+
+  !> Position, rates and accelerations at a time within a passage.
+  subroutine position_within(mechanism, plan, crossing, t, state, work, monitors, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(branch_crossing_type), intent(in) :: crossing
+    real(wp), intent(in) :: t
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work(:)
+    type(singularity_monitor_type), intent(inout) :: monitors(:)
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: newton
+    real(wp), dimension(plan%n_coordinates) :: dq, ddq
+    integer :: b
+
+    state%t = t
+    call crossing%way%evaluate(t, state%q, dq, ddq)
+    state%dq = dq
+    state%ddq = ddq
+    call set_inputs(mechanism, t, state%q, state%dq, state%ddq, err)
+    if (allocated(err)) return
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b))
+        call place_frames(plan, block, state, err)
+        if (allocated(err)) return
+        call factorize_trial(plan, block, state, work(b), monitors(b))
+        if (size(block%unknowns) > 0 .and. monitors(b)%trial_pivot < near*monitors(b)%largest_pivot) then
+          call close_where_determined(plan, block, state, work(b), monitors(b), err)
+          if (allocated(err)) return
+          state%dq(block%coordinates) = dq(block%coordinates)
+          state%ddq(block%coordinates) = ddq(block%coordinates)
+          call move_where_determined(plan, block, state, work(b), monitors(b))
+        else
+          call close_block(plan, block, state, work(b), newton, err)
+          if (allocated(err)) return
+          call factorize_trial(plan, block, state, work(b), monitors(b))
+          call solve_rates(plan, block, state, work(b))
+          call solve_accelerations(plan, block, state, work(b))
+        end if
+      end associate
+    end do
+    state%known = acceleration_known
+  end subroutine position_within
+
+  !> Close a block as far as its equations determine it: what the least pivots belong to is left as predicted.
+  subroutine close_where_determined(plan, block, state, work, monitor, err)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(singularity_monitor_type), intent(in) :: monitor
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    do i = 1, 2
+      call block_residual(plan, block, state, work%right)
+      call solve_where_determined(work, monitor)
+      call apply_change(plan, block, work%change, state)
+      call place_frames(plan, block, state, err)
+      if (allocated(err)) return
+    end do
+  end subroutine close_where_determined
+
+  !> Rates and accelerations of a block, likewise.
+  subroutine move_where_determined(plan, block, state, work, monitor)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(singularity_monitor_type), intent(in) :: monitor
+
+    associate (k => block%coordinates)
+      call spread_velocities(plan, block, state)
+      call block_rates(plan, block, 1, state, work%right)
+      call solve_where_determined(work, monitor)
+      state%dq(k) = state%dq(k) + work%change*plan%unit_of(k)
+      call spread_velocities(plan, block, state)
+      call spread_accelerations(plan, block, block%last_step, state)
+      call block_rates(plan, block, 2, state, work%right)
+      call solve_where_determined(work, monitor)
+      state%ddq(k) = state%ddq(k) + work%change*plan%unit_of(k)
+      call spread_accelerations(plan, block, block%last_step, state)
+    end associate
+  end subroutine move_where_determined
+
+  !> The least change that makes up for what stands on the right, the directions of the least pivots left out.
+  subroutine solve_where_determined(work, monitor)
+    type(block_work_type), intent(inout) :: work
+    type(singularity_monitor_type), intent(in) :: monitor
+
+    work%right = -work%right
+    call work%equations%solve(work%right, work%change, tolerance=near*monitor%largest_pivot/work%equations%largest_pivot())
+  end subroutine solve_where_determined
+end module mech9_branch_crossing

@@ -1,0 +1,343 @@
+!> Following a driven motion through regular positions, step by step, on one branch.
+!>
+!> Each block is predicted by the polynomial through the last two positions with their rates and
+!> accelerations, corrected by Newton's method, and judged. A step is accepted if the block's Jacobian
+!> at its end cannot have passed a singular matrix on the way: then the closed position near the
+!> prediction is the only one there, and it belongs to the branch. What is judged is in units of
+!> the least pivot, which measures how far away other branches are.
+module mech9_branch_stepping
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_tree_paths, only: mark_path
+  use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
+  use mech9_block_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
+    solve_rates, solve_motion
+  use mech9_predictor, only: predictor_type, new_predictor, begin_at, depart_from, aim_at, predict, &
+    know_accelerations
+  use mech9_singularity_monitor, only: singularity_monitor_type, new_singularity_monitor, monitor_step, keep, nearness, is_near
+  implicit none
+  private
+  public :: branch_stepper_type, new_branch_stepper, settle, step_towards, set_inputs, go_back, add_accelerations
+
+  !> A driven coordinate moves no farther in a step than this [rad, lengths of the mechanism], ...
+  real(wp), parameter :: longest_drive = 0.25_wp
+  !> ... and a dependent one than this.
+  real(wp), parameter :: longest_move = 0.5_wp
+  !> Correction of the prediction against the least pivot. By Kantorovich's theorem Newton's method
+  !> stays with the only solution near by while this is below about 1/2 over the curvature.
+  real(wp), parameter :: trusted_correction = 0.05_wp
+  !> Change of the rates in a step times its length, against the movement: beyond it the movement turned back.
+  real(wp), parameter :: trusted_bend = 1.0_wp
+  !> Newton must at least quarter its correction from the first to the second iteration, ...
+  real(wp), parameter :: trusted_contraction = 0.25_wp
+  !> ... unless that is small anyway, against the least pivot.
+  real(wp), parameter :: small_correction = 1.0e-4_wp
+  !> Steps below this part of the time are given up.
+  real(wp), parameter :: least_step = 1.0e-14_wp
+  !> A step creeps that goes less than this part of what remains, and moves nothing farther than ...
+  real(wp), parameter :: creeping_step = 1.0e-5_wp
+  !> ... this [rad, lengths of the mechanism].
+  real(wp), parameter :: creeping_move = 1.0e-3_wp
+  !> So many creeping steps towards one time are given up.
+  integer, parameter :: most_creeping = 10000
+
+  !> What follows the branch: state, departure and scratch, and counts for the report.
+  type :: branch_stepper_type
+    type(state_type) :: state                     !< during a step the trial, then the accepted position
+    type(predictor_type) :: predictor             !< the position accepted last
+    type(block_work_type), allocatable :: work(:)
+    type(singularity_monitor_type), allocatable :: monitors(:)
+    real(wp), allocatable :: per_unit(:)          !< (M) reciprocals of the coordinates' units
+    integer, allocatable :: drives(:)             !< those that move closed chains
+    integer :: last_block = huge(1)               !< the blocks after this one are left as they are
+    logical :: with_accelerations = .true.        !< at every position, not only near singular ones
+    real(wp) :: reach = huge(1.0_wp)              !< a step that will probably be accepted [s]
+    real(wp) :: goal = 0.0_wp                     !< time towards which it went last [s]
+    real(wp) :: correction = 0.0_wp               !< of the last trial's prediction, in units of the coordinates
+    integer :: creeping = 0                       !< steps towards it that went nearly nowhere
+    integer(long) :: steps = 0                    !< taken
+    integer(long) :: halvings = 0                 !< steps refused
+    integer(long) :: iterations = 0               !< of Newton's method, all blocks
+  end type branch_stepper_type
+
+contains
+
+  !> Independent coordinates and their derivatives at a time, from the drives.
+  subroutine set_inputs(mechanism, t, q, dq, ddq, err)
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), intent(in) :: t
+    real(wp), intent(inout) :: q(:), dq(:), ddq(:)   !< (M)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i, k
+
+    do i = 1, size(mechanism%drives)
+      k = mechanism%drives(i)%drive%coordinate
+      call mechanism%drives(i)%drive%evaluate(t, q(k), dq(k), ddq(k), err)
+      if (allocated(err)) return
+    end do
+  end subroutine set_inputs
+
+  !> A follower at an assembled position; nothing but the position is known yet.
+  pure function new_branch_stepper(mechanism, plan, assembled) result(stepper)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: assembled
+    type(branch_stepper_type) :: stepper
+    integer :: b, m
+
+    stepper%state = assembled
+    m = plan%n_coordinates
+    stepper%predictor = new_predictor(m)
+    allocate (stepper%work(size(plan%blocks)), stepper%monitors(size(plan%blocks)))
+    do b = 1, size(plan%blocks)
+      stepper%work(b) = new_block_work(plan%blocks(b), plan)
+      stepper%monitors(b) = new_singularity_monitor(plan%blocks(b))
+    end do
+    allocate (stepper%per_unit(m))
+    stepper%per_unit = 1.0_wp/plan%unit_of
+    stepper%drives = drives_of_chains(mechanism, plan)
+  end function new_branch_stepper
+
+  !> Numbers of the drives whose coordinates belong to closed chains. Those of open chains may move as far
+  !> as they like in a step.
+  pure function drives_of_chains(mechanism, plan) result(drives)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    integer, allocatable :: drives(:)
+    logical :: marked(plan%n_coordinates), drives_chain(size(mechanism%drives))
+    integer :: b, c, i
+
+    marked = .false.
+    do b = 1, size(plan%blocks)
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        call mark_path(plan%steps, plan%closures(c)%closing, marked)
+        call mark_path(plan%steps, plan%closures(c)%target, marked)
+      end do
+    end do
+    do i = 1, size(mechanism%drives)
+      drives_chain(i) = marked(plan%step_of(mechanism%drives(i)%drive%coordinate))
+    end do
+    drives = pack([(i, i=1, size(mechanism%drives))], drives_chain)
+  end function drives_of_chains
+
+  !> Take the state, complete with its accelerations, as the place of departure with nothing known before it.
+  !> The Jacobians of all blocks must be on trial (see mech9_watch) or unchanged.
+  pure subroutine settle(stepper)
+    type(branch_stepper_type), intent(inout) :: stepper
+
+    stepper%state%known = acceleration_known
+    call begin_at(stepper%state, stepper%predictor)
+    call keep(stepper%work, stepper%monitors)
+  end subroutine settle
+
+  !> One accepted step towards time t, as far as it can be trusted. `stuck` tells that even the shortest one
+  !> cannot, or that too many have led nearly nowhere, and `refused_by` because of which block. Fails where a
+  !> drive or a pair has no value.
+  subroutine step_towards(mechanism, plan, stepper, t, stuck, refused_by, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(inout) :: stepper
+    real(wp), intent(in) :: t
+    logical, intent(out) :: stuck
+    integer, intent(out) :: refused_by
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: remaining, h, worst
+    logical :: no_drive, driven, complete
+
+    stuck = .false.
+    if (abs(t - stepper%goal) > 0.0_wp) stepper%creeping = 0
+    stepper%goal = t
+    do
+      remaining = t - stepper%predictor%t
+      h = min(abs(remaining), stepper%reach)
+      call limit_by_drives(mechanism, plan, stepper, sign(1.0_wp, remaining), h, driven)
+      stepper%state%t = stepper%predictor%t + sign(h, remaining)
+      ! two like steps rather than a long one and a rest
+      if (h < abs(remaining) .and. 2.0_wp*h > abs(remaining)) &
+        stepper%state%t = stepper%predictor%t + 0.5_wp*remaining
+      if (h >= abs(remaining)) stepper%state%t = t
+      h = abs(stepper%state%t - stepper%predictor%t)
+      complete = stepper%with_accelerations .or. any(is_near(stepper%monitors))
+      call try_step(mechanism, plan, stepper, complete, worst, refused_by, no_drive, err)
+      if (no_drive) return
+      if (worst <= 1.0_wp) then
+        stepper%reach = min(2.0_wp*min(max(stepper%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
+        if (h < creeping_step*abs(remaining) .and. .not. driven) &
+          call count_creeping(plan, stepper, stuck, refused_by)
+        call accept(plan, stepper, complete)
+        return
+      end if
+      stepper%halvings = stepper%halvings + 1
+      stepper%reach = h*max(0.1_wp, min(0.6_wp, 0.8_wp/worst))
+      stuck = stepper%reach <= least_step*max(abs(t), abs(stepper%predictor%t))
+      if (stuck) return
+    end do
+  end subroutine step_towards
+
+  !> Count a short step that is about to be accepted, if it moves nothing far. Were there no end to them, the
+  !> search would be as good as endless.
+  pure subroutine count_creeping(plan, stepper, too_many, slowest)
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(inout) :: stepper
+    logical, intent(out) :: too_many
+    integer, intent(inout) :: slowest         !< too many: the block that is nearest to a singular position
+    integer :: b
+
+    if (any(abs(stepper%state%q - stepper%predictor%q) > creeping_move*plan%unit_of)) then
+      too_many = .false.
+      return
+    end if
+    stepper%creeping = stepper%creeping + 1
+    too_many = stepper%creeping > most_creeping
+    if (.not. too_many) return
+    do b = 1, size(plan%blocks)
+      if (nearness(stepper%monitors(b)) < nearness(stepper%monitors(slowest))) slowest = b
+    end do
+  end subroutine count_creeping
+
+  !> Shorten a step until no driven coordinate of a closed chain can move far within it.
+  subroutine limit_by_drives(mechanism, plan, stepper, direction, h, driven)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(inout) :: stepper
+    real(wp), intent(in) :: direction         !< +1, or -1 backwards in time
+    real(wp), intent(inout) :: h              !< > 0
+    logical, intent(out) :: driven            !< it was shortened
+    real(wp) :: part
+    integer :: i, trial
+
+    driven = .false.
+    do i = 1, size(stepper%drives)
+      associate (drive => mechanism%drives(stepper%drives(i))%drive)
+        ! the bound of the rate itself gets smaller with the step
+        do trial = 1, 100
+          part = h*drive%greatest_rate(stepper%predictor%t, direction*h)/(longest_drive*plan%unit_of(drive%coordinate))
+          if (.not. part > 1.0_wp) exit
+          driven = .true.
+          h = h*max(0.2_wp, 0.99_wp/part)
+          stepper%reach = h
+        end do
+      end associate
+    end do
+  end subroutine limit_by_drives
+
+  !> Predict, correct and judge one step of all blocks, from the departure to the time in the state.
+  subroutine try_step(mechanism, plan, stepper, complete, worst, refused_by, no_drive, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(inout) :: stepper
+    logical, intent(in) :: complete             !< with accelerations
+    real(wp), intent(out) :: worst              !< at most 1: accepted; else about how much too long it was
+    integer, intent(out) :: refused_by          !< number of the block
+    logical, intent(out) :: no_drive            !< failed because a drive has no value
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: newton
+    integer :: b
+
+    refused_by = 0
+    worst = 0.0_wp
+    call set_inputs(mechanism, stepper%state%t, stepper%state%q, stepper%state%dq, stepper%state%ddq, err)
+    no_drive = allocated(err)
+    if (no_drive) return
+    stepper%correction = 0.0_wp
+    call aim_at(stepper%state%t, stepper%predictor)
+    do b = 1, min(size(plan%blocks), stepper%last_block)
+      refused_by = b
+      associate (block => plan%blocks(b), work => stepper%work(b))
+        call predict(block, stepper%predictor, stepper%state)
+        ! to the last digit: what chains that are closed enough leave open is large beside a singular position
+        call close_block(plan, block, stepper%state, work, newton, err, 1)
+        stepper%iterations = stepper%iterations + newton%iterations
+        stepper%correction = max(stepper%correction, newton%correction)
+        ! a pair may have no pose where a step that is too long leads
+        if (allocated(err) .or. .not. newton%converged) worst = 4.0_wp
+        if (worst > 1.0_wp) return
+        if (size(block%unknowns) > 0) &
+          call monitor_step(plan, block, stepper%state, newton%factorized, work, stepper%monitors(b), worst)
+        if (worst > 1.0_wp) return
+        if (complete) then
+          call solve_motion(plan, block, stepper%state, work)
+        else
+          call solve_rates(plan, block, stepper%state, work, no_more=.true.)
+        end if
+        call judge(block, stepper%per_unit, stepper%predictor, stepper%state, newton, stepper%monitors(b)%trial_pivot, &
+                   worst)
+        if (worst > 1.0_wp) return
+      end associate
+    end do
+  end subroutine try_step
+
+  !> Judge a block's prediction against its correction, and its movement against its rates.
+  pure subroutine judge(block, per_unit, predictor, state, newton, pivot, worst)
+    type(block_type), intent(in) :: block
+    real(wp), intent(in), contiguous :: per_unit(:)
+    type(predictor_type), intent(in) :: predictor
+    type(state_type), intent(in) :: state
+    type(newton_outcome_type), intent(in) :: newton
+    real(wp), intent(in) :: pivot
+    real(wp), intent(inout) :: worst
+    real(wp) :: move, bend
+
+    if (size(block%unknowns) == 0) return
+    worst = max(worst, newton%correction/(trusted_correction*pivot))
+    if (newton%correction > small_correction*pivot) worst = max(worst, newton%contraction/trusted_contraction)
+    move = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%q, predictor%q)
+    bend = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%dq, predictor%dq)
+    bend = bend*abs(state%t - predictor%t)
+    worst = max(worst, move/longest_move, bend/(trusted_bend*max(move, trusted_correction*pivot)))
+  end subroutine judge
+
+  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+
+  !> Largest difference of some coordinates, in their units.
+  pure real(wp) function largest_change(n, coordinates, m, per_unit, now, before) result(largest)
+    integer, intent(in) :: n, coordinates(n), m
+    real(wp), intent(in) :: per_unit(m), now(m), before(m)
+    integer :: i, k
+
+    largest = 0.0_wp
+    do i = 1, n
+      k = coordinates(i)
+      largest = max(largest, abs(now(k) - before(k))*per_unit(k))
+    end do
+  end function largest_change
+
+  !> The trial becomes the place of departure.
+  pure subroutine accept(plan, stepper, complete)
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(inout) :: stepper
+    logical, intent(in) :: complete             !< its accelerations are known
+
+    stepper%steps = stepper%steps + 1
+    stepper%state%known = merge(acceleration_known, velocity_known, complete)
+    call depart_from(stepper%state, plan%unit_of, complete, stepper%correction, stepper%predictor)
+    call keep(stepper%work, stepper%monitors)
+  end subroutine accept
+
+  !> The accelerations at the place of departure, where the follower is, if it goes without them.
+  subroutine add_accelerations(plan, stepper)
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(inout) :: stepper
+    integer :: b
+
+    if (stepper%state%known == acceleration_known) return
+    do b = 1, min(size(plan%blocks), stepper%last_block)
+      call solve_motion(plan, plan%blocks(b), stepper%state, stepper%work(b))
+    end do
+    stepper%state%known = acceleration_known
+    call know_accelerations(stepper%state%ddq, stepper%predictor)
+  end subroutine add_accelerations
+
+  !> After a step that was given up: the coordinates of the last position again.
+  pure subroutine go_back(stepper)
+    type(branch_stepper_type), intent(inout) :: stepper
+
+    stepper%state%t = stepper%predictor%t
+    stepper%state%q = stepper%predictor%q
+    stepper%state%dq = stepper%predictor%dq
+    stepper%state%ddq = stepper%predictor%ddq
+    stepper%state%known = nothing_known
+  end subroutine go_back
+end module mech9_branch_stepping

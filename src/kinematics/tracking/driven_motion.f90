@@ -1,0 +1,366 @@
+!> Following a driven motion from output to output, through special positions or up to where it ends.
+module mech9_driven_motion
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: solve_rates, solve_accelerations
+  use mech9_conditioning, only: conditioning_type
+  use mech9_planning, only: chain_names
+  use mech9_singularity_monitor, only: factorize_trial, is_near
+  use mech9_branch_stepping, only: branch_stepper_type, new_branch_stepper, settle, step_towards, set_inputs, go_back, &
+    add_accelerations
+  use mech9_special_position, only: finding_type, look_ahead, find_escape, nothing_special, dead_point, branch_point, lost, escape
+  use mech9_special_start, only: ways_type, find_ways, start_crossing
+  use mech9_branch_crossing, only: branch_crossing_type, build_crossing, position_within
+  use mech9_frame_motion, only: spread_velocities
+  use mech9_block_equations, only: largest_gap
+  implicit none
+  private
+  public :: driven_motion_type, start_driven_motion, advance, set_inputs, words_of_block
+
+  !> Blocks whose least against largest pivot is below this start at a singular position: at a dead point
+  !> round-off of the position leaves its square root, some 1e-8.
+  real(wp), parameter :: singular = 1.0e-7_wp
+  !> A motion that ends is followed up to this part of the way from where the end was seen.
+  real(wp), parameter :: just_short = 1.0e-9_wp
+
+  !> What is followed, and counts for the report.
+  type, extends(branch_stepper_type) :: driven_motion_type
+    type(finding_type) :: ahead                   !< the special position that was seen
+    type(branch_crossing_type) :: crossing                 !< the way through it
+    real(wp), allocatable :: clear_until(:)       !< for each block: until when nothing special was seen [s]
+    integer(long) :: positions = 0                !< that were asked for
+    integer(long) :: crossings = 0                 !< special positions that were passed
+    type(conditioning_type) :: conditioning       !< the worst of the positions asked for
+    real(wp) :: closure = 0.0_wp                  !< largest closure error of the position asked for last [m]
+    real(wp) :: worst_closure = 0.0_wp            !< and of any position asked for
+    real(wp), allocatable :: limit(:)             !< (M): independent coordinates where the motion ends
+  end type driven_motion_type
+
+contains
+
+  !> Begin at an assembled position: velocities and accelerations there. Later positions may do without accelerations.
+  subroutine start_driven_motion(mechanism, plan, assembled, t, driven, err, with_accelerations)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: assembled
+    real(wp), intent(in) :: t
+    type(driven_motion_type), intent(out) :: driven
+    type(error_type), allocatable, intent(out) :: err
+    logical, intent(in), optional :: with_accelerations
+    integer :: b
+    logical :: special
+
+    special = .false.
+    driven%branch_stepper_type = new_branch_stepper(mechanism, plan, assembled)
+    if (present(with_accelerations)) driven%with_accelerations = with_accelerations
+    driven%state%t = t
+    call set_inputs(mechanism, t, driven%state%q, driven%state%dq, driven%state%ddq, err)
+    if (allocated(err)) return
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b), work => driven%work(b))
+        call factorize_trial(plan, block, driven%state, work, driven%monitors(b))
+        if (work%equations%conditioning() < singular) then
+          call leave_special(mechanism, plan, block, special, driven, err)
+          if (allocated(err)) return
+          special = .true.
+        else
+          call solve_rates(plan, block, driven%state, work)
+          call solve_accelerations(plan, block, driven%state, work)
+        end if
+      end associate
+    end do
+    if (special) then
+      call begin_crossing(mechanism, plan, driven, err)
+      if (allocated(err)) return
+    else
+      call settle(driven%branch_stepper_type)
+    end if
+    allocate (driven%clear_until(size(plan%blocks)), source=t)
+    call record(plan, driven)
+  end subroutine start_driven_motion
+
+  !> Rates of a block that starts in a singular position, if it can leave it in one way only.
+  subroutine leave_special(mechanism, plan, block, already, driven, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    logical, intent(in) :: already                 !< a block before it does so too
+    type(driven_motion_type), intent(inout) :: driven
+    type(error_type), allocatable, intent(out) :: err
+    type(ways_type) :: ways
+    character(len=:), allocatable :: text
+    integer :: b
+
+    do b = 1, size(plan%blocks)
+      if (plan%blocks(b)%first_step == block%first_step) exit
+    end do
+    call find_ways(plan, block, driven%state, driven%work(b), ways)
+    text = 'the mechanism starts in a singular position of '//words_of_block(plan, block)
+    if (ways%dead) then
+      text = text//', a dead point, where rates are not finite; start a little beside it'
+    else if (ways%count == 2) then
+      text = text//', where two branches meet: '
+      call append_rates(mechanism, block, ways, text)
+      text = text//'; start a little beside it, on the one that is meant'
+    else if (ways%unclear .or. already) then
+      text = text//', where it is not certain how it goes on; start a little beside it'
+    else if (ways%count == 0) then
+      text = text//', which it cannot leave'
+    else
+      driven%state%dq(block%coordinates) = ways%rates(:, 1)
+      call spread_velocities(plan, block, driven%state)
+      return
+    end if
+    call raise(err, exit_singular, text)
+  end subroutine leave_special
+
+  !> Append the rates by which it could go on: "dq2 = 1, dq3 = 0.5 or dq2 = 1, dq3 = -0.5 (rad/s, m/s)".
+  pure subroutine append_rates(mechanism, block, ways, text)
+    type(mechanism_type), intent(in) :: mechanism
+    type(block_type), intent(in) :: block
+    type(ways_type), intent(in) :: ways
+    character(len=:), allocatable, intent(inout) :: text
+    integer :: way, i, k
+
+    do way = 1, ways%count
+      if (way > 1) text = text//' or '
+      do i = 1, size(block%unknowns)
+        if (i > 1) text = text//', '
+        k = block%coordinates(i)
+        text = text//'dq'//to_text(k)//' = '//to_text(ways%rates(i, way)/unit_of(mechanism, k), 5)
+      end do
+    end do
+    text = text//merge(' (rad/s, m/s)', ' (deg/s, m/s)', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
+  end subroutine append_rates
+
+  !> The way on from a special start.
+  subroutine begin_crossing(mechanism, plan, driven, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(driven_motion_type), intent(inout) :: driven
+    type(error_type), allocatable, intent(out) :: err
+
+    driven%predictor%t = driven%state%t
+    driven%predictor%q = driven%state%q
+    driven%predictor%dq = driven%state%dq
+    call start_crossing(mechanism, plan, driven%branch_stepper_type, driven%crossing, err)
+    if (allocated(err)) return
+    if (.not. driven%crossing%exists) then
+      call raise(err, exit_singular, 'the mechanism starts in a singular position and cannot be followed off it '// &
+                 'with certainty; start a little beside it')
+      return
+    end if
+    driven%monitors = driven%crossing%beyond%monitors
+    call position_within(mechanism, plan, driven%crossing, driven%predictor%t, driven%state, driven%work, &
+                         driven%monitors, err)
+  end subroutine begin_crossing
+
+  !> Go on to a time: position, velocity and acceleration there, on the same branch. Fails with
+  !> exit_singular where the motion cannot go on; the state is then the last one reached.
+  subroutine advance(mechanism, plan, driven, t, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(driven_motion_type), intent(inout) :: driven
+    real(wp), intent(in) :: t
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: direction
+    integer :: refused_by
+    logical :: stuck
+
+    do while (abs(t - driven%predictor%t) > 0.0_wp)
+      direction = sign(1.0_wp, t - driven%predictor%t)
+      if (driven%crossing%exists) then
+        if (.not. (t - driven%crossing%to)*direction > 0.0_wp .or. driven%crossing%ends) then
+          call position_within(mechanism, plan, driven%crossing, t, driven%state, driven%work, driven%monitors, err)
+          exit
+        end if
+        call leave_crossing(driven)
+        cycle
+      end if
+      if (driven%ahead%kind == dead_point .and. .not. (driven%ahead%t - t)*direction > 0.0_wp .and. &
+          (driven%ahead%t - driven%predictor%t)*direction > 0.0_wp) then
+        call end_motion(mechanism, plan, driven, err)
+        exit
+      end if
+      call step_towards(mechanism, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
+      if (allocated(err)) exit
+      if (stuck) then
+        ! but for a coordinate that was seen to escape
+        if (driven%ahead%kind /= escape .or. driven%ahead%block /= refused_by) &
+          driven%ahead = finding_type(lost, refused_by, driven%predictor%t)
+        call refuse(mechanism, plan, driven, err)
+        exit
+      end if
+      call look_out(mechanism, plan, driven, direction, err)
+      if (allocated(err)) exit
+    end do
+    if (allocated(err)) then
+      call go_back(driven%branch_stepper_type)
+    else
+      call record(plan, driven)
+    end if
+  end subroutine advance
+
+  !> After a step: where a block came near a singular position, see what lies ahead.
+  subroutine look_out(mechanism, plan, driven, direction, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(driven_motion_type), intent(inout) :: driven
+    real(wp), intent(in) :: direction
+    type(error_type), allocatable, intent(out) :: err
+    type(finding_type) :: ahead
+    integer :: b
+
+    do b = 1, size(plan%blocks)
+      if (size(plan%blocks(b)%unknowns) == 0) cycle
+      ahead%kind = nothing_special
+      call find_escape(plan, driven%branch_stepper_type, b, .false., ahead)
+      if (ahead%kind == escape) then
+        driven%ahead = ahead
+        call refuse(mechanism, plan, driven, err)
+        return
+      end if
+      if (.not. is_near(driven%monitors(b))) cycle
+      ! already seen, or seen to be nothing
+      if (driven%ahead%kind /= nothing_special) exit
+      if ((driven%clear_until(b) - driven%predictor%t)*direction > 0.0_wp) cycle
+      call add_accelerations(plan, driven%branch_stepper_type)
+      call look_ahead(mechanism, plan, driven%branch_stepper_type, b, direction, ahead)
+      driven%clear_until(b) = ahead%t
+      driven%ahead = ahead
+      if (ahead%kind == branch_point) then
+        call build_crossing(mechanism, plan, driven%branch_stepper_type, ahead%t, driven%crossing, err)
+        if (allocated(err)) return
+        if (.not. driven%crossing%exists) driven%ahead%kind = lost
+      end if
+      ! up to a dead point, or to where a coordinate that escapes is far away, it goes on
+      if (driven%ahead%kind == lost) call refuse(mechanism, plan, driven, err)
+      if (allocated(err)) return
+    end do
+  end subroutine look_out
+
+  !> Go on from the far end of a passage.
+  pure subroutine leave_crossing(driven)
+    type(driven_motion_type), intent(inout) :: driven
+    real(wp) :: largest
+    integer :: b
+    logical :: with_accelerations
+
+    do b = 1, size(driven%monitors)
+      largest = driven%monitors(b)%largest_pivot
+      driven%crossing%beyond%monitors(b)%largest_pivot = max(largest, driven%crossing%beyond%monitors(b)%largest_pivot)
+    end do
+    with_accelerations = driven%with_accelerations
+    driven%branch_stepper_type = driven%crossing%beyond
+    driven%with_accelerations = with_accelerations
+    driven%crossing%exists = .false.
+    driven%crossings = driven%crossings + 1
+    ! still near: but that is behind
+    driven%ahead%kind = nothing_special
+    driven%clear_until = driven%crossing%to + (driven%crossing%to - driven%crossing%from)
+  end subroutine leave_crossing
+
+  !> The motion ends before the next output: go as near as it can be regular, and say why.
+  subroutine end_motion(mechanism, plan, driven, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(driven_motion_type), intent(inout) :: driven
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: t
+    integer :: refused_by
+    logical :: stuck
+
+    t = driven%ahead%t - just_short*(driven%ahead%t - driven%predictor%t)
+    stuck = .false.
+    do while (abs(t - driven%predictor%t) > 0.0_wp .and. .not. stuck .and. .not. allocated(err))
+      call step_towards(mechanism, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
+    end do
+    call refuse(mechanism, plan, driven, err)
+  end subroutine end_motion
+
+  !> Count a position that was asked for.
+  subroutine record(plan, driven)
+    type(plan_type), intent(in) :: plan
+    type(driven_motion_type), intent(inout) :: driven
+
+    driven%positions = driven%positions + 1
+    driven%closure = largest_gap(plan, driven%state)
+    driven%worst_closure = max(driven%worst_closure, driven%closure)
+    call driven%conditioning%glance(driven%state%t, driven%work)
+  end subroutine record
+
+  !> Say where and why the motion cannot go on, and keep the independent coordinates there.
+  subroutine refuse(mechanism, plan, driven, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(driven_motion_type), intent(inout) :: driven
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: no_value
+    real(wp), dimension(plan%n_coordinates) :: q, dq, ddq
+    character(len=:), allocatable :: text, where
+    integer :: i, k
+
+    q = driven%predictor%q
+    call set_inputs(mechanism, driven%ahead%t, q, dq, ddq, no_value)
+    driven%limit = q
+    where = ''
+    do i = 1, size(plan%independent)
+      k = plan%independent(i)
+      if (i > 1) where = where//', '
+      where = where//'q'//to_text(k)//' = '// &
+              to_text(q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular), &
+              merge(7, 13, driven%ahead%kind == escape))
+    end do
+    associate (block => plan%blocks(driven%ahead%block))
+      text = words_of_block(plan, block)
+      if (driven%ahead%kind /= escape) &
+        text = text//trim(merge(' reach  ', ' reaches', block%last_closure > block%first_closure))
+    end associate
+    if (driven%ahead%kind == escape) then
+      text = text//' cannot follow up to '//where//', where coordinate '//to_text(driven%ahead%coordinate)// &
+             ' grows beyond all bounds'
+    else if (driven%ahead%kind == dead_point) then
+      text = text//' a dead point at '//where//' and cannot follow farther'
+    else
+      text = text//' a singular position at '//where//', where it is not certain how the motion goes on'
+    end if
+    ! where a coordinate escapes the end is told less sharply than a dead point
+    call raise(err, exit_singular, 'the motion cannot go on beyond t = '// &
+               to_text(driven%ahead%t, merge(7, 13, driven%ahead%kind == escape))//' s: '//text)
+  end subroutine refuse
+
+  !> The coordinates that a block determines, in their order.
+  pure function coordinates_of(plan, block) result(coordinates)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    integer, allocatable :: coordinates(:)
+    logical :: mine(plan%n_coordinates)
+    integer :: k
+
+    mine = .false.
+    mine(block%coordinates) = .true.
+    coordinates = pack([(k, k=1, plan%n_coordinates)], mine)
+  end function coordinates_of
+
+  pure integer function words_length(plan, block) result(length)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+
+    length = len(chain_names(block)) + len(' (coordinates )') + len(to_text(coordinates_of(plan, block)))
+  end function words_length
+
+  !> "closed chain 2 (coordinates 4, 6, 7)".
+  pure function words_of_block(plan, block) result(words)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    character(len=words_length(plan, block)) :: words
+
+    words = chain_names(block)//' (coordinates '//to_text(coordinates_of(plan, block))//')'
+  end function words_of_block
+
+end module mech9_driven_motion

@@ -1,0 +1,298 @@
+!> Positions and rates at the last few times, and the prediction by the polynomial through them.
+!>
+!> Where accelerations are not asked for it is cheaper to predict from several times than to find them. A prediction is a sum
+!> of what was found there, with weights that depend on the times alone: steps of even length share them. The rates at five
+!> times bring no round-off into it, which is all there is to correct where steps are short. Where they are long, positions
+!> and rates at four times leave less to correct.
+module mech9_past_motion
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: past_motion_type, new_past_motion, forget_motion, take_motion, judge_past, weigh_past, predict_from_past, &
+    acceleration_from_past
+
+  !> Times before the latest one that are kept, and those of them whose positions are used.
+  integer, parameter :: most = 4, most_with_positions = 3
+  !> Times are those for which the weights were found within this part of the step: the weights are then as good.
+  real(wp), parameter :: same = 1.0e-9_wp
+  !> A prediction goes up to this many times the last step beyond the latest time, ...
+  real(wp), parameter :: longest_prediction = 3.0_wp
+  !> ... and uses times before while their distances are at least this part of the last step.
+  real(wp), parameter :: least_distance = 0.2_wp
+  !> A correction by more than this, in units of the coordinates, of what rates predict is worth positions. Newton's method
+  !> takes a second iteration at 1e-9; round-off of positions makes some 1e-14.
+  real(wp), parameter :: worth_positions = 1.0e-10_wp
+
+  type :: past_motion_type
+    integer :: count = 0                      !< times that are kept
+    integer :: latest = 0                     !< slot of the latest; those before are in the slots before, in a ring
+    real(wp) :: t(0:most) = 0.0_wp            !< [s]
+    real(wp), allocatable :: q(:, :)          !< (M,0:most)
+    real(wp), allocatable :: dq(:, :)         !< (M,0:most)
+    logical :: with_positions = .false.       !< predictions use positions and rates, not rates alone
+    real(wp) :: long_step = 0.0_wp            !< since a step of this length [s]
+    logical :: weighed = .false.              !< there are weights, for ...
+    real(wp) :: h = 0.0_wp                    !< ... this step from the latest time [s], and ...
+    real(wp) :: nodes(most) = 0.0_wp          !< ... the times before, from the latest one, over the step
+    real(wp) :: of_positions(most) = 0.0_wp   !< weights of differences to the latest position
+    real(wp) :: of_rates(0:most) = 0.0_wp     !< weights of rates times h
+  end type past_motion_type
+
+contains
+
+  !> Room for m coordinates.
+  pure function new_past_motion(m) result(past)
+    integer, intent(in) :: m
+    type(past_motion_type) :: past
+
+    allocate (past%q(m, 0:most), past%dq(m, 0:most), source=0.0_wp)
+  end function new_past_motion
+
+  !> The past is not what comes now.
+  pure subroutine forget_motion(past)
+    type(past_motion_type), intent(inout) :: past
+
+    past%count = 0
+    past%with_positions = .false.
+    past%weighed = .false.
+  end subroutine forget_motion
+
+  !> Take positions and rates at the next time. Where the motion turns back, only the turning point is kept of what was before.
+  pure subroutine take_motion(past, t, q, dq)
+    type(past_motion_type), intent(inout) :: past
+    real(wp), intent(in) :: t                 !< [s]
+    real(wp), intent(in) :: q(:)              !< (M) [rad, m]
+    real(wp), intent(in) :: dq(:)             !< (M) their rates
+
+    if (past%count >= 2) then
+      if ((t - past%t(past%latest))*(past%t(past%latest) - past%t(slot(past, 1))) < 0.0_wp) past%count = 1
+    end if
+    past%count = min(past%count, most) + 1
+    past%latest = past%latest + 1
+    if (past%latest > most) past%latest = 0
+    past%t(past%latest) = t
+    call copy(size(q), q, dq, past%q(:, past%latest), past%dq(:, past%latest))
+  end subroutine take_motion
+
+  ! Of known shape: no strides.
+  pure subroutine copy(m, q, dq, kept_q, kept_dq)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: q(m), dq(m)
+    real(wp), intent(out) :: kept_q(m), kept_dq(m)
+    integer :: k
+
+    do k = 1, m
+      kept_q(k) = q(k)
+      kept_dq(k) = dq(k)
+    end do
+  end subroutine copy
+
+  !> Slot of the time that lies `back` times before the latest.
+  pure integer function slot(past, back)
+    type(past_motion_type), intent(in) :: past
+    integer, intent(in) :: back
+
+    slot = past%latest - back
+    if (slot < 0) slot = slot + most + 1
+  end function slot
+
+  !> Whether positions should be used from now on: from a step on whose prediction by rates was far off, until steps are
+  !> half as long.
+  pure subroutine judge_past(past, h, correction)
+    type(past_motion_type), intent(inout) :: past
+    real(wp), intent(in) :: h                 !< length of the step that was accepted [s]
+    real(wp), intent(in) :: correction        !< of its prediction, in units of the coordinates
+
+    if (past%with_positions) then
+      past%with_positions = 2.0_wp*h > past%long_step
+    else if (correction > worth_positions) then
+      past%with_positions = .true.
+      past%long_step = h
+    else
+      return
+    end if
+    past%weighed = .false.
+  end subroutine judge_past
+
+  !> Find the weights of a prediction, unless they are there.
+  pure subroutine weigh_past(past, h)
+    type(past_motion_type), intent(inout) :: past
+    real(wp), intent(in) :: h                 !< from the latest time [s], not 0
+    real(wp) :: nodes(most), per_h
+    integer :: i, n
+
+    per_h = 1.0_wp/h
+    nodes = 0.0_wp
+    do i = 1, past%count - 1
+      nodes(i) = (past%t(slot(past, i)) - past%t(past%latest))*per_h
+    end do
+    past%h = h
+    ! outputs mostly come at even distances, but for round-off
+    if (past%weighed .and. all(abs(nodes - past%nodes) <= same)) return
+    past%nodes = nodes
+    past%weighed = past%count > most
+    past%of_positions = 0.0_wp
+    past%of_rates = 0.0_wp
+    n = times_to_use(past%count - 1, nodes)
+    if (n == 0) then
+      call weigh_slope(past%count - 1, nodes, past%of_rates)
+    else if (past%with_positions) then
+      n = min(n, most_with_positions)
+      call weigh_positions(n, nodes, past%of_positions, past%of_rates)
+    else
+      call weigh_rates(n, nodes, past%of_rates)
+    end if
+  end subroutine weigh_past
+
+  !> How many times before the latest serve a prediction: far beyond two times that are close together their round-off
+  !> would be all there is.
+  pure integer function times_to_use(kept, nodes) result(n)
+    integer, intent(in) :: kept               !< times before the latest
+    real(wp), intent(in) :: nodes(most)       !< from the latest time, over the step
+    integer :: i
+
+    n = 0
+    if (kept == 0 .or. longest_prediction*abs(nodes(1)) < 1.0_wp) return
+    n = 1
+    do i = 2, kept
+      if (abs(nodes(i) - nodes(i - 1)) < least_distance*abs(nodes(1))) return
+      n = i
+    end do
+  end function times_to_use
+
+  !> From the latest rates and their mean slope since the earliest that are kept.
+  pure subroutine weigh_slope(kept, nodes, of_rates)
+    integer, intent(in) :: kept
+    real(wp), intent(in) :: nodes(most)
+    real(wp), intent(inout) :: of_rates(0:most)
+
+    of_rates(0) = 1.0_wp
+    if (kept == 0) return
+    of_rates(0) = 1.0_wp - 0.5_wp/nodes(kept)
+    of_rates(kept) = 0.5_wp/nodes(kept)
+  end subroutine weigh_slope
+
+  !> Integral from 0 to 1 of the polynomial through the rates at the latest time, 0, and at n before it.
+  pure subroutine weigh_rates(n, nodes, of_rates)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: nodes(most)
+    real(wp), intent(inout) :: of_rates(0:most)
+    real(wp) :: x(0:most), product(0:most), denominator
+    integer :: i, j, k, degree
+
+    x = [0.0_wp, nodes]
+    do i = 0, n
+      product = 0.0_wp
+      product(0) = 1.0_wp
+      denominator = 1.0_wp
+      degree = 0
+      do k = 0, n
+        if (k == i) cycle
+        degree = degree + 1
+        denominator = denominator*(x(i) - x(k))
+        do j = degree, 1, -1
+          product(j) = product(j - 1) - x(k)*product(j)
+        end do
+        product(0) = -x(k)*product(0)
+      end do
+      do j = 0, n
+        of_rates(i) = of_rates(i) + product(j)/(denominator*(j + 1))
+      end do
+    end do
+  end subroutine weigh_rates
+
+  !> Value at 1 of the polynomial through positions and rates at the latest time, 0, and at n before it (Hermite's).
+  pure subroutine weigh_positions(n, nodes, of_positions, of_rates)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: nodes(most)
+    real(wp), intent(inout) :: of_positions(most), of_rates(0:most)
+    real(wp) :: x(0:most), all_positions(0:most), lagrange, slope
+    integer :: i, k
+
+    x = [0.0_wp, nodes]
+    do i = 0, n
+      lagrange = 1.0_wp
+      slope = 0.0_wp
+      do k = 0, n
+        if (k == i) cycle
+        lagrange = lagrange*(1.0_wp - x(k))/(x(i) - x(k))
+        slope = slope + 1.0_wp/(x(i) - x(k))
+      end do
+      of_rates(i) = (1.0_wp - x(i))*lagrange**2
+      all_positions(i) = (1.0_wp - 2.0_wp*slope*(1.0_wp - x(i)))*lagrange**2
+    end do
+    ! all have the sum 1: that of the latest need not be known
+    of_positions(:n) = all_positions(1:n)
+  end subroutine weigh_positions
+
+  !> Predict some coordinates, for the step whose weights were found.
+  pure subroutine predict_from_past(past, coordinates, q)
+    type(past_motion_type), intent(in) :: past
+    integer, intent(in), contiguous :: coordinates(:)
+    real(wp), intent(inout) :: q(:)           !< (M)
+    integer :: a, b, c, d
+
+    a = slot(past, 1)
+    b = slot(past, 2)
+    c = slot(past, 3)
+    d = slot(past, 4)
+    call add_rates(size(coordinates), coordinates, size(q), past%h, past%of_rates, past%q(:, past%latest), &
+                   past%dq(:, past%latest), past%dq(:, a), past%dq(:, b), past%dq(:, c), past%dq(:, d), q)
+    if (past%with_positions) &
+      call add_positions(size(coordinates), coordinates, size(q), past%of_positions, past%q(:, past%latest), past%q(:, a), &
+                         past%q(:, b), past%q(:, c), q)
+  end subroutine predict_from_past
+
+  ! Written out, and over arrays of known shape: the compiler then keeps their addresses in registers.
+
+  !> The latest position and what the rates make of it.
+  pure subroutine add_rates(n, coordinates, m, h, w, latest, a, b, c, d, e, q)
+    integer, intent(in) :: n, coordinates(n), m
+    real(wp), intent(in) :: h                                  !< the step [s]
+    real(wp), intent(in) :: w(0:most)                          !< weights
+    real(wp), dimension(m), intent(in) :: latest               !< position
+    real(wp), dimension(m), intent(in) :: a, b, c, d, e        !< rates, the latest first
+    real(wp), intent(inout) :: q(m)
+    integer :: i, k
+
+    do i = 1, n
+      k = coordinates(i)
+      q(k) = latest(k) + h*(w(0)*a(k) + w(1)*b(k) + w(2)*c(k) + w(3)*d(k) + w(4)*e(k))
+    end do
+  end subroutine add_rates
+
+  !> What the positions before the latest add.
+  pure subroutine add_positions(n, coordinates, m, w, latest, a, b, c, q)
+    integer, intent(in) :: n, coordinates(n), m
+    real(wp), intent(in) :: w(most)                            !< weights
+    real(wp), dimension(m), intent(in) :: latest, a, b, c      !< positions, the latest first
+    real(wp), intent(inout) :: q(m)
+    integer :: i, k
+
+    do i = 1, n
+      k = coordinates(i)
+      q(k) = q(k) + (w(1)*(a(k) - latest(k)) + w(2)*(b(k) - latest(k)) + w(3)*(c(k) - latest(k)))
+    end do
+  end subroutine add_positions
+
+  !> Acceleration of a coordinate at the latest time, by the polynomial through its rates; 0 where only that time is known.
+  pure real(wp) function acceleration_from_past(past, k) result(ddq)
+    type(past_motion_type), intent(in) :: past
+    integer, intent(in) :: k                  !< its number
+    real(wp) :: x(0:most), product
+    integer :: i, j, n
+
+    ddq = 0.0_wp
+    n = past%count - 1
+    do i = 0, n
+      x(i) = past%t(slot(past, i)) - past%t(past%latest)
+    end do
+    do i = 1, n
+      product = 1.0_wp
+      do j = 1, n
+        if (j /= i) product = product*x(j)/(x(j) - x(i))
+      end do
+      ddq = ddq + product*(past%dq(k, slot(past, i)) - past%dq(k, past%latest))/x(i)
+    end do
+  end function acceleration_from_past
+end module mech9_past_motion

@@ -1,0 +1,197 @@
+!> Where a step of following starts from, and the prediction from there: by the polynomial through the last two
+!> positions with their rates and accelerations, or, without accelerations, from the motion at the last few times.
+module mech9_predictor
+  use mech9_kinds, only: wp
+  use mech9_plan, only: block_type
+  use mech9_state, only: state_type
+  use mech9_past_motion, only: past_motion_type, new_past_motion, forget_motion, take_motion, judge_past, weigh_past, &
+    predict_from_past, acceleration_from_past
+  implicit none
+  private
+  public :: predictor_type, new_predictor, begin_at, depart_from, aim_at, predict, know_accelerations, acceleration_of
+
+  !> A prediction uses the polynomial through two positions up to this many times their distance.
+  real(wp), parameter :: longest_prediction = 3.0_wp
+  !> The highest term of the polynomial is nothing but round-off below this.
+  real(wp), parameter :: only_round_off = 64.0_wp*epsilon(1.0_wp)
+
+  type :: predictor_type
+    real(wp) :: t = 0.0_wp                      !< [s]
+    real(wp), allocatable :: q(:), dq(:)        !< (M)
+    real(wp), allocatable :: ddq(:)             !< (M), where accelerations are known: see acceleration_of
+    logical :: complete = .true.                !< accelerations are known
+    logical :: uses_past = .false.              !< predictions are made from the past
+    real(wp) :: before = 0.0_wp                 !< distance of the position accepted before it [s]
+    real(wp), allocatable :: higher(:, :)       !< (M,3) factors of h^3, h^4, h^5 of the prediction
+    type(past_motion_type) :: past              !< of the steps without accelerations
+  end type predictor_type
+
+contains
+
+  !> Room for m coordinates.
+  pure function new_predictor(m) result(predictor)
+    integer, intent(in) :: m
+    type(predictor_type) :: predictor
+
+    allocate (predictor%q(m), predictor%dq(m), predictor%ddq(m), predictor%higher(m, 3), source=0.0_wp)
+    predictor%past = new_past_motion(m)
+  end function new_predictor
+
+  !> A place with nothing known before it; its accelerations are.
+  pure subroutine begin_at(state, predictor)
+    type(state_type), intent(in) :: state
+    type(predictor_type), intent(inout) :: predictor
+
+    predictor%t = state%t
+    predictor%q = state%q
+    predictor%dq = state%dq
+    predictor%ddq = state%ddq
+    predictor%complete = .true.
+    predictor%uses_past = .false.
+    predictor%before = 0.0_wp
+    predictor%higher = 0.0_wp
+    call forget_motion(predictor%past)
+  end subroutine begin_at
+
+  !> The next place, after a step from the last one.
+  pure subroutine depart_from(state, unit_of, complete, correction, predictor)
+    type(state_type), intent(in) :: state
+    real(wp), intent(in) :: unit_of(:)          !< (M)
+    logical, intent(in) :: complete             !< its accelerations are known
+    real(wp), intent(in) :: correction          !< of the prediction, in units of the coordinates
+    type(predictor_type), intent(inout) :: predictor
+    real(wp) :: h
+    integer :: k
+
+    h = state%t - predictor%t
+    if (complete) then
+      do k = 1, size(predictor%q)
+        predictor%ddq(k) = acceleration_of(predictor, k)
+      end do
+      call forget_motion(predictor%past)
+      call extrapolate(size(state%q), h, unit_of, state%q, state%dq, state%ddq, predictor%q, predictor%dq, predictor%ddq, &
+                       predictor%higher)
+    else
+      if (predictor%past%count == 0) call take_motion(predictor%past, predictor%t, predictor%q, predictor%dq)
+      call take_motion(predictor%past, state%t, state%q, state%dq)
+      if (predictor%uses_past) call judge_past(predictor%past, abs(h), correction)
+      call go_there(size(state%q), state%q, state%dq, predictor%q, predictor%dq)
+    end if
+    predictor%t = state%t
+    predictor%complete = complete
+    predictor%uses_past = .not. complete
+    predictor%before = abs(h)
+  end subroutine depart_from
+
+  !> Prepare predictions for a time other than that of the departure.
+  pure subroutine aim_at(t, predictor)
+    real(wp), intent(in) :: t                   !< [s]
+    type(predictor_type), intent(inout) :: predictor
+
+    if (predictor%uses_past) call weigh_past(predictor%past, t - predictor%t)
+  end subroutine aim_at
+
+  !> Polynomial prediction of a block's dependent coordinates, for the time that was aimed at.
+  pure subroutine predict(block, predictor, state)
+    type(block_type), intent(in) :: block
+    type(predictor_type), intent(in) :: predictor
+    type(state_type), intent(inout) :: state
+    real(wp) :: h, near
+
+    if (predictor%uses_past) then
+      call predict_from_past(predictor%past, block%coordinates, state%q)
+      return
+    end if
+    h = state%t - predictor%t
+    ! far beyond two positions that are close together their round-off would be all there is
+    near = 0.0_wp
+    if (abs(h) <= longest_prediction*predictor%before) near = h
+    call follow_polynomial(size(block%coordinates), block%coordinates, size(state%q), h, near, predictor%q, predictor%dq, &
+                           predictor%ddq, predictor%higher, state%q)
+  end subroutine predict
+
+  !> The accelerations at the place have been found.
+  pure subroutine know_accelerations(ddq, predictor)
+    real(wp), intent(in) :: ddq(:)              !< (M)
+    type(predictor_type), intent(inout) :: predictor
+
+    predictor%ddq = ddq
+    predictor%complete = .true.
+  end subroutine know_accelerations
+
+  !> Acceleration of a coordinate at the place: as found, or else by the polynomial through the last rates.
+  pure real(wp) function acceleration_of(predictor, k) result(ddq)
+    type(predictor_type), intent(in) :: predictor
+    integer, intent(in) :: k                    !< number of the coordinate
+
+    if (predictor%complete) then
+      ddq = predictor%ddq(k)
+    else
+      ddq = acceleration_from_past(predictor%past, k)
+    end if
+  end function acceleration_of
+
+  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+
+  !> Positions and rates of the place.
+  pure subroutine go_there(m, q, dq, place_q, place_dq)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: q(m), dq(m)
+    real(wp), intent(out) :: place_q(m), place_dq(m)
+    integer :: k
+
+    do k = 1, m
+      place_q(k) = q(k)
+      place_dq(k) = dq(k)
+    end do
+  end subroutine go_there
+
+  !> The polynomial of some coordinates at time h, its higher terms at time `near`.
+  pure subroutine follow_polynomial(n, coordinates, m, h, near, q, dq, ddq, higher, q_then)
+    integer, intent(in) :: n, coordinates(n), m
+    real(wp), intent(in) :: h, near, q(m), dq(m), ddq(m), higher(m, 3)
+    real(wp), intent(inout) :: q_then(m)
+    integer :: i, k
+
+    do i = 1, n
+      k = coordinates(i)
+      q_then(k) = q(k) + h*(dq(k) + h*(0.5_wp*ddq(k) + near*(higher(k, 1) + near*(higher(k, 2) + near*higher(k, 3)))))
+    end do
+  end subroutine follow_polynomial
+
+  !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
+  !> order. The later position takes the place of the earlier one.
+  pure subroutine extrapolate(m, h, unit_of, q, dq, ddq, last_q, last_dq, last_ddq, higher)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: h
+    real(wp), dimension(m), intent(in) :: unit_of, q, dq, ddq
+    real(wp), dimension(m), intent(inout) :: last_q, last_dq, last_ddq
+    real(wp), intent(out) :: higher(m, 3)
+    real(wp) :: d0, d1, d2, x, y, z, per_h, per_cube
+    logical :: is_noise
+    integer :: k
+
+    per_h = 1.0_wp/h
+    per_cube = per_h**3
+    do k = 1, m
+      ! the terms at h
+      d0 = last_q(k) - (q(k) - h*(dq(k) - 0.5_wp*h*ddq(k)))
+      d1 = h*(last_dq(k) - dq(k) + h*ddq(k))
+      d2 = h**2*(last_ddq(k) - ddq(k))
+      x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
+      z = x + d1 + 4.0_wp*d0
+      y = d0 + x + z
+      ! without the positions, where their round-off is all there is to the last term
+      is_noise = abs(z) <= only_round_off*max(unit_of(k), abs(q(k)))
+      x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_noise)
+      y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_noise)
+      z = merge(0.0_wp, z, is_noise)
+      higher(k, 1) = x*per_cube
+      higher(k, 2) = y*per_cube*per_h
+      higher(k, 3) = z*per_cube*per_h**2
+      last_q(k) = q(k)
+      last_dq(k) = dq(k)
+      last_ddq(k) = ddq(k)
+    end do
+  end subroutine extrapolate
+end module mech9_predictor

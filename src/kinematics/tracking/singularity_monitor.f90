@@ -1,0 +1,160 @@
+!> Watching the Jacobian of a block from step to step: can it have been singular on the way?
+module mech9_singularity_monitor
+  use mech9_kinds, only: wp
+  use mech9_balance, only: balance
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type, factorize_block
+  implicit none
+  private
+  public :: singularity_monitor_type, new_singularity_monitor, factorize_trial, monitor_step, keep, nearness, is_near
+
+  !> Change of the Jacobian against its least pivot, as a sum of squares, that needs no closer look.
+  real(wp), parameter :: harmless_change = 0.25_wp
+  !> Change of the Jacobian, divided by the Jacobian: below 1 no singular matrix lies between; the
+  !> rest is room for what lies beside the straight way.
+  real(wp), parameter :: trusted_change = 0.5_wp
+  !> A measure of steps that are too long without a measure.
+  real(wp), parameter :: hopeless = 1.0e30_wp
+
+  !> Near a singular position: the least pivot is below this part of the largest it was.
+  real(wp), parameter :: near = 0.03_wp
+
+  !> What is known of a block's Jacobian: at the departure and at the end of the step on trial.
+  type :: singularity_monitor_type
+    real(wp), allocatable :: jacobian(:, :)                    !< at the departure; on trial is that in the block's work
+    real(wp), allocatable :: change(:, :)                      !< scratch
+    integer :: sign = 1, trial_sign = 1                        !< of the determinant of a square one
+    real(wp) :: pivot = 1.0_wp, trial_pivot = 1.0_wp           !< the least
+    real(wp) :: largest_pivot = 0.0_wp                         !< largest least pivot of any position so far
+  end type singularity_monitor_type
+
+contains
+
+  !> A watch on a block; nothing is known yet.
+  pure function new_singularity_monitor(block) result(monitor)
+    type(block_type), intent(in) :: block
+    type(singularity_monitor_type) :: monitor
+
+    allocate (monitor%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
+    allocate (monitor%change(size(block%unknowns), size(block%unknowns)), source=0.0_wp)
+  end function new_singularity_monitor
+
+  !> Put the block's Jacobian at the position in `state` on trial, and factorize it.
+  subroutine factorize_trial(plan, block, state, work, monitor)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(inout) :: work
+    type(singularity_monitor_type), intent(inout) :: monitor
+
+    if (size(block%unknowns) == 0) return
+    call factorize_block(plan, block, state, work)
+    call take_trial(work, monitor)
+  end subroutine factorize_trial
+
+  !> Put the Jacobian that stands factorized in `work` on trial.
+  subroutine take_trial(work, monitor)
+    type(block_work_type), intent(inout) :: work
+    type(singularity_monitor_type), intent(inout) :: monitor
+
+    monitor%trial_pivot = work%equations%least_pivot()
+    monitor%trial_sign = work%equations%determinant_sign()
+  end subroutine take_trial
+
+  !> Factorize the block's Jacobian at the end of a step, unless it is, and judge whether a singular one lies
+  !> between.
+  subroutine monitor_step(plan, block, state, factorized, work, monitor, worst)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    logical, intent(in) :: factorized
+    type(block_work_type), intent(inout) :: work
+    type(singularity_monitor_type), intent(inout) :: monitor
+    real(wp), intent(inout) :: worst
+    real(wp) :: change
+
+    if (.not. factorized) call factorize_block(plan, block, state, work)
+    call take_trial(work, monitor)
+    if (.not. monitor%trial_pivot > 0.0_wp) then
+      worst = hopeless
+      return
+    end if
+    change = distance(size(monitor%jacobian), work%jacobian, monitor%jacobian)/(harmless_change*monitor%trial_pivot)
+    ! the closer look is worth its while where it may allow longer steps
+    if (change > 0.5_wp) change = min(change, relative_change(work, monitor)/trusted_change)
+    worst = max(worst, change)
+    if (monitor%trial_sign /= monitor%sign) worst = max(worst, 2.0_wp)
+  end subroutine monitor_step
+
+  ! Over arrays of known shape: no look at allocation, no strides.
+
+  !> Root of the sum of squares of the differences.
+  pure real(wp) function distance(n, a, b)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: a(n), b(n)
+    integer :: i
+
+    distance = 0.0_wp
+    do i = 1, n
+      distance = distance + (a(i) - b(i))**2
+    end do
+    distance = sqrt(distance)
+  end function distance
+
+  pure subroutine copy(n, from, to)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: from(n)
+    real(wp), intent(out) :: to(n)
+
+    to = from
+  end subroutine copy
+
+  !> The change of the Jacobian in a step divided by the Jacobian at its end, as a sum of squares in the units of
+  !> the coordinates that make it least; hopeless where that is singular.
+  real(wp) function relative_change(work, monitor) result(change)
+    type(block_work_type), intent(inout) :: work
+    type(singularity_monitor_type), intent(inout) :: monitor
+    integer :: j
+
+    change = hopeless
+    if (work%equations%rank() < work%equations%n) return
+    do j = 1, work%equations%n
+      work%right = work%jacobian(:, j) - monitor%jacobian(:, j)
+      call work%equations%solve(work%right, work%change)
+      monitor%change(:, j) = work%change
+    end do
+    call balance(monitor%change)
+    change = norm2(monitor%change)
+  end function relative_change
+
+  !> The Jacobians on trial become those of the departure.
+  pure subroutine keep(work, monitors)
+    type(block_work_type), intent(in) :: work(:)
+    type(singularity_monitor_type), intent(inout) :: monitors(:)
+    integer :: b
+
+    do b = 1, size(monitors)
+      associate (monitor => monitors(b))
+        call copy(size(monitor%jacobian), work(b)%jacobian, monitor%jacobian)
+        monitor%sign = monitor%trial_sign
+        monitor%pivot = monitor%trial_pivot
+        monitor%largest_pivot = max(monitor%largest_pivot, monitor%pivot)
+      end associate
+    end do
+  end subroutine keep
+
+  !> Whether a block is near a singular position.
+  pure elemental logical function is_near(monitor)
+    type(singularity_monitor_type), intent(in) :: monitor
+
+    is_near = monitor%pivot < near*monitor%largest_pivot
+  end function is_near
+
+  !> Least pivot of the trial against the largest it was.
+  pure real(wp) function nearness(monitor)
+    type(singularity_monitor_type), intent(in) :: monitor
+
+    nearness = monitor%trial_pivot/max(monitor%largest_pivot, tiny(nearness))
+  end function nearness
+end module mech9_singularity_monitor

@@ -1,0 +1,195 @@
+!> Starting where a block is singular: which ways lead on, and the first steps where there is only one.
+!>
+!> There the rates are not determined by J x' = -F_t alone: x' = p + z n with n from the null space of J.
+!> What second derivatives must satisfy, along the vector w that J^T takes to zero, is a quadratic
+!> equation for z: w . (J' x' + ...) = 0. Each of its roots is a branch through the position.
+module mech9_special_start
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_lapack, only: dgesvd
+  use mech9_hermite, only: build_hermite
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type
+  use mech9_branch_stepping, only: branch_stepper_type
+  use mech9_branch_crossing, only: branch_crossing_type, land_near, walk
+  use mech9_frame_motion, only: spread_velocities, spread_accelerations
+  use mech9_block_equations, only: block_jacobian, block_rates
+  implicit none
+  private
+  public :: ways_type, find_ways, start_crossing
+
+  !> The rates with which a block can leave a singular position.
+  type :: ways_type
+    integer :: count = 0                     !< 0, 1 or 2
+    logical :: dead = .false.                !< a dead point: the inputs' rates allow none
+    logical :: unclear = .false.             !< more than one direction is free, or all terms vanish
+    real(wp), allocatable :: rates(:, :)     !< (unknowns, 2) of the coordinates themselves
+  end type ways_type
+
+  !> Singular values and terms below this part of the largest are zero.
+  real(wp), parameter :: nothing = 1.0e-7_wp
+  !> Rates below this part of the largest are zero.
+  real(wp), parameter :: round_off = 1.0e-13_wp
+  !> Movement to the first position off the start [rad, lengths of the mechanism].
+  real(wp), parameter :: first_move = 0.05_wp
+  integer, parameter :: most_trials = 5
+
+contains
+
+  !> The ways of a block whose position, and whose inputs with their rates and accelerations, are in `state`.
+  subroutine find_ways(plan, block, state, work, ways)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(inout) :: state
+    type(block_work_type), intent(inout) :: work
+    type(ways_type), intent(out) :: ways
+    real(wp), dimension(block%equations, block%equations) :: u
+    real(wp), dimension(size(block%unknowns), size(block%unknowns)) :: vt
+    real(wp) :: s(size(block%unknowns)), particular(size(block%unknowns)), right(block%equations)
+    real(wp) :: terms(block%equations, 3)
+    real(wp), dimension(2) :: roots
+    integer :: rank, i, n
+
+    n = size(block%unknowns)
+    allocate (ways%rates(n, 2), source=0.0_wp)
+    call decompose(plan, block, state, work, u, s, vt)
+    rank = count(s > nothing*s(1))
+    ways%unclear = n - rank /= 1
+    if (ways%unclear) return
+    call set_rates(plan, block, 0.0_wp*s, state)
+    call block_rates(plan, block, 1, state, right)
+    ways%dead = norm2(matmul(right, u(:, n:))) > nothing*max(norm2(right), tiny(s))
+    if (ways%dead) return
+    particular = -matmul(matmul(right, u(:, :rank))/s(:rank), vt(:rank, :))
+    ! the quadratic from three of its values: at -1, 0 and 1
+    do i = 1, 3
+      call set_rates(plan, block, particular + (i - 2)*vt(n, :), state)
+      call block_rates(plan, block, 2, state, terms(:, i))
+    end do
+    call find_roots(matmul(transpose(u(:, n:)), terms), ways%count, roots, ways%unclear)
+    do i = 1, ways%count
+      ways%rates(:, i) = particular + roots(i)*vt(n, :)
+      where (abs(ways%rates(:, i)) <= round_off*maxval(abs(ways%rates(:, i)))) ways%rates(:, i) = 0.0_wp
+      ways%rates(:, i) = ways%rates(:, i)*plan%unit_of(block%coordinates)
+    end do
+  end subroutine find_ways
+
+  !> Singular values and vectors of the block's Jacobian.
+  subroutine decompose(plan, block, state, work, u, s, vt)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    type(state_type), intent(in) :: state
+    type(block_work_type), intent(in) :: work
+    real(wp), intent(out) :: u(:, :), s(:), vt(:, :)
+    real(wp) :: a(size(u, 1), size(s)), scratch(20*(size(u, 1) + size(s)))
+    integer :: info
+
+    call block_jacobian(plan, block, state, work%column_of, a)
+    call dgesvd('A', 'A', size(a, 1), size(s), a, size(a, 1), s, u, size(a, 1), vt, size(s), scratch, size(scratch), info)
+  end subroutine decompose
+
+  !> Rates of the dependent coordinates, in their units, their accelerations zero, and the motion of the frames.
+  pure subroutine set_rates(plan, block, rates, state)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    real(wp), intent(in) :: rates(:)
+    type(state_type), intent(inout) :: state
+    integer :: i, k
+
+    do i = 1, size(block%unknowns)
+      k = block%coordinates(i)
+      state%dq(k) = rates(i)*plan%unit_of(k)
+      state%ddq(k) = 0.0_wp
+    end do
+    call spread_velocities(plan, block, state)
+    call spread_accelerations(plan, block, block%last_step, state)
+  end subroutine set_rates
+
+  !> Real roots of the quadratic with these values at -1, 0 and 1, in the direction in which it is largest.
+  !> Equations that hold always have nothing in any direction.
+  pure subroutine find_roots(values, n_roots, roots, unclear)
+    real(wp), intent(in) :: values(:, :)
+    integer, intent(out) :: n_roots
+    real(wp), intent(out) :: roots(2)
+    logical, intent(out) :: unclear
+    real(wp) :: square(size(values, 1)), linear(size(values, 1)), constant(size(values, 1)), a, b, c, root
+
+    constant = values(:, 2)
+    linear = 0.5_wp*(values(:, 3) - values(:, 1))
+    square = 0.5_wp*(values(:, 3) + values(:, 1)) - constant
+    n_roots = 0
+    roots = 0.0_wp
+    unclear = .not. max(norm2(square), norm2(linear)) > tiny(a)
+    if (unclear) return
+    if (norm2(square) >= max(norm2(linear), nothing*norm2(constant))) then
+      a = norm2(square)
+      b = dot_product(linear, square)/a
+      c = dot_product(constant, square)/a
+    else
+      b = norm2(linear)
+      a = dot_product(square, linear)/b
+      c = dot_product(constant, linear)/b
+    end if
+    unclear = max(abs(a), abs(b)) <= nothing*max(abs(c), nothing)
+    if (unclear) return
+    if (abs(a) <= nothing*abs(b)) then
+      n_roots = 1
+      roots(1) = -c/b
+      return
+    end if
+    root = b**2 - 4.0_wp*a*c
+    ! a double root: two branches that touch
+    unclear = abs(root) <= nothing*max(b**2, abs(a*c))
+    if (unclear .or. root < 0.0_wp) return
+    n_roots = 2
+    root = -0.5_wp*(b + sign(sqrt(root), b))
+    roots = [root/a, c/root]
+  end subroutine find_roots
+
+  !> The way on from a start in a special position whose rates are in `scout`: three regular positions beside
+  !> it. It does not exist where they cannot be reached with certainty.
+  subroutine start_crossing(mechanism, plan, scout, crossing, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(branch_stepper_type), intent(in) :: scout
+    type(branch_crossing_type), intent(inout) :: crossing
+    type(error_type), allocatable, intent(out) :: err
+    type(branch_stepper_type) :: walker
+    real(wp), dimension(plan%n_coordinates, 3) :: q, dq, ddq
+    real(wp) :: times(3), step, speed
+    integer :: trial, i
+    logical :: ok
+
+    crossing%exists = .false.
+    speed = maxval(abs(scout%state%dq)/plan%unit_of)
+    if (.not. speed > 0.0_wp) return
+    step = first_move/speed
+    do trial = 1, most_trials
+      walker = scout
+      times = scout%state%t + step*[1.0_wp, 2.0_wp, 3.0_wp]
+      do i = 1, 3
+        if (i == 1) then
+          call land_near(mechanism, plan, times(1), walker, ok, err)
+        else
+          call walk(mechanism, plan, walker, times(i), ok, err)
+        end if
+        if (allocated(err)) return
+        if (.not. ok) exit
+        q(:, i) = walker%predictor%q
+        dq(:, i) = walker%predictor%dq
+        ddq(:, i) = walker%predictor%ddq
+      end do
+      if (ok) then
+        call build_hermite(times, q, dq, ddq, crossing%way)
+        crossing%exists = .true.
+        crossing%from = scout%state%t
+        crossing%to = times(3)
+        crossing%beyond = walker
+        return
+      end if
+      step = step/3.0_wp
+    end do
+  end subroutine start_crossing
+end module mech9_special_start

@@ -1,0 +1,55 @@
+!> The methods of integration by name.
+module mech9_integration_methods
+  implicit none
+  private
+  public :: integration_method_type, integration_methods, method_index
+  public :: runge_kutta, multistep
+  public :: no_table, prince_dormand_table, dormand_prince_table, verner_table, fehlberg_table, kutta_merson_table
+
+  !> Families of methods.
+  integer, parameter :: runge_kutta = 1   !< explicit, one step
+  integer, parameter :: multistep = 2     !< of variable order
+
+  !> Coefficients of the Runge-Kutta methods. SUNDIALS brings three of these tables, mech9_butcher_tables the others.
+  integer, parameter :: no_table = 0
+  integer, parameter :: prince_dormand_table = 1
+  integer, parameter :: dormand_prince_table = 2
+  integer, parameter :: verner_table = 3
+  integer, parameter :: fehlberg_table = 4
+  integer, parameter :: kutta_merson_table = 5
+
+  !> A method, as it is told to the user and to those who choose its parts.
+  type :: integration_method_type
+    character(len=15) :: name
+    integer :: family        !< runge_kutta or multistep
+    integer :: table         !< of its coefficients; no_table for multistep methods
+    integer :: order         !< of its error; the highest one where it varies
+    integer :: stages        !< rates of change worked out in a step; 0 where that varies
+    logical :: reuses_last   !< the last stage is the first one of the next step
+    character(len=64) :: help
+  end type integration_method_type
+
+  !> All of them, in the order in which they are told.
+  type(integration_method_type), parameter :: integration_methods(*) = [ &
+    integration_method_type('prince-dormand', runge_kutta, prince_dormand_table, 8, 13, .false., &
+                            'Prince-Dormand 8(7), Runge-Kutta'), &
+    integration_method_type('dormand-prince', runge_kutta, dormand_prince_table, 5, 7, .true., &
+                            'Dormand-Prince 5(4), Runge-Kutta'), &
+    integration_method_type('verner', runge_kutta, verner_table, 6, 8, .false., 'Verner 6(5), Runge-Kutta'), &
+    integration_method_type('fehlberg', runge_kutta, fehlberg_table, 8, 13, .false., &
+                            'Fehlberg 8(7); its error estimate misses forces of time alone'), &
+    integration_method_type('merson', runge_kutta, kutta_merson_table, 4, 5, .false., 'Kutta-Merson 4(3), the MERSOL of 1995'), &
+    integration_method_type('adams', multistep, no_table, 12, 0, .false., 'Adams-Moulton, orders 1 to 12'), &
+    integration_method_type('bdf', multistep, no_table, 5, 0, .false., 'backward differences, orders 1 to 5; for stiff motions')]
+
+contains
+
+  !> Place of a name in the list; 0 when it is not there.
+  pure integer function method_index(name)
+    character(len=*), intent(in) :: name
+
+    do method_index = size(integration_methods), 1, -1
+      if (integration_methods(method_index)%name == name) return
+    end do
+  end function method_index
+end module mech9_integration_methods

@@ -1,0 +1,381 @@
+!> Integration of a motion step by step, by a method chosen by name, with failures in plain words.
+module mech9_integrator
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, raise, add_place, exit_internal, exit_data, exit_integrator
+  use mech9_text, only: to_text, nearest_name
+  use mech9_ode_system, only: ode_system_type
+  use mech9_integration_methods, only: integration_methods, method_index, runge_kutta
+  use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
+    not_convergent, too_accurate, out_of_memory
+  use mech9_sundials_system, only: system_box_type
+  use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
+  use mech9_sundials_multistep, only: multistep_type, new_multistep
+  implicit none
+  private
+  public :: integrator_type, integration_statistics_type, check_method
+
+  !> Trials that the system refused, in a row, before the integration is given up; each makes the step
+  !> a quarter at most, so that all of them together make it 1e-24 of what it was.
+  integer, parameter :: most_refusals = 40
+
+  !> What an integration took, from its creation on.
+  type :: integration_statistics_type
+    integer(long) :: steps = 0                  !< accepted
+    integer(long) :: rate_evaluations = 0       !< all of them: for differences, too
+    integer(long) :: jacobian_evaluations = 0   !< by an implicit method: asked of the system, or by differences of its rate
+    integer(long) :: error_test_failures = 0    !< steps made again because of their error
+    integer(long) :: convergence_failures = 0   !< implicit steps made again
+    integer(long) :: refusals = 0               !< trials that the system refused
+    integer :: last_order = 0
+    real(wp) :: last_step = 0.0_wp              !< [s]
+  end type integration_statistics_type
+
+  !> An integration under way. It must not be copied; `destroy` gives back what it holds.
+  type :: integrator_type
+    private
+    type(system_box_type), pointer :: box => null()
+    class(stepper_type), allocatable :: stepper
+    real(wp) :: t = 0.0_wp                 !< of the last accepted step [s]
+    real(wp), allocatable :: y(:)          !< there
+    real(wp), allocatable :: trial(:)      !< where a step ends
+    logical :: fresh = .true.              !< no step since the creation or the last restart
+    logical :: stopped = .false.           !< the last step ended at its stop
+    real(wp) :: t_stop = 0.0_wp            !< of the last call [s]
+    integer :: maximum_steps = 1000000     !< to one stop
+    integer :: steps_to_stop = 0
+    integer(long) :: steps = 0
+  contains
+    procedure :: create
+    procedure :: step
+    procedure :: interpolate
+    procedure :: correct
+    procedure :: restart
+    procedure :: limit
+    procedure :: statistics
+    procedure :: destroy
+  end type integrator_type
+
+contains
+
+  !> Begin at (t, y). The system must have the target attribute (or be a pointer's target), outlive the
+  !> integrator, and not be used by others meanwhile. Fails for an unknown method or useless tolerances.
+  subroutine create(self, system, method, relative_tolerance, absolute_tolerance, t, y, err)
+    class(integrator_type), intent(inout) :: self
+    class(ode_system_type), intent(inout), target :: system
+    character(len=*), intent(in) :: method              !< name, as in integration_methods; blank: the first one
+    real(wp), intent(in) :: relative_tolerance          !< of each part of y, in a step
+    real(wp), intent(in) :: absolute_tolerance(:)       !< of each part of y, in its unit
+    real(wp), intent(in) :: t                           !< [s]
+    real(wp), intent(in) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: index, outcome
+
+    call self%destroy()
+    call check_method(method, index, err)
+    if (allocated(err)) return
+    call check_tolerances(relative_tolerance, absolute_tolerance, size(y), err)
+    if (allocated(err)) return
+    allocate (self%box)
+    self%box%system => system
+    self%t = t
+    self%t_stop = t
+    self%y = y
+    self%trial = y
+    if (integration_methods(index)%family == runge_kutta) then
+      allocate (runge_kutta_type :: self%stepper)
+    else
+      allocate (multistep_type :: self%stepper)
+    end if
+    select type (stepper => self%stepper)
+    type is (runge_kutta_type)
+      call new_runge_kutta(integration_methods(index), self%box, relative_tolerance, absolute_tolerance, t, y, &
+                           stepper, outcome)
+    type is (multistep_type)
+      call new_multistep(integration_methods(index), self%box, relative_tolerance, absolute_tolerance, t, y, &
+                         stepper, outcome)
+    end select
+    if (outcome /= stepped) call explain(self, outcome, err)
+  end subroutine create
+
+  !> Place of a method in integration_methods; blank means the first. Fails for an unknown name.
+  pure subroutine check_method(method, index, err)
+    character(len=*), intent(in) :: method
+    integer, intent(out) :: index
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: hint, names
+    integer :: i
+
+    index = 1
+    if (method == '') return
+    index = method_index(method)
+    if (index > 0) return
+    names = trim(integration_methods(1)%name)
+    do i = 2, size(integration_methods)
+      names = names//', '//trim(integration_methods(i)%name)
+    end do
+    hint = nearest_name(method, integration_methods%name)
+    if (hint /= '') hint = '; did you mean '''//hint//'''?'
+    call raise(err, exit_data, 'unknown method of integration '''//trim(method)//''''//hint//' There are: '//names)
+  end subroutine check_method
+
+  pure subroutine check_tolerances(relative, absolute, n, err)
+    real(wp), intent(in) :: relative, absolute(:)
+    integer, intent(in) :: n
+    type(error_type), allocatable, intent(out) :: err
+
+    if (n < 1 .or. size(absolute) /= n) then
+      call raise(err, exit_internal, 'an integration needs one absolute tolerance for each of its variables')
+    else if (.not. (relative > 0.0_wp .and. relative < 1.0_wp)) then
+      call raise(err, exit_data, 'the relative tolerance must be between 0 and 1; it is '//to_text(relative))
+    else if (.not. all(absolute > 0.0_wp .and. absolute <= huge(absolute))) then
+      call raise(err, exit_data, 'the absolute tolerance must be greater than 0')
+    end if
+  end subroutine check_tolerances
+
+  !> One accepted step from where the integration stands, towards t_stop and never beyond; the last one
+  !> ends exactly there. With `farthest` a step may go on beyond t_stop, to there at most. On failure t and y are
+  !> those of the last accepted step.
+  subroutine step(self, t_stop, t, y, err, farthest)
+    class(integrator_type), intent(inout) :: self
+    real(wp), intent(in) :: t_stop                      !< may lie before the start [s]
+    real(wp), intent(inout) :: t                        !< where it ends [s]
+    real(wp), intent(inout) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+    real(wp), intent(in), optional :: farthest          !< in the same direction [s]
+    real(wp) :: t_new, t_last
+
+    t = self%t
+    y = self%y
+    if (.not. abs(t_stop - self%t) > 0.0_wp) return
+    t_last = t_stop
+    if (present(farthest)) t_last = farthest
+    call count_steps(self, t_stop, err)
+    if (.not. allocated(err)) call take_step(self, t_last, t_new, err)
+    if (allocated(err)) return
+    self%t = t_new
+    self%y = self%trial
+    self%fresh = .false.
+    self%stopped = abs(t_new - t_last) <= 0.0_wp
+    self%steps = self%steps + 1
+    self%steps_to_stop = self%steps_to_stop + 1
+    t = self%t
+    y = self%y
+  end subroutine step
+
+  !> What the method takes for y at a time within the last step, if it can tell; see its stepper.
+  subroutine interpolate(self, t, y, found)
+    class(integrator_type), intent(inout) :: self
+    real(wp), intent(in) :: t                           !< [s]
+    real(wp), intent(out) :: y(:)
+    logical, intent(out) :: found
+
+    call self%stepper%interpolate(t, y, found)
+  end subroutine interpolate
+
+  !> Count the steps to each stop. Fails when there were too many.
+  subroutine count_steps(self, t_stop, err)
+    class(integrator_type), intent(inout) :: self
+    real(wp), intent(in) :: t_stop
+    type(error_type), allocatable, intent(out) :: err
+
+    if (abs(t_stop - self%t_stop) > 0.0_wp) then
+      self%t_stop = t_stop
+      self%steps_to_stop = 0
+    end if
+    if (self%steps_to_stop < self%maximum_steps) return
+    call raise(err, exit_integrator, trim(stands(self%t))//' '//to_text(self%maximum_steps)// &
+               ' steps were not enough to come to t = '//to_text(t_stop, 10)//' s, and they are now '// &
+               to_text(abs(self%stepper%next_step()), 3)//' s long. The motion is stiff (try method ''bdf''), or the'// &
+               ' tolerances are too small, or maximum_steps is')
+  end subroutine count_steps
+
+  !> One accepted step into `trial`. What the system refuses is tried again with less.
+  subroutine take_step(self, t_stop, t_new, err)
+    class(integrator_type), intent(inout) :: self
+    real(wp), intent(in) :: t_stop
+    real(wp), intent(out) :: t_new
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: reach
+    integer :: outcome, trials
+
+    self%box%broken = .false.
+    do trials = 1, most_refusals
+      call self%stepper%advance(next_stop(self, t_stop), t_new, self%trial, outcome)
+      if (outcome == stepped) then
+        if (.not. abs(t_new - self%t) > 0.0_wp) call explain_full_stop(self, err)
+        return
+      end if
+      if (outcome /= evaluation_failed .or. self%box%broken .or. .not. self%box%has_cause()) exit
+      reach = self%box%t_failed - self%t
+      if (abs(reach) < 16.0_wp*spacing(self%t)) exit   ! it fails here, whatever the step
+      call self%stepper%restart(self%t, self%y, 0.25_wp*reach, outcome)
+      if (outcome /= stepped) exit
+      self%fresh = .true.
+    end do
+    call explain(self, outcome, err)
+  end subroutine take_step
+
+  !> The stop itself, or half the way where one step and a short rest would remain: the methods take
+  !> many steps to recover from a very short one.
+  real(wp) function next_stop(self, t_stop)
+    class(integrator_type), intent(inout) :: self
+    real(wp), intent(in) :: t_stop
+    real(wp) :: h, rest, half, enough
+
+    next_stop = t_stop
+    if (self%fresh) return
+    h = abs(self%stepper%next_step())
+    rest = abs(t_stop - self%t)
+    if (self%stopped) then
+      ! h is the last step, which the stop may have cut short: equal intervals are not to be halved
+      enough = 1.000001_wp*h
+    else
+      ! h is what comes next, and the method itself takes what round-off leaves for reached
+      enough = h + 50.0_wp*epsilon(h)*(abs(self%t) + h)
+    end if
+    if (rest <= enough .or. rest >= 2.0_wp*h) return
+    half = self%t + 0.5_wp*(t_stop - self%t)
+    if (abs(half - self%t) > 0.0_wp .and. abs(t_stop - half) > 0.0_wp) next_stop = half
+  end function next_stop
+
+  !> Go on from y, which differs from the result of the last step by no more than about the tolerance.
+  subroutine correct(self, y, err)
+    class(integrator_type), intent(inout) :: self
+    real(wp), intent(in) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: outcome
+
+    self%y = y
+    call self%stepper%correct(self%t, y, outcome)
+    if (outcome /= stepped) call explain(self, outcome, err)
+  end subroutine correct
+
+  !> Begin anew at (t, y), after an event that changed the motion; with a first step of the given length
+  !> or of one to be found. Statistics go on.
+  subroutine restart(self, t, y, err, first_step)
+    class(integrator_type), intent(inout) :: self
+    real(wp), intent(in) :: t                           !< [s]
+    real(wp), intent(in) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+    real(wp), intent(in), optional :: first_step        !< with its sign; 0: to be found [s]
+    real(wp) :: h
+    integer :: outcome
+
+    h = 0.0_wp
+    if (present(first_step)) h = first_step
+    call self%stepper%restart(t, y, h, outcome)
+    self%t = t
+    self%y = y
+    self%fresh = .true.
+    if (outcome /= stepped) call explain(self, outcome, err)
+  end subroutine restart
+
+  !> Set limits; those not named stay.
+  subroutine limit(self, err, maximum_steps, largest_step, first_step)
+    class(integrator_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+    integer, intent(in), optional :: maximum_steps      !< to one stop; 1000000 unless set
+    real(wp), intent(in), optional :: largest_step      !< 0: none [s]
+    real(wp), intent(in), optional :: first_step        !< with its sign; before the first step only [s]
+    integer :: outcome
+
+    outcome = stepped
+    if (present(maximum_steps)) self%maximum_steps = maximum_steps
+    if (present(largest_step)) call self%stepper%limit(largest_step, outcome)
+    if (outcome == stepped .and. present(first_step)) call self%stepper%restart(self%t, self%y, first_step, outcome)
+    if (outcome /= stepped) call explain(self, outcome, err)
+  end subroutine limit
+
+  !> What the integration took so far.
+  function statistics(self)
+    class(integrator_type), intent(inout) :: self
+    type(integration_statistics_type) :: statistics
+    type(stepper_counts_type) :: counts
+
+    if (.not. associated(self%box)) return
+    call self%stepper%counts(counts)
+    statistics%steps = self%steps
+    statistics%rate_evaluations = self%box%rate_evaluations
+    statistics%jacobian_evaluations = counts%jacobian_evaluations
+    statistics%error_test_failures = counts%error_test_failures
+    statistics%convergence_failures = counts%convergence_failures
+    statistics%refusals = self%box%refusals
+    statistics%last_order = counts%last_order
+    statistics%last_step = counts%last_step
+  end function statistics
+
+  !> Where the integration stands, as the beginning of a message.
+  pure function stands(t) result(text)
+    real(wp), intent(in) :: t        !< where it stands [s]
+    character(len=80) :: text
+
+    text = 'the integration cannot go on from t = '//to_text(t, 10)//' s:'
+  end function stands
+
+  !> The failure of a step in plain words.
+  subroutine explain(self, outcome, err)
+    class(integrator_type), intent(in) :: self
+    integer, intent(in) :: outcome
+    type(error_type), allocatable, intent(out) :: err
+
+    if (self%box%has_cause()) then
+      call explain_by_system(self, err)
+      return
+    end if
+    select case (outcome)
+    case (too_inaccurate)
+      call raise(err, exit_integrator, trim(stands(self%t))//' however short the step, its error stays too large.'// &
+                 ' Look for a force that jumps or grows without limit there; or raise the tolerances')
+    case (not_convergent, evaluation_failed)
+      call raise(err, exit_integrator, trim(stands(self%t))//' the equations of an implicit step cannot be solved.'// &
+                 ' Look for a force that jumps there; or try another method')
+    case (too_accurate)
+      call raise(err, exit_integrator, trim(stands(self%t))//' the tolerances ask for more digits than the numbers'// &
+                 ' have. Raise relative_tolerance or absolute_tolerance')
+    case (out_of_memory)
+      call raise(err, exit_integrator, trim(stands(self%t))//' there is not enough memory')
+    case default
+      call raise(err, exit_internal, trim(stands(self%t))//' its settings do not fit together')
+    end select
+  end subroutine explain
+
+  !> The failure of the system, which keeps its code.
+  subroutine explain_by_system(self, err)
+    class(integrator_type), intent(in) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    err = self%box%failure
+    call add_place(err, trim(stands(self%t))//' at t = '//to_text(self%box%t_failed, 10)//' s')
+  end subroutine explain_by_system
+
+  !> The step has become shorter than time can be told apart.
+  subroutine explain_full_stop(self, err)
+    class(integrator_type), intent(in) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    if (self%box%has_cause()) then
+      call explain_by_system(self, err)
+      return
+    end if
+    call raise(err, exit_integrator, trim(stands(self%t))//' the steps have become too short for time to advance.'// &
+               ' The motion becomes infinitely fast there, or comes to a position that it cannot pass')
+  end subroutine explain_full_stop
+
+  !> Give back what the integration holds. An integrator can then be created again.
+  subroutine destroy(self)
+    class(integrator_type), intent(inout) :: self
+
+    if (allocated(self%stepper)) then
+      call self%stepper%close()
+      deallocate (self%stepper)
+    end if
+    if (associated(self%box)) deallocate (self%box)
+    self%box => null()
+    if (allocated(self%y)) deallocate (self%y)
+    if (allocated(self%trial)) deallocate (self%trial)
+    self%steps = 0
+    self%steps_to_stop = 0
+    self%maximum_steps = 1000000
+    self%fresh = .true.
+  end subroutine destroy
+end module mech9_integrator

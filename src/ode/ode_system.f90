@@ -1,0 +1,67 @@
+!> What an integrator asks of a motion: its rate of change, and what follows an accepted step.
+module mech9_ode_system
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_internal, exit_singular, exit_integrator
+  implicit none
+  private
+  public :: ode_system_type, is_recoverable
+
+  !> A system of ordinary differential equations y' = f(t, y); its data travels with it.
+  type, abstract :: ode_system_type
+    !> Whether `settle` is to be called after each accepted step.
+    logical :: settles = .false.
+    !> Whether `jacobian` can be called; otherwise methods that need it take differences, as for the motion of a mechanism.
+    logical :: has_jacobian = .false.
+  contains
+    procedure(rate_interface), deferred :: rate
+    procedure :: settle => nothing_to_settle
+    procedure :: jacobian => no_jacobian
+  end type ode_system_type
+
+  abstract interface
+    !> The rate of change of y at time t.
+    !>
+    !> A failure with exit_singular or exit_integrator, and numbers that are not finite, tell that a trial
+    !> went too far: it is made again with a smaller step, and ends the integration only when that does not
+    !> help. Any other failure ends it at once.
+    subroutine rate_interface(self, t, y, ydot, err)
+      import :: ode_system_type, wp, error_type
+      class(ode_system_type), intent(inout) :: self
+      real(wp), intent(in) :: t        !< [s]
+      real(wp), intent(in) :: y(:)
+      real(wp), intent(out) :: ydot(:)
+      type(error_type), allocatable, intent(out) :: err
+    end subroutine rate_interface
+  end interface
+
+contains
+
+  !> After each accepted step: y may be put back to where it must lie, by a change not much larger than
+  !> the tolerance. A failure makes the step again, smaller, by the rule of `rate`. (This one does nothing.)
+  subroutine nothing_to_settle(self, t, y, err)
+    class(ode_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t           !< [s]
+    real(wp), intent(inout) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+  end subroutine nothing_to_settle
+
+  !> Derivatives of the rate: jac(i, j) = d ydot(i)/d y(j). Fails by the rule of `rate`. (This one always.)
+  subroutine no_jacobian(self, t, y, ydot, jac, err)
+    class(ode_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t           !< [s]
+    real(wp), intent(in) :: y(:)
+    real(wp), intent(in) :: ydot(:)     !< the rate at (t, y)
+    real(wp), intent(out) :: jac(:, :)
+    type(error_type), allocatable, intent(out) :: err
+
+    jac = 0.0_wp
+    call raise(err, exit_internal, 'a system of equations without Jacobian was asked for it')
+  end subroutine no_jacobian
+
+  !> Whether a smaller step may help against this failure.
+  pure logical function is_recoverable(err)
+    type(error_type), intent(in) :: err
+
+    is_recoverable = err%code == exit_singular .or. err%code == exit_integrator
+  end function is_recoverable
+end module mech9_ode_system

@@ -1,0 +1,328 @@
+!> Multistep methods of variable order by SUNDIALS' CVODE: Adams-Moulton and backward differences.
+module mech9_sundials_multistep
+  use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_associated, c_int, c_long, c_double, c_loc, &
+    c_funloc, c_f_pointer
+  use mech9_kinds, only: wp, long
+  use mech9_integration_methods, only: integration_method_type
+  use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
+    not_convergent, too_accurate, out_of_memory, refused
+  use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, SUNMatrix, FSUNMatDestroy, SUNLinearSolver, &
+    FSUNLinSolFree, SUNNonlinearSolver, FSUNNonlinSolFree, index_kind, open_context, close_context, silence_cvode
+  use mech9_sundials_system, only: system_box_type, evaluate_rate, evaluate_jacobian
+  use fcvode_mod, only: FCVodeCreate, FCVodeFree, FCVodeInit, FCVodeReInit, FCVode, FCVodeSVtolerances, &
+    FCVodeSetUserData, FCVodeSetLinearSolver, FCVodeSetNonlinearSolver, FCVodeSetJacFn, FCVodeSetMaxHnilWarns, &
+    FCVodeSetMaxErrTestFails, FCVodeSetMaxConvFails, FCVodeSetInitStep, FCVodeSetMaxStep, FCVodeSetStopTime, &
+    FCVodeGetNonlinearSystemData, FCVodeGetDky, FCVodeGetCurrentStep, FCVodeGetLastStep, FCVodeGetNumJacEvals, FCVodeGetLastOrder, &
+    FCVodeGetNumErrTestFails, FCVodeGetNumStepSolveFails, &
+    CV_ADAMS, CV_BDF, CV_ONE_STEP, CV_SUCCESS, CV_TSTOP_RETURN, CV_TOO_MUCH_ACC, CV_ERR_FAILURE, CV_CONV_FAILURE, &
+    CV_LSETUP_FAIL, CV_LSOLVE_FAIL, CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, &
+    CV_UNREC_RHSFUNC_ERR, CV_MEM_FAIL
+  use fnvector_serial_mod, only: FN_VNew_Serial
+  use fsunmatrix_dense_mod, only: FSUNDenseMatrix
+  use fsunlinsol_dense_mod, only: FSUNLinSol_Dense
+  use fsunnonlinsol_fixedpoint_mod, only: FSUNNonlinSol_FixedPoint
+  implicit none
+  private
+  public :: multistep_type, new_multistep
+
+  !> Failures of one step, by the error test or by a trial that went too far, before it is given up.
+  !> Each makes it a quarter or a fifth.
+  integer(c_int), parameter :: most_failures = 20
+
+  !> A multistep method at work.
+  type, extends(stepper_type) :: multistep_type
+    private
+    type(system_box_type), pointer :: box => null()
+    type(c_ptr) :: context = c_null_ptr
+    type(c_ptr) :: memory = c_null_ptr
+    type(N_Vector), pointer :: vector => null()                   !< where steps end
+    real(c_double), pointer :: values(:) => null()    !< of the vector
+    real(c_double), pointer :: history(:) => null()   !< y at the last step, as the method goes on from it
+    type(SUNMatrix), pointer :: matrix => null()
+    type(SUNLinearSolver), pointer :: linear => null()
+    type(SUNNonlinearSolver), pointer :: nonlinear => null()
+    type(stepper_counts_type) :: earlier                          !< counted before the last restart
+    real(wp) :: t = 0.0_wp                                        !< where it stands [s]
+    real(wp) :: last_step = 0.0_wp                                !< 0 before the first one since a restart [s]
+  contains
+    procedure :: advance
+    procedure :: interpolate
+    procedure :: correct
+    procedure :: restart
+    procedure :: limit
+    procedure :: next_step
+    procedure :: counts => count_so_far
+    procedure :: close => close_multistep
+  end type multistep_type
+
+contains
+
+  !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
+  subroutine new_multistep(method, box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
+    type(integration_method_type), intent(in) :: method
+    type(system_box_type), pointer, intent(in) :: box
+    real(wp), intent(in) :: relative_tolerance
+    real(wp), intent(in) :: absolute_tolerance(:)
+    real(wp), intent(in) :: t                      !< [s]
+    real(wp), intent(in) :: y(:)
+    type(multistep_type), intent(inout) :: stepper
+    integer, intent(out) :: outcome
+    integer(c_int) :: flag
+
+    outcome = out_of_memory
+    stepper%box => box
+    stepper%t = t
+    call open_context(stepper%context, flag)
+    if (flag /= 0) return
+    stepper%vector => FN_VNew_Serial(int(size(y), index_kind), stepper%context)
+    if (.not. associated(stepper%vector)) return
+    stepper%values => FN_VGetArrayPointer(stepper%vector)
+    stepper%memory = FCVodeCreate(merge(CV_ADAMS, CV_BDF, method%name == 'adams'), stepper%context)
+    if (.not. c_associated(stepper%memory)) return
+    call silence_cvode(stepper%memory, flag)
+    stepper%values = y
+    if (flag == 0) flag = FCVodeInit(stepper%memory, c_funloc(evaluate_rate), t, stepper%vector)
+    if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
+    if (flag == 0) call set_solver(stepper, method, flag)
+    if (flag == 0) call set_habits(stepper, flag)
+    if (flag == 0) call find_history(stepper, flag)
+    outcome = merge(stepped, refused, flag == 0)
+  end subroutine new_multistep
+
+  subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
+    type(multistep_type), intent(inout) :: self
+    real(wp), intent(in) :: relative_tolerance, absolute_tolerance(:)
+    integer(c_int), intent(out) :: flag
+    type(N_Vector), pointer :: absolute
+    real(c_double), pointer :: values(:)
+
+    flag = CV_MEM_FAIL
+    absolute => FN_VNew_Serial(size(absolute_tolerance, kind=index_kind), self%context)
+    if (.not. associated(absolute)) return
+    values => FN_VGetArrayPointer(absolute)
+    values = absolute_tolerance
+    flag = FCVodeSVtolerances(self%memory, relative_tolerance, absolute)   ! which keeps a copy
+    call FN_VDestroy(absolute)
+  end subroutine set_tolerances
+
+  !> Adams' equations are solved by iterating them, those of backward differences by Newton's method.
+  subroutine set_solver(self, method, flag)
+    type(multistep_type), intent(inout) :: self
+    type(integration_method_type), intent(in) :: method
+    integer(c_int), intent(out) :: flag
+    integer(index_kind) :: n
+
+    flag = CV_MEM_FAIL
+    if (method%name == 'adams') then
+      self%nonlinear => FSUNNonlinSol_FixedPoint(self%vector, 0_c_int, self%context)
+      if (associated(self%nonlinear)) flag = FCVodeSetNonlinearSolver(self%memory, self%nonlinear)
+      return
+    end if
+    n = size(self%values, kind=index_kind)
+    self%matrix => FSUNDenseMatrix(n, n, self%context)
+    if (.not. associated(self%matrix)) return
+    self%linear => FSUNLinSol_Dense(self%vector, self%matrix, self%context)
+    if (.not. associated(self%linear)) return
+    flag = FCVodeSetLinearSolver(self%memory, self%linear, self%matrix)
+    if (flag == 0 .and. self%box%system%has_jacobian) flag = FCVodeSetJacFn(self%memory, c_funloc(evaluate_jacobian))
+  end subroutine set_solver
+
+  subroutine set_habits(self, flag)
+    type(multistep_type), intent(inout) :: self
+    integer(c_int), intent(out) :: flag
+
+    flag = FCVodeSetUserData(self%memory, c_loc(self%box))
+    if (flag == 0) flag = FCVodeSetMaxHnilWarns(self%memory, -1_c_int)
+    if (flag == 0) flag = FCVodeSetMaxErrTestFails(self%memory, most_failures)
+    if (flag == 0) flag = FCVodeSetMaxConvFails(self%memory, most_failures)
+  end subroutine set_habits
+
+  !> Where the method keeps y at the last step, the first column of its Nordsieck array. Between steps
+  !> that is what CVODE calls the prediction. A small change there is carried on without a restart;
+  !> CVODE's own projection, which backward differences alone have, does the same.
+  subroutine find_history(self, flag)
+    type(multistep_type), intent(inout) :: self
+    integer(c_int), intent(out) :: flag
+    type(c_ptr), target :: found(4)
+    type(c_ptr) :: at(4), context
+    real(c_double) :: t(1), gamma(1), rl1(1)
+    type(N_Vector), pointer :: vector
+    integer :: i
+
+    found = c_null_ptr
+    context = c_null_ptr
+    do i = 1, size(at)
+      at(i) = c_loc(found(i))
+    end do
+    flag = FCVodeGetNonlinearSystemData(self%memory, t, at(1), at(2), at(3), gamma, rl1, at(4), context)
+    if (flag /= 0) return
+    call c_f_pointer(found(1), vector)   ! the others: y, its rate, and the next column
+    self%history => FN_VGetArrayPointer(vector)
+  end subroutine find_history
+
+  subroutine advance(self, t_stop, t, y, outcome)
+    class(multistep_type), intent(inout) :: self
+    real(wp), intent(in) :: t_stop
+    real(wp), intent(out) :: t
+    real(wp), intent(out) :: y(:)
+    integer, intent(out) :: outcome
+    real(c_double) :: t_reached(1)
+    integer(c_int) :: flag
+    logical :: settled
+
+    if ((t_stop - self%t)*self%last_step < 0.0_wp) then
+      call self%restart(self%t, self%history, 0.0_wp, outcome)
+      if (outcome /= stepped) return
+    end if
+    flag = FCVodeSetStopTime(self%memory, t_stop)
+    if (flag == 0) flag = FCVode(self%memory, t_stop, self%vector, t_reached, CV_ONE_STEP)
+    outcome = meaning(flag)
+    if (outcome /= stepped) return
+    t = t_reached(1)
+    y = self%values
+    self%last_step = t - self%t
+    self%t = t
+    if (self%box%broken) then
+      outcome = evaluation_failed
+      return
+    end if
+    if (.not. self%box%system%settles) return
+    call self%box%settle(t, y, settled)
+    if (settled) then
+      self%history = y
+    else
+      outcome = evaluation_failed
+    end if
+  end subroutine advance
+
+  !> What SUNDIALS' answer means.
+  pure integer function meaning(flag)
+    integer(c_int), intent(in) :: flag
+
+    select case (flag)
+    case (CV_SUCCESS, CV_TSTOP_RETURN)
+      meaning = stepped
+    case (CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, CV_UNREC_RHSFUNC_ERR, CV_LSETUP_FAIL)
+      meaning = evaluation_failed
+    case (CV_ERR_FAILURE)
+      meaning = too_inaccurate
+    case (CV_CONV_FAILURE, CV_LSOLVE_FAIL)
+      meaning = not_convergent
+    case (CV_TOO_MUCH_ACC)
+      meaning = too_accurate
+    case (CV_MEM_FAIL)
+      meaning = out_of_memory
+    case default
+      meaning = refused
+    end select
+  end function meaning
+
+  !> By the polynomial through the values that the method goes on from.
+  subroutine interpolate(self, t, y, found)
+    class(multistep_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(out) :: y(:)
+    logical, intent(out) :: found
+
+    found = FCVodeGetDky(self%memory, t, 0_c_int, self%vector) == 0
+    y = self%values
+  end subroutine interpolate
+
+  !> Keeps step and order.
+  subroutine correct(self, t, y, outcome)
+    class(multistep_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    integer, intent(out) :: outcome
+
+    if (abs(self%last_step) > 0.0_wp) then
+      self%history = y
+      outcome = stepped
+    else
+      call self%restart(t, y, 0.0_wp, outcome)
+    end if
+  end subroutine correct
+
+  !> Falls back to the first order, as all multistep methods must.
+  subroutine restart(self, t, y, first_step, outcome)
+    class(multistep_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    real(wp), intent(in) :: first_step
+    integer, intent(out) :: outcome
+    type(stepper_counts_type) :: counts
+    integer(c_int) :: flag
+
+    call self%counts(counts)
+    self%earlier = counts
+    self%values = y
+    flag = FCVodeReInit(self%memory, t, self%vector)
+    if (flag == 0) flag = FCVodeSetInitStep(self%memory, first_step)
+    self%t = t
+    self%last_step = 0.0_wp
+    outcome = meaning(flag)
+  end subroutine restart
+
+  subroutine limit(self, largest_step, outcome)
+    class(multistep_type), intent(inout) :: self
+    real(wp), intent(in) :: largest_step
+    integer, intent(out) :: outcome
+
+    outcome = meaning(FCVodeSetMaxStep(self%memory, largest_step))
+  end subroutine limit
+
+  real(wp) function next_step(self)
+    class(multistep_type), intent(inout) :: self
+    real(c_double) :: h(1)
+    integer(c_int) :: flag
+
+    h = 0.0_wp
+    flag = FCVodeGetCurrentStep(self%memory, h)
+    next_step = h(1)
+  end function next_step
+
+  subroutine count_so_far(self, counts)
+    class(multistep_type), intent(inout) :: self
+    type(stepper_counts_type), intent(out) :: counts
+    integer(c_long) :: number(1)
+    integer(c_int) :: order(1), flag
+    real(c_double) :: h(1)
+
+    number = 0
+    order = 0
+    h = 0.0_wp
+    flag = FCVodeGetNumErrTestFails(self%memory, number)
+    counts%error_test_failures = self%earlier%error_test_failures + int(number(1), long)
+    flag = FCVodeGetNumStepSolveFails(self%memory, number)
+    counts%convergence_failures = self%earlier%convergence_failures + int(number(1), long)
+    counts%jacobian_evaluations = self%earlier%jacobian_evaluations
+    if (associated(self%linear) .and. abs(self%last_step) > 0.0_wp) then   ! counted anew from the first step after a restart
+      flag = FCVodeGetNumJacEvals(self%memory, number)
+      counts%jacobian_evaluations = counts%jacobian_evaluations + int(number(1), long)
+    end if
+    flag = FCVodeGetLastStep(self%memory, h)
+    counts%last_step = h(1)
+    flag = FCVodeGetLastOrder(self%memory, order)
+    counts%last_order = int(order(1))
+  end subroutine count_so_far
+
+  subroutine close_multistep(self)
+    class(multistep_type), intent(inout) :: self
+    integer(c_int) :: flag
+
+    if (c_associated(self%memory)) call FCVodeFree(self%memory)
+    if (associated(self%linear)) flag = FSUNLinSolFree(self%linear)
+    if (associated(self%matrix)) call FSUNMatDestroy(self%matrix)
+    if (associated(self%nonlinear)) flag = FSUNNonlinSolFree(self%nonlinear)
+    if (associated(self%vector)) call FN_VDestroy(self%vector)
+    if (c_associated(self%context)) call close_context(self%context)
+    self%memory = c_null_ptr
+    self%context = c_null_ptr
+    self%linear => null()
+    self%matrix => null()
+    self%nonlinear => null()
+    self%vector => null()
+    self%values => null()
+    self%history => null()
+  end subroutine close_multistep
+end module mech9_sundials_multistep

@@ -1,0 +1,318 @@
+!> Explicit Runge-Kutta methods by SUNDIALS' ERKStep.
+module mech9_sundials_runge_kutta
+  use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_associated, c_int, c_long, c_double, c_loc, c_funloc
+  use mech9_kinds, only: wp, long
+  use mech9_integration_methods, only: integration_method_type, prince_dormand_table, dormand_prince_table, verner_table, &
+    fehlberg_table, kutta_merson_table
+  use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand
+  use mech9_step_choice, only: next_step_length, safety
+  use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
+    too_accurate, out_of_memory, refused
+  use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, index_kind, last_stage_mistaken, &
+    open_context, close_context, silence_erkstep, quicken
+  use mech9_sundials_system, only: system_box_type, evaluate_rate, settle_step
+  use farkode_mod, only: FARKodeButcherTable_Create, FARKodeButcherTable_Free, ARK_SUCCESS, ARK_TSTOP_RETURN, &
+    ARK_ONE_STEP, ARK_ERR_FAILURE, ARK_TOO_MUCH_ACC, ARK_RHSFUNC_FAIL, ARK_FIRST_RHSFUNC_ERR, ARK_REPTD_RHSFUNC_ERR, &
+    ARK_UNREC_RHSFUNC_ERR, ARK_POSTPROCESS_STEP_FAIL, ARK_MEM_FAIL, ARK_ILL_INPUT, &
+    ARKODE_DORMAND_PRINCE_7_4_5, ARKODE_VERNER_8_5_6, ARKODE_FEHLBERG_13_7_8
+  use farkode_erkstep_mod, only: FERKStepCreate, FERKStepFree, FERKStepReset, FERKStepEvolve, FERKStepSVtolerances, &
+    FERKStepSetUserData, FERKStepSetTableNum, FERKStepSetTable, FERKStepSetInterpolantDegree, &
+    FERKStepSetMaxHnilWarns, FERKStepSetMaxErrTestFails, FERKStepSetPostprocessStepFn, FERKStepSetInitStep, &
+    FERKStepSetErrorBias, FERKStepSetSafetyFactor, FERKStepSetAdaptivityFn, &
+    FERKStepSetMaxStep, FERKStepSetStopTime, FERKStepGetCurrentStep, FERKStepGetLastStep, FERKStepGetNumErrTestFails
+  use fnvector_serial_mod, only: FN_VNew_Serial, FN_VEnableFusedOps_Serial
+  implicit none
+  private
+  public :: runge_kutta_type, new_runge_kutta
+
+  !> Failures of the error test in one step before it is given up: each makes it a third at most.
+  integer(c_int), parameter :: most_failures = 20
+
+  !> A Runge-Kutta method at work.
+  type, extends(stepper_type) :: runge_kutta_type
+    private
+    type(system_box_type), pointer :: box => null()
+    type(c_ptr) :: context = c_null_ptr
+    type(c_ptr) :: memory = c_null_ptr
+    type(N_Vector), pointer :: vector => null()                  !< where steps end
+    real(c_double), pointer :: values(:) => null()   !< of the vector
+    integer :: order = 0
+    real(wp) :: t = 0.0_wp            !< where it stands [s]
+    real(wp) :: last_step = 0.0_wp    !< 0 before the first one [s]
+  contains
+    procedure :: advance
+    procedure :: interpolate
+    procedure :: correct
+    procedure :: restart
+    procedure :: limit
+    procedure :: next_step
+    procedure :: counts => count_so_far
+    procedure :: close => close_runge_kutta
+  end type runge_kutta_type
+
+contains
+
+  !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
+  subroutine new_runge_kutta(method, box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
+    type(integration_method_type), intent(in) :: method
+    type(system_box_type), pointer, intent(in) :: box
+    real(wp), intent(in) :: relative_tolerance
+    real(wp), intent(in) :: absolute_tolerance(:)
+    real(wp), intent(in) :: t                      !< [s]
+    real(wp), intent(in) :: y(:)
+    type(runge_kutta_type), intent(inout) :: stepper
+    integer, intent(out) :: outcome
+    integer(c_int) :: flag
+
+    outcome = out_of_memory
+    stepper%box => box
+    stepper%order = method%order
+    stepper%t = t
+    call open_context(stepper%context, flag)
+    if (flag /= 0) return
+    stepper%vector => FN_VNew_Serial(int(size(y), index_kind), stepper%context)
+    if (.not. associated(stepper%vector)) return
+    flag = FN_VEnableFusedOps_Serial(stepper%vector, 1_c_int)   ! a tenth to a fifth faster
+    if (flag /= 0) return
+    call quicken(stepper%vector)
+    stepper%values => FN_VGetArrayPointer(stepper%vector)
+    stepper%values = y
+    stepper%memory = FERKStepCreate(c_funloc(evaluate_rate), t, stepper%vector, stepper%context)
+    if (.not. c_associated(stepper%memory)) return
+    call silence_erkstep(stepper%memory, flag)
+    if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
+    if (flag == 0) call set_table(stepper, method, flag)
+    if (flag == 0) call set_habits(stepper, method, flag)
+    outcome = merge(stepped, refused, flag == 0)
+  end subroutine new_runge_kutta
+
+  subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
+    type(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: relative_tolerance, absolute_tolerance(:)
+    integer(c_int), intent(out) :: flag
+    type(N_Vector), pointer :: absolute
+    real(c_double), pointer :: values(:)
+
+    flag = ARK_MEM_FAIL
+    absolute => FN_VNew_Serial(size(absolute_tolerance, kind=index_kind), self%context)
+    if (.not. associated(absolute)) return
+    values => FN_VGetArrayPointer(absolute)
+    values = absolute_tolerance
+    flag = FERKStepSVtolerances(self%memory, relative_tolerance, absolute)   ! which keeps a copy
+    call FN_VDestroy(absolute)
+  end subroutine set_tolerances
+
+  !> Give SUNDIALS the coefficients. A method whose table is not known is refused.
+  subroutine set_table(self, method, flag)
+    type(runge_kutta_type), intent(inout) :: self
+    type(integration_method_type), intent(in) :: method
+    integer(c_int), intent(out) :: flag              !< ARK_SUCCESS when all is well
+
+    select case (method%table)
+    case (prince_dormand_table)
+      call set_own_table(self, prince_dormand(), flag)
+    case (dormand_prince_table)
+      flag = FERKStepSetTableNum(self%memory, ARKODE_DORMAND_PRINCE_7_4_5)
+    case (verner_table)
+      flag = FERKStepSetTableNum(self%memory, ARKODE_VERNER_8_5_6)
+    case (fehlberg_table)
+      flag = FERKStepSetTableNum(self%memory, ARKODE_FEHLBERG_13_7_8)
+    case (kutta_merson_table)
+      call set_own_table(self, kutta_merson(), flag)
+    case default
+      flag = ARK_ILL_INPUT
+    end select
+  end subroutine set_table
+
+  subroutine set_own_table(self, table, flag)
+    type(runge_kutta_type), intent(inout) :: self
+    type(butcher_table_type), intent(in) :: table
+    integer(c_int), intent(out) :: flag
+    real(c_double), target :: c(table%stages), b(table%stages), d(table%stages), a(table%stages**2)
+    type(c_ptr) :: handed
+
+    c = table%c
+    b = table%b
+    d = table%d
+    a = reshape(transpose(table%a), [size(a)])   ! row by row
+    handed = FARKodeButcherTable_Create(int(table%stages, c_int), int(table%order, c_int), &
+                                        int(table%embedded_order, c_int), c, a, b, d)
+    flag = ARK_MEM_FAIL
+    if (.not. c_associated(handed)) return
+    flag = FERKStepSetTable(self%memory, handed)   ! which keeps a copy
+    call FARKodeButcherTable_Free(handed)
+  end subroutine set_own_table
+
+  subroutine set_habits(self, method, flag)
+    type(runge_kutta_type), intent(inout) :: self
+    type(integration_method_type), intent(in) :: method
+    integer(c_int), intent(out) :: flag
+    type(c_ptr) :: nothing
+
+    nothing = c_null_ptr
+    flag = FERKStepSetUserData(self%memory, c_loc(self%box))
+    if (flag == 0) flag = FERKStepSetErrorBias(self%memory, 1.0_wp)
+    if (flag == 0) flag = FERKStepSetSafetyFactor(self%memory, safety)
+    if (flag == 0) flag = FERKStepSetAdaptivityFn(self%memory, c_funloc(choose_step), nothing)
+    ! a step that reaches the stop is its own end: SUNDIALS' better interpolant would ask for more rates
+    if (flag == 0) flag = FERKStepSetInterpolantDegree(self%memory, 1_c_int)
+    if (flag == 0) flag = FERKStepSetMaxHnilWarns(self%memory, -1_c_int)
+    if (flag == 0) flag = FERKStepSetMaxErrTestFails(self%memory, most_failures)
+    if (flag /= 0) return
+    self%box%reuses_last_rate = last_stage_mistaken .and. method%reuses_last
+    if (self%box%system%settles .or. (last_stage_mistaken .and. .not. method%reuses_last)) &
+      flag = FERKStepSetPostprocessStepFn(self%memory, c_funloc(settle_step))
+  end subroutine set_habits
+
+  !> Called by SUNDIALS for the length of the next step, or of a new trial. Answers 0.
+  integer(c_int) function choose_step(y, t, h1, h2, h3, e1, e2, e3, q, p, h_new, context) bind(c) result(answer)
+    type(N_Vector) :: y
+    real(c_double), value :: t, h1, h2, h3, e1, e2, e3   !< steps and errors, the last ones first
+    integer(c_int), value :: q, p                        !< orders of the method and of the embedded one
+    real(c_double), intent(out) :: h_new
+    type(c_ptr), value :: context
+
+    h_new = next_step_length(h1, h2, e1, e2, int(p) + 1)
+    answer = 0
+  end function choose_step
+
+  subroutine advance(self, t_stop, t, y, outcome)
+    class(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: t_stop
+    real(wp), intent(out) :: t
+    real(wp), intent(out) :: y(:)
+    integer, intent(out) :: outcome
+    real(c_double) :: t_reached(1)
+    integer(c_int) :: flag
+
+    if ((t_stop - self%t)*self%last_step < 0.0_wp) then
+      call turn_back(self, t_stop, flag)
+    else
+      flag = FERKStepSetStopTime(self%memory, t_stop)
+    end if
+    if (flag == 0) flag = FERKStepEvolve(self%memory, t_stop, self%vector, t_reached, ARK_ONE_STEP)
+    outcome = meaning(flag)
+    if (outcome /= stepped) return
+    t = t_reached(1)
+    y = self%values
+    self%last_step = t - self%t
+    self%t = t
+  end subroutine advance
+
+  !> ERKStep accepts no stop against the direction of its last step. A first step back of half the rest at
+  !> most, which can only be made smaller, needs none.
+  subroutine turn_back(self, t_stop, flag)
+    class(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: t_stop
+    integer(c_int), intent(out) :: flag
+    real(wp) :: half
+
+    half = 0.5_wp*(t_stop - self%t)
+    flag = FERKStepSetInitStep(self%memory, sign(min(abs(self%last_step), abs(half)), half))
+    if (flag == 0) flag = FERKStepReset(self%memory, self%t, self%vector)
+  end subroutine turn_back
+
+  !> What SUNDIALS' answer means.
+  pure integer function meaning(flag)
+    integer(c_int), intent(in) :: flag
+
+    select case (flag)
+    case (ARK_SUCCESS, ARK_TSTOP_RETURN)
+      meaning = stepped
+    case (ARK_RHSFUNC_FAIL, ARK_FIRST_RHSFUNC_ERR, ARK_REPTD_RHSFUNC_ERR, ARK_UNREC_RHSFUNC_ERR, &
+          ARK_POSTPROCESS_STEP_FAIL)
+      meaning = evaluation_failed
+    case (ARK_ERR_FAILURE)
+      meaning = too_inaccurate
+    case (ARK_TOO_MUCH_ACC)
+      meaning = too_accurate
+    case (ARK_MEM_FAIL)
+      meaning = out_of_memory
+    case default
+      meaning = refused
+    end select
+  end function meaning
+
+  !> Not at the order of the method.
+  subroutine interpolate(self, t, y, found)
+    class(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(out) :: y(:)
+    logical, intent(out) :: found
+
+    y = self%values
+    found = abs(t - self%t) <= 0.0_wp
+  end subroutine interpolate
+
+  !> Takes one evaluation of the rate that would not be needed otherwise.
+  subroutine correct(self, t, y, outcome)
+    class(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    integer, intent(out) :: outcome
+
+    self%values = y
+    outcome = meaning(FERKStepReset(self%memory, t, self%vector))
+  end subroutine correct
+
+  subroutine restart(self, t, y, first_step, outcome)
+    class(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    real(wp), intent(in) :: first_step
+    integer, intent(out) :: outcome
+    integer(c_int) :: flag
+
+    self%values = y
+    self%t = t
+    flag = FERKStepSetInitStep(self%memory, first_step)
+    if (flag == 0) flag = FERKStepReset(self%memory, t, self%vector)
+    outcome = meaning(flag)
+  end subroutine restart
+
+  subroutine limit(self, largest_step, outcome)
+    class(runge_kutta_type), intent(inout) :: self
+    real(wp), intent(in) :: largest_step
+    integer, intent(out) :: outcome
+
+    outcome = meaning(FERKStepSetMaxStep(self%memory, largest_step))
+  end subroutine limit
+
+  real(wp) function next_step(self)
+    class(runge_kutta_type), intent(inout) :: self
+    real(c_double) :: h(1)
+    integer(c_int) :: flag
+
+    h = 0.0_wp
+    flag = FERKStepGetCurrentStep(self%memory, h)
+    next_step = h(1)
+  end function next_step
+
+  subroutine count_so_far(self, counts)
+    class(runge_kutta_type), intent(inout) :: self
+    type(stepper_counts_type), intent(out) :: counts
+    integer(c_long) :: number(1)
+    real(c_double) :: h(1)
+    integer(c_int) :: flag
+
+    number = 0
+    h = 0.0_wp
+    flag = FERKStepGetNumErrTestFails(self%memory, number)
+    counts%error_test_failures = int(number(1), long)
+    flag = FERKStepGetLastStep(self%memory, h)
+    counts%last_step = h(1)
+    counts%last_order = self%order
+  end subroutine count_so_far
+
+  subroutine close_runge_kutta(self)
+    class(runge_kutta_type), intent(inout) :: self
+
+    if (c_associated(self%memory)) call FERKStepFree(self%memory)
+    if (associated(self%vector)) call FN_VDestroy(self%vector)
+    if (c_associated(self%context)) call close_context(self%context)
+    self%memory = c_null_ptr
+    self%context = c_null_ptr
+    self%vector => null()
+    self%values => null()
+  end subroutine close_runge_kutta
+end module mech9_sundials_runge_kutta

@@ -1,0 +1,157 @@
+!> A system of equations as SUNDIALS calls it: the box that holds it, and the functions that open the box.
+module mech9_sundials_system
+  use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_f_pointer, c_loc
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, raise, exit_integrator
+  use mech9_text, only: to_text
+  use mech9_ode_system, only: ode_system_type, is_recoverable
+  use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, SUNMatrix
+  use fsunmatrix_dense_mod, only: FSUNDenseMatrix_Data
+  implicit none
+  private
+  public :: system_box_type, evaluate_rate, settle_step, evaluate_jacobian
+
+  !> What travels through C: the system, and what became of its evaluations.
+  type :: system_box_type
+    class(ode_system_type), pointer :: system => null()
+    type(error_type), allocatable :: err       !< of the last evaluation
+    type(error_type), allocatable :: failure   !< the last one there was
+    real(wp) :: t_failed = 0.0_wp              !< of that [s]
+    logical :: broken = .false.                !< it was one that a smaller step does not help
+    integer(long) :: failed_at = 0             !< rate evaluations up to it
+    integer(long) :: rate_evaluations = 0
+    integer(long) :: refusals = 0              !< failures that a smaller step may help
+    !> Whether the rate after settling is taken from the last stage, of the same time and nearly the same y.
+    logical :: reuses_last_rate = .false.
+    logical :: has_settled = .false.                    !< just now, and the rate there is asked for next
+    real(c_double), pointer :: last_rate(:) => null()   !< where SUNDIALS keeps it
+  contains
+    procedure :: settle
+    procedure :: has_cause
+  end type system_box_type
+
+contains
+
+  !> Called by SUNDIALS for y' = f(t, y). Answers 0; 1 if a smaller step may help; -1 if nothing does.
+  integer(c_int) function evaluate_rate(t, y, ydot, context) bind(c) result(answer)
+    real(c_double), value :: t
+    type(N_Vector), target :: y, ydot
+    type(c_ptr), value :: context
+    type(system_box_type), pointer :: box
+    real(c_double), pointer :: y_values(:), ydot_values(:)
+    integer :: i
+
+    answer = -1
+    call c_f_pointer(context, box)
+    if (box%broken) return   ! CVODE's iteration goes on after a failure of any kind
+    y_values => FN_VGetArrayPointer(y)
+    ydot_values => FN_VGetArrayPointer(ydot)
+    if (box%has_settled) then
+      box%has_settled = .false.
+      do i = 1, size(ydot_values)
+        ydot_values(i) = box%last_rate(i)
+      end do
+      answer = 0
+      return
+    end if
+    box%last_rate => ydot_values
+    box%rate_evaluations = box%rate_evaluations + 1
+    call box%system%rate(t, y_values, ydot_values, box%err)
+    if (.not. allocated(box%err)) call must_be_finite(ydot_values, 'rate of change', box%err)
+    answer = answer_to(box, t)
+  end function evaluate_rate
+
+  !> Called by SUNDIALS after a step that passed its error test: lets the system settle. Answers as evaluate_rate.
+  integer(c_int) function settle_step(t, y, context) bind(c) result(answer)
+    real(c_double), value :: t
+    type(N_Vector), target :: y
+    type(c_ptr), value :: context
+    type(system_box_type), pointer :: box
+    real(c_double), pointer :: y_values(:)
+    logical :: settled
+
+    call c_f_pointer(context, box)
+    y_values => FN_VGetArrayPointer(y)
+    call box%settle(t, y_values, settled)
+    box%has_settled = settled .and. box%reuses_last_rate
+    answer = merge(0, 1, settled)
+  end function settle_step
+
+  !> Called by SUNDIALS for the derivatives of f in y. Answers as evaluate_rate.
+  integer(c_int) function evaluate_jacobian(t, y, ydot, jac, context, work1, work2, work3) bind(c) result(answer)
+    real(c_double), value :: t
+    type(N_Vector), target :: y, ydot
+    type(SUNMatrix), target :: jac
+    type(c_ptr), value :: context
+    type(N_Vector), target :: work1, work2, work3
+    type(system_box_type), pointer :: box
+    real(c_double), pointer :: y_values(:), ydot_values(:), entries(:), columns(:, :)
+    integer :: n
+
+    call c_f_pointer(context, box)
+    y_values => FN_VGetArrayPointer(y)
+    ydot_values => FN_VGetArrayPointer(ydot)
+    entries => FSUNDenseMatrix_Data(jac)
+    n = size(y_values)
+    ! SUNDIALS 6 gives the first entry only
+    call c_f_pointer(c_loc(entries(1)), columns, [n, n])
+    call c_f_pointer(c_loc(columns(1, 1)), entries, [n*n])
+    call box%system%jacobian(t, y_values, ydot_values, columns, box%err)
+    if (.not. allocated(box%err)) call must_be_finite(entries, 'Jacobian', box%err)
+    answer = answer_to(box, t)
+  end function evaluate_jacobian
+
+  !> Let the system settle after a step, if it does.
+  subroutine settle(self, t, y, settled)
+    class(system_box_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(inout) :: y(:)
+    logical, intent(out) :: settled
+
+    settled = .true.
+    if (.not. self%system%settles) return
+    call self%system%settle(t, y, self%err)
+    settled = answer_to(self, t) == 0
+  end subroutine settle
+
+  !> Whether a failure of the system explains why the integration cannot go on: one that nothing helps, or
+  !> one so short ago that it is what the steps became short for.
+  pure logical function has_cause(self)
+    class(system_box_type), intent(in) :: self
+    integer, parameter :: recent = 100   ! rate evaluations: those of some steps, and of a Jacobian
+
+    has_cause = .false.
+    if (allocated(self%failure)) has_cause = self%broken .or. self%rate_evaluations - self%failed_at <= recent
+  end function has_cause
+
+  !> Fails where a number is not finite.
+  pure subroutine must_be_finite(numbers, what, err)
+    real(wp), intent(in) :: numbers(:)
+    character(len=*), intent(in) :: what
+    type(error_type), allocatable, intent(inout) :: err
+    integer :: i
+
+    do i = 1, size(numbers)
+      if (ieee_is_finite(numbers(i))) cycle
+      call raise(err, exit_integrator, what//' number '//to_text(i)// &
+                 ' is not finite: the motion, or a force, grows beyond all bounds')
+      return
+    end do
+  end subroutine must_be_finite
+
+  !> The answer that SUNDIALS understands to an evaluation at time t. Failures are remembered.
+  integer(c_int) function answer_to(box, t) result(answer)
+    type(system_box_type), intent(inout) :: box
+    real(wp), intent(in) :: t
+
+    answer = 0
+    if (.not. allocated(box%err)) return
+    box%failure = box%err
+    box%t_failed = t
+    box%failed_at = box%rate_evaluations
+    box%broken = .not. is_recoverable(box%err)
+    if (.not. box%broken) box%refusals = box%refusals + 1
+    answer = merge(-1, 1, box%broken)
+  end function answer_to
+end module mech9_sundials_system

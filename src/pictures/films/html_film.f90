@@ -1,0 +1,223 @@
+!> A film as a page that a browser plays, with nothing from elsewhere: the first picture, the places of everything in every
+!> frame, the values of the recorded columns, and a script.
+module mech9_html_film
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type, to_text
+  use mech9_rotation, only: quaternion
+  use mech9_film, only: film_type
+  use mech9_film_clock, only: clock_decimals
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, label, spring, in_thread, in_damper
+  use mech9_svg_picture, only: put_picture
+  use mech9_film_page, only: put_page_style, put_picture_style, put_controls, put_script
+  use mech9_page, only: page_type
+  use mech9_xml_text, only: xml_text, decimal
+  implicit none
+  private
+  public :: save_html_film
+
+  !> Places are whole numbers of this part of the page's width: far finer than a screen shows.
+  real(wp), parameter :: finest = 1.0e-5_wp
+  !> Parts of quaternions are whole numbers of 1/steps.
+  real(wp), parameter :: steps = 1.0e5_wp
+  !> Significant digits of the values of columns.
+  integer, parameter :: digits = 6
+
+contains
+
+  !> Write the page. Errors are exit_file.
+  subroutine save_html_film(path, title, scene, film, projection, planar, err)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: title          !< any text
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    logical, intent(in) :: planar                  !< seen along the normal of its plane: dragging moves it at first
+    type(error_type), allocatable, intent(out) :: err
+    type(page_type) :: page
+
+    call page%line('<!DOCTYPE html>')
+    call page%line('<html lang="en"><head><meta charset="utf-8"/>')
+    call page%line('<meta http-equiv="Content-Security-Policy" content="default-src ''none''; img-src data:; '// &
+                   'style-src ''unsafe-inline''; script-src ''unsafe-inline''"/>')
+    call page%line('<meta name="viewport" content="width=device-width, initial-scale=1"/>')
+    call page%line('<title>'//xml_text(title)//'</title>')
+    call page%line('<style>')
+    call put_page_style(page)
+    call page%line('</style><style id="picture-style">')
+    call put_picture_style(page)
+    call page%line('</style></head><body><main><section aria-label="film"><h1>'//xml_text(title)//'</h1><figure>')
+    call put_picture(title, scene, film, projection, 1, .true., page)
+    call page%line('</figure>')
+    call put_controls(page)
+    call page%line('</section><details id="values"><summary>Values</summary>')
+    call page%line('<input id="filter" type="search" placeholder="names, or parts of them: q1 P." aria-label="Names of columns"/>')
+    call page%line('<dl id="list"></dl><p id="more"></p></details></main>')
+    call page%line('<script>')
+    call put_film(scene, film, projection, planar, page)
+    call put_script(page)
+    call page%line('</script></body></html>')
+    call page%save(path, err)
+  end subroutine save_html_film
+
+  !> What the script has to know, as one constant.
+  subroutine put_film(scene, film, projection, planar, page)
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    logical, intent(in) :: planar
+    type(page_type), intent(inout) :: page
+    integer :: numbers(size(film%p, 2))            !< of the links that have nodes; 0: the others, and link 1
+    real(wp) :: unit
+    integer :: i, count
+
+    unit = finest*projection%width/projection%scale
+    numbers = 0
+    count = 0
+    do i = 1, scene%n_nodes
+      if (scene%node_link(i) == 1 .or. numbers(scene%node_link(i)) > 0) cycle
+      count = count + 1
+      numbers(scene%node_link(i)) = count
+    end do
+    call page%put('const film = {unit: '//to_text(unit, 17)//', scale: '//to_text(projection%scale, 17))
+    call page%put(', symbol: '//decimal(projection%symbol)//', middle: ['//decimal(projection%middle(1))//', '// &
+                  decimal(projection%middle(2))//'], sorted: ['//to_text(scene%first_sorted)//', '// &
+                  to_text(scene%last_sorted)//'],'//new_line('a')//'view: [')
+    do i = 1, 3
+      call page%put(to_text(projection%view%right(i), 9)//',')
+    end do
+    do i = 1, 3
+      call page%put(to_text(projection%view%up(i), 9)//',')
+    end do
+    call page%put(to_text(projection%view%toward(1), 9)//','//to_text(projection%view%toward(2), 9)//','// &
+                  to_text(projection%view%toward(3), 9))
+    call page%line('],')
+    call page%line('planar: '//trim(merge('true ', 'false', planar))//', decimals: '//to_text(clock_decimals(film))//',')
+    call put_nodes(scene, numbers, projection%centre, unit, page)
+    call put_items(scene, page)
+    call put_frames(film, numbers, count, projection%centre, unit, page)
+    call put_values(film, page)
+    call page%line('};')
+  end subroutine put_film
+
+  !> Nodes: number of the link, and place in it; those of link 1 from the middle of the picture.
+  subroutine put_nodes(scene, numbers, centre, unit, page)
+    type(scene_type), intent(in) :: scene
+    integer, intent(in) :: numbers(:)
+    real(wp), intent(in) :: centre(3), unit
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    call page%put('links: [')
+    do i = 1, scene%n_nodes
+      call page%put(to_text(numbers(scene%node_link(i)))//',')
+    end do
+    call page%put('],'//new_line('a')//'points: [')
+    do i = 1, scene%n_nodes
+      if (scene%node_link(i) == 1) then
+        call put_steps((scene%node_at(:, i) - centre)/unit, page)
+      else
+        call put_steps(scene%node_at(:, i)/unit, page)
+      end if
+    end do
+    call page%line('],')
+  end subroutine put_nodes
+
+  !> Whole numbers, each with a comma behind it.
+  subroutine put_steps(values, page)
+    real(wp), intent(in) :: values(:)
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    do i = 1, size(values)
+      call page%put(to_text(nint(max(-2.0e9_wp, min(2.0e9_wp, values(i)))))//',')
+    end do
+  end subroutine put_steps
+
+  !> Items; the numbers of nodes begin with 0. Items of link 1 alone stand still.
+  subroutine put_items(scene, page)
+    type(scene_type), intent(in) :: scene
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    call page%line('items: [')
+    do i = 1, scene%n_items
+      associate (item => scene%items(i))
+        call page%put('{shape: '//to_text(item%shape)//', nodes: ['//to_text(item%nodes - 1, ',')//'], above: ['// &
+                      to_text(pack(item%above, item%above > 0), ',')//']')
+        if (all(scene%node_link(item%nodes) == 1)) call page%put(', still: true')
+        if (item%style == in_thread) call page%put(', thread: true')
+        if (item%style == in_damper) call page%put(', damper: true')
+        if (item%shape == label .or. item%shape == spring) then
+          call page%put(', shift: ['//decimal(item%shift(1))//', '//decimal(item%shift(2))//']')
+        else
+          call page%put(', shift: [0, 0]')
+        end if
+        call page%line('},')
+      end associate
+    end do
+    call page%line('],')
+  end subroutine put_items
+
+  !> Times, and for each frame the place and the quaternion of each link.
+  subroutine put_frames(film, numbers, count, centre, unit, page)
+    type(film_type), intent(in) :: film
+    integer, intent(in) :: numbers(:), count
+    real(wp), intent(in) :: centre(3), unit
+    type(page_type), intent(inout) :: page
+    integer :: links(count), frame, i
+
+    do i = 1, size(numbers)
+      if (numbers(i) > 0) links(numbers(i)) = i
+    end do
+    call page%put('times: [')
+    do frame = 1, film%n_frames
+      call page%put(to_text(film%times(frame), 9)//',')
+    end do
+    call page%line('],')
+    call page%line('poses: [')
+    do frame = 1, film%n_frames
+      call page%put('[')
+      do i = 1, count
+        call put_steps((film%p(:, links(i), frame) - centre)/unit, page)
+        call put_steps(steps*quaternion(film%r(:, :, links(i), frame)), page)
+      end do
+      call page%line('],')
+    end do
+    call page%line('],')
+  end subroutine put_frames
+
+  !> Names and units of the recorded columns, and what they hold in each frame.
+  subroutine put_values(film, page)
+    type(film_type), intent(in) :: film
+    type(page_type), intent(inout) :: page
+    integer :: frame, i
+
+    call put_words('names', film%names, page)
+    call put_words('units', film%units, page)
+    call page%line('values: [')
+    do frame = 1, film%n_frames
+      call page%put('[')
+      do i = 1, size(film%names)
+        call page%put(to_text(film%values(i, frame), digits)//',')
+      end do
+      call page%line('],')
+    end do
+    call page%line('],')
+  end subroutine put_values
+
+  !> A list of words without quotes in them, such as names of columns and units.
+  subroutine put_words(name, words, page)
+    character(len=*), intent(in) :: name           !< of the list
+    type(string_type), intent(in) :: words(:)
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    call page%put(name//': [')
+    do i = 1, size(words)
+      call page%put('"'//words(i)%text//'",')
+    end do
+    call page%line('],')
+  end subroutine put_words
+end module mech9_html_film

@@ -1,0 +1,169 @@
+!> A film as one SVG that moves by itself, without a script, so that it also plays where a page shows it as a picture.
+module mech9_svg_film
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_film, only: film_type
+  use mech9_film_clock, only: clock_decimals, clock_text
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, item_type, mark, label
+  use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
+  use mech9_picture_style, only: styles, mark_svg
+  use mech9_svg_picture, only: put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of
+  use mech9_page, only: page_type
+  use mech9_xml_text, only: decimal
+  implicit none
+  private
+  public :: save_svg_film, duration_of
+
+  !> Bounds of the time that a film takes to play [s].
+  real(wp), parameter :: shortest = 3.0_wp, longest = 15.0_wp
+
+contains
+
+  !> Write the picture. Errors are exit_file.
+  subroutine save_svg_film(path, title, scene, film, projection, err)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: title          !< any text
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    type(error_type), allocatable, intent(out) :: err
+    type(page_type) :: page
+    type(drawing_type), allocatable :: drawings(:)
+    integer, allocatable :: order(:)
+    integer :: i
+
+    allocate (drawings(film%n_frames))
+    do i = 1, film%n_frames
+      drawings(i) = draw_frame(scene, film, projection, i)
+    end do
+    call page%line('<?xml version="1.0" encoding="UTF-8"?>')
+    call put_opening(title, projection, page)
+    order = drawing_order(scene, drawings(1))
+    call page%line('<g id="scene">')
+    do i = 1, size(order)
+      associate (item => scene%items(order(i)))
+        if (all(scene%node_link(item%nodes) == 1) .or. film%n_frames < 2) then
+          call put_item(item, order(i), drawings(1), projection%symbol, page)
+        else
+          call put_moving(item, order(i), drawings, projection%symbol, duration_of(film), page)
+        end if
+      end associate
+    end do
+    call page%line('</g>')
+    call put_surroundings(title, projection, .false., page)
+    if (film%n_frames > 1) call put_clock(film, projection%height - 12.0_wp, page)
+    call page%line('</svg>')
+    call page%save(path, err)
+  end subroutine save_svg_film
+
+  !> The clock: the times of all frames stand below each other on a strip that is moved behind a window.
+  subroutine put_clock(film, foot, page)
+    type(film_type), intent(in) :: film
+    real(wp), intent(in) :: foot                   !< where the time stands on the page [px]
+    type(page_type), intent(inout) :: page
+    integer, parameter :: line = 20                ! height of a line [px]
+    integer :: i, decimals
+
+    decimals = clock_decimals(film)
+    call page%put('<svg id="time" x="90" y="'//decimal(foot - 14.0_wp)//'" width="160" height="'//to_text(line)// &
+                  '" overflow="hidden"><g transform="translate(0 0)">'// &
+                  '<animateTransform attributeName="transform" type="translate"'//timing(duration_of(film)))
+    do i = 1, film%n_frames
+      if (i > 1) call page%put(';')
+      call page%put('0 '//to_text(-line*(i - 1)))
+    end do
+    call page%line('"/>')
+    do i = 1, film%n_frames
+      call page%line('<text class="small" x="0" y="'//to_text(line*(i - 1) + 14)//'">'// &
+                     clock_text(film%times(i), decimals)//'</text>')
+    end do
+    call page%line('</g></svg>')
+  end subroutine put_clock
+
+  !> How long a film plays: as long as it takes, or less or more where nobody could watch it [s].
+  pure real(wp) function duration_of(film) result(duration)
+    type(film_type), intent(in) :: film
+
+    duration = max(shortest, min(longest, abs(film%times(film%n_frames) - film%times(1))))
+  end function duration_of
+
+  !> An item with what it is in each frame. Where nothing moves, in a viewer or a print, the first frame stands.
+  subroutine put_moving(item, number, drawings, symbol, duration, page)
+    type(item_type), intent(in) :: item
+    integer, intent(in) :: number
+    type(drawing_type), intent(in) :: drawings(:)
+    real(wp), intent(in) :: symbol
+    real(wp), intent(in) :: duration               !< [s]
+    type(page_type), intent(inout) :: page
+
+    call page%put(opening_of(item, number))
+    select case (item%shape)
+    case (mark, label)
+      call page%put(' transform="translate('//place_of(item, drawings(1))//')">')
+      call page%put('<animateTransform attributeName="transform" type="translate"'//timing(duration))
+      call put_values(item, drawings, symbol, page)
+      call page%put('"/>')
+      if (item%shape == mark) then
+        call page%put('<g transform="scale('//decimal(symbol)//')">'//mark_svg(item%style, item%shift)//'</g>')
+      else
+        call page%put(label_svg(item))
+      end if
+    case default
+      call page%put('>')
+      call put_moving_path(item, drawings, symbol, duration, '', page)
+      if (styles(item%style)%has_edge) call put_moving_path(item, drawings, symbol, duration, ' class="i"', page)
+    end select
+    call page%line('</g>')
+  end subroutine put_moving
+
+  subroutine put_moving_path(item, drawings, symbol, duration, class, page)
+    type(item_type), intent(in) :: item
+    type(drawing_type), intent(in) :: drawings(:)
+    real(wp), intent(in) :: symbol, duration
+    character(len=*), intent(in) :: class
+    type(page_type), intent(inout) :: page
+
+    call page%put('<path'//class//' d="'//path_in(item, drawings(1), symbol)//'">')
+    call page%put('<animate attributeName="d"'//timing(duration))
+    call put_values(item, drawings, symbol, page)
+    call page%put('"/></path>')
+  end subroutine put_moving_path
+
+  !> The beginning of an animation, up to its values. Frame after frame: there are enough of them.
+  pure function timing(duration) result(text)
+    real(wp), intent(in) :: duration
+    character(len=:), allocatable :: text
+
+    text = ' calcMode="discrete" repeatCount="indefinite" dur="'//decimal(duration)//'s" values="'
+  end function timing
+
+  subroutine put_values(item, drawings, symbol, page)
+    type(item_type), intent(in) :: item
+    type(drawing_type), intent(in) :: drawings(:)
+    real(wp), intent(in) :: symbol
+    type(page_type), intent(inout) :: page
+    integer :: i
+
+    do i = 1, size(drawings)
+      if (i > 1) call page%put(';')
+      if (item%shape == mark .or. item%shape == label) then
+        call page%put(place_of(item, drawings(i)))
+      else
+        call page%put(path_in(item, drawings(i), symbol))
+      end if
+    end do
+  end subroutine put_values
+
+  !> The path of an item in a frame; where it is not seen, one without length, as an animation needs one.
+  pure function path_in(item, drawing, symbol) result(path)
+    type(item_type), intent(in) :: item
+    type(drawing_type), intent(in) :: drawing
+    real(wp), intent(in) :: symbol
+    character(len=:), allocatable :: path
+
+    path = path_of(item, outline_of(item, drawing, symbol))
+    if (path == '') path = 'M0 0'
+  end function path_in
+end module mech9_svg_film

@@ -1,0 +1,129 @@
+!> A description in XDMF of the moving links in an HDF5 file, for ParaView and its like.
+!>
+!> Each output is a grid of lines between vertices; the numbers stay in the HDF5 file, which must stand beside.
+module mech9_xdmf
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_path, only: name_of, with_ending
+  use mech9_mechanism, only: mechanism_type
+  use mech9_settings, only: time_grid_type
+  use mech9_poses, only: poses_type
+  use mech9_result_sink, only: result_sink_type
+  use mech9_page, only: page_type
+  use mech9_xml_text, only: xml_text
+  implicit none
+  private
+  public :: xdmf_type, new_xdmf, xdmf_path
+
+  !> Outputs that are shown at most; of more, every so-manieth is.
+  integer, parameter :: most_steps = 2000
+
+  !> Counts the rows, and writes the file when it is closed.
+  type, extends(result_sink_type) :: xdmf_type
+    private
+    character(len=:), allocatable :: path        !< of the description
+    character(len=:), allocatable :: data_name   !< of the HDF5 file, without its folder
+    character(len=:), allocatable :: title
+    type(time_grid_type) :: grid
+    integer :: n_vertices = 0, n_lines = 0
+    integer :: rows = 0
+    logical :: is_open = .false.
+  contains
+    procedure :: write_rows
+    procedure :: close => save_description
+    procedure :: words
+  end type xdmf_type
+
+contains
+
+  !> The description of an HDF5 file that is going to be written; it gets its name, with the ending .xdmf.
+  pure function new_xdmf(hdf5_path, mechanism, poses) result(sink)
+    character(len=*), intent(in) :: hdf5_path
+    type(mechanism_type), intent(in) :: mechanism
+    type(poses_type), intent(in) :: poses
+    type(xdmf_type) :: sink
+
+    sink%data_name = name_of(hdf5_path)
+    sink%path = xdmf_path(hdf5_path)
+    sink%title = mechanism%title
+    sink%grid = mechanism%time
+    sink%n_vertices = size(poses%vertex_link)
+    sink%n_lines = size(poses%lines, 2)
+    sink%is_open = .true.
+  end function new_xdmf
+
+  !> The file of the description; it stands beside the HDF5 file.
+  pure function xdmf_path(hdf5_path) result(path)
+    character(len=*), intent(in) :: hdf5_path
+    character(len=:), allocatable :: path
+
+    path = with_ending(hdf5_path, 'xdmf')
+  end function xdmf_path
+
+  subroutine write_rows(self, rows, err)
+    class(xdmf_type), intent(inout) :: self
+    real(wp), intent(in) :: rows(:, :)
+    type(error_type), allocatable, intent(out) :: err
+
+    self%rows = self%rows + size(rows, 2)
+  end subroutine write_rows
+
+  subroutine save_description(self, err)
+    class(xdmf_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+    type(page_type) :: page
+    integer :: i
+
+    if (.not. self%is_open) return
+    self%is_open = .false.
+    call page%line('<?xml version="1.0" encoding="UTF-8"?>')
+    call page%line('<Xdmf Version="3.0">')
+    call page%line('<Domain>')
+    call page%line('<Grid Name="'//xml_text(self%title)//'" GridType="Collection" CollectionType="Temporal">')
+    do i = 1, self%rows, 1 + (self%rows - 1)/most_steps
+      call put_step(self, i - 1, page)
+    end do
+    call page%line('</Grid>')
+    call page%line('</Domain>')
+    call page%line('</Xdmf>')
+    call page%save(self%path, err)
+  end subroutine save_description
+
+  !> One output: lines between vertices, and which link each line belongs to.
+  subroutine put_step(self, row, page)
+    type(xdmf_type), intent(in) :: self
+    integer, intent(in) :: row                    !< of the HDF5 file, from 0
+    type(page_type), intent(inout) :: page
+    character(len=:), allocatable :: vertices, lines
+
+    vertices = to_text(self%n_vertices)//' 3'
+    lines = to_text(self%n_lines)
+    call page%line('<Grid Name="links"><Time Value="'//to_text(self%grid%time(row), 17)//'"/>')
+    call page%line('<Topology TopologyType="Polyline" NodesPerElement="2" NumberOfElements="'//lines//'">'// &
+                   item(self, lines//' 2', 'Int', 'shape/line')//'</Topology>')
+    call page%line('<Geometry GeometryType="XYZ"><DataItem ItemType="HyperSlab" Dimensions="'//vertices//'">'// &
+                   '<DataItem Dimensions="3 3" NumberType="Int" Format="XML">'//to_text(row)//' 0 0 1 1 1 1 '// &
+                   vertices//'</DataItem>')
+    call page%line(item(self, to_text(self%rows)//' '//vertices, 'Float', 'vertex')//'</DataItem></Geometry>')
+    call page%line('<Attribute Name="link" AttributeType="Scalar" Center="Cell">'// &
+                   item(self, lines, 'Int', 'shape/line_link')//'</Attribute></Grid>')
+  end subroutine put_step
+
+  !> Numbers in the HDF5 file.
+  pure function item(self, dimensions, type, data_set) result(text)
+    type(xdmf_type), intent(in) :: self
+    character(len=*), intent(in) :: dimensions, type, data_set
+    character(len=:), allocatable :: text
+
+    text = '<DataItem Dimensions="'//dimensions//'" NumberType="'//type//'" Precision="'// &
+           merge('8', '4', type == 'Float')//'" Format="HDF">'//xml_text(self%data_name)//':/'//data_set//'</DataItem>'
+  end function item
+
+  function words(self)
+    class(xdmf_type), intent(in) :: self
+    character(len=:), allocatable :: words
+
+    words = 'for ParaView: '//self%path
+  end function words
+end module mech9_xdmf

@@ -1,0 +1,156 @@
+!> gnuplot as a process, and text made harmless in its scripts.
+module mech9_gnuplot
+  use, intrinsic :: iso_fortran_env, only: int64
+  use mech9_error, only: error_type, raise, exit_file
+  use mech9_text, only: string_type, to_text
+  use mech9_path, only: ending_of
+  use mech9_text_file, only: text_file_type
+  use mech9_printable, only: printable, with_escapes
+  use mech9_child_process, only: child_outcome_type, run_child
+  implicit none
+  private
+  public :: quoted, quoted_lines, quoted_path, run_gnuplot, gnuplot_package
+
+  !> What installs it, for messages.
+  character(len=*), parameter :: gnuplot_package = 'gnuplot (Debian: apt-get install gnuplot-nox)'
+  !> Bytes that hold the last mark of a picture, and what may stand behind it: line ends, a check sum.
+  integer, parameter :: longest_end = 12
+  !> The trailer of a GIF, its last byte.
+  character(len=*), parameter :: gif_end = ';'
+
+contains
+
+  !> Any text as a string of gnuplot. Between single quotes nothing has a meaning but the single quote: a text that
+  !> holds one stands between double quotes, and what means something there is written as octal numbers. (gnuplot also
+  !> takes two single quotes for one, but not at the beginning of a string, nor four of them.) Control characters, which
+  !> could end the line, become blanks.
+  pure function quoted(text) result(string)
+    character(len=*), intent(in) :: text      !< any bytes
+    character(len=:), allocatable :: string
+
+    if (index(text, '''') == 0) then
+      string = ''''//printable(text)//''''
+    else
+      string = '"'//escaped(text)//'"'
+    end if
+  end function quoted
+
+  !> Several lines as one string of gnuplot.
+  pure function quoted_lines(lines) result(string)
+    type(string_type), intent(in) :: lines(:)    !< of any bytes, one at least
+    character(len=:), allocatable :: string
+    integer :: i
+
+    string = quoted(lines(1)%text)
+    if (size(lines) == 1) return
+    string = escaped(lines(1)%text)
+    do i = 2, size(lines)
+      string = string//'\n'//escaped(lines(i)%text)
+    end do
+    string = '"'//string//'"'
+  end function quoted_lines
+
+  !> Any text as it stands between double quotes.
+  pure function escaped(text) result(safe)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: safe
+
+    safe = with_escapes(printable(text), '"\`', ['\042', '\134', '\140'])
+  end function escaped
+
+  !> The name of a file as a string of gnuplot. A path that begins with a folder is only ever a file: `<`,
+  !> `|`, `$`, `+` or `-` at the beginning mean other things. Bytes that cannot stand in a line are written
+  !> as octal numbers, for which double quotes are needed, and hence for all that has a meaning there.
+  pure function quoted_path(path) result(string)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: string, place
+    character(len=3) :: octal
+    integer :: i
+
+    place = path
+    if (path(1:min(1, len(path))) /= '/') place = './'//path
+    if (printable(place) == place) then
+      string = quoted(place)
+      return
+    end if
+    string = '"'
+    do i = 1, len(place)
+      if (scan(place(i:i), '"\`@$%') > 0 .or. ichar(place(i:i)) < 32 .or. ichar(place(i:i)) > 126) then
+        write (octal, '(o3.3)') ichar(place(i:i))
+        string = string//'\'//octal
+      else
+        string = string//place(i:i)
+      end if
+    end do
+    string = string//'"'
+  end function quoted_path
+
+  !> Let gnuplot carry out a script. Where it is not there, `found` is false; where it fails, the error
+  !> says why. Where gnuplot cannot open the picture it draws on standard output: with `picture` that is dropped.
+  subroutine run_gnuplot(script, found, err, folder, picture)
+    character(len=*), intent(in) :: script
+    logical, intent(out) :: found
+    type(error_type), allocatable, intent(out) :: err
+    character(len=*), intent(in), optional :: folder   !< where it works; here unless given
+    character(len=*), intent(in), optional :: picture  !< the file that the script makes, seen from here
+    type(child_outcome_type) :: outcome
+    type(string_type) :: words(1)
+
+    found = .false.
+    words(1)%text = 'gnuplot'
+    call run_child(words, script, outcome, err, folder, drop_output=present(picture))
+    if (allocated(err)) return
+    found = outcome%found
+    if (.not. found) return
+    if (present(picture)) call check_picture(picture, outcome%code /= 0, err)
+    if (outcome%code /= 0 .and. .not. allocated(err)) &
+      call raise(err, exit_file, 'gnuplot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%said)))
+  end subroutine run_gnuplot
+
+  !> Whether a picture can be written, and was written to its end: gnuplot does not notice that a disk is full.
+  subroutine check_picture(path, failed, err)
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: failed                      !< gnuplot ended with an error: only why is asked
+    type(error_type), allocatable, intent(out) :: err
+    type(text_file_type) :: file
+    character(len=longest_end) :: last
+    logical :: whole
+
+    if (failed) then
+      ! where it cannot be opened the system's words are plainer than those of gnuplot
+      call file%open(path, err)
+      if (.not. allocated(err)) call file%close(err)
+      return
+    end if
+    call read_end(path, last)
+    select case (ending_of(path))
+    case ('svg')
+      whole = index(last, '</svg>') > 0
+    case ('pdf')
+      whole = index(last, '%%EOF') > 0
+    case ('png')
+      whole = index(last, 'IEND') > 0
+    case default
+      whole = last(longest_end:) == gif_end
+    end select
+    if (.not. whole) call raise(err, exit_file, 'the picture could not be written to its end; is the disk full?')
+  end subroutine check_picture
+
+  !> The last bytes of a file; blanks where there are none, as of a device.
+  subroutine read_end(path, last)
+    character(len=*), intent(in) :: path
+    character(len=longest_end), intent(out) :: last
+    character(len=longest_end) :: bytes
+    integer(int64) :: length
+    integer :: unit, status
+
+    last = ''
+    inquire (file=path, size=length)
+    if (length < longest_end) return
+    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=status)
+    if (status /= 0) return
+    read (unit, pos=length - longest_end + 1, iostat=status) bytes
+    close (unit)
+    if (status == 0) last = bytes
+  end subroutine read_end
+end module mech9_gnuplot

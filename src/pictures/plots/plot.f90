@@ -1,0 +1,197 @@
+!> A plot of results: asked for before the run, fed with its rows, drawn at its end by gnuplot.
+module mech9_plot
+  use, intrinsic :: iso_fortran_env, only: output_unit
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, add_place, exit_file
+  use mech9_text, only: string_type, to_text
+  use mech9_path, only: folder_of, name_of, ending_of, with_ending
+  use mech9_text_file, only: save_text
+  use mech9_result_sink, only: result_sink_type
+  use mech9_gnuplot, only: run_gnuplot, gnuplot_package
+  use mech9_terminal_size, only: find_terminal_size
+  use mech9_plot_request, only: plot_request_type, read_plot_request, target_of_plot
+  use mech9_plot_data, only: plot_data_type, new_plot_data
+  use mech9_plot_script, only: picture_script, terminal_script
+  implicit none
+  private
+  public :: plot_type, plot_columns, picture_of_plot, script_of_plot
+
+  character(len=*), parameter :: script_ending = 'gp'
+
+  !> A sink that keeps what it needs of the rows and draws when it is closed. The table, if there is one, is to be
+  !> closed before.
+  type, extends(result_sink_type) :: plot_type
+    private
+    character(len=:), allocatable :: title
+    character(len=:), allocatable :: picture    !< its file, unless the request names one
+    character(len=:), allocatable :: table      !< file with the whole results; empty: none
+    character(len=:), allocatable :: said
+    type(plot_request_type) :: request
+    type(plot_data_type) :: data
+    logical :: is_open = .false.
+  contains
+    procedure :: open => open_plot
+    procedure :: write_rows
+    procedure :: close => close_plot
+    procedure :: words
+  end type plot_type
+
+contains
+
+  !> Read what is asked for; before the run, so that a wrong name costs no time (exit_usage).
+  subroutine open_plot(self, text, title, names, units, expected, picture, table, err)
+    class(plot_type), intent(inout) :: self
+    character(len=*), intent(in) :: text          !< the argument of --plot
+    character(len=*), intent(in) :: title         !< of the mechanism
+    type(string_type), intent(in) :: names(:)     !< of the columns of the results, time first
+    type(string_type), intent(in) :: units(:)     !< of the columns
+    integer, intent(in) :: expected               !< rows that will come at most
+    character(len=*), intent(in) :: picture       !< its file, unless the text names one
+    character(len=*), intent(in) :: table         !< file with the whole results; empty or '-': none
+    type(error_type), allocatable, intent(out) :: err
+
+    call read_plot_request(text, names, self%request, err)
+    if (allocated(err)) return
+    self%title = title
+    self%picture = picture
+    if (self%request%target /= '') self%picture = self%request%target
+    self%table = table
+    self%said = ''
+    self%data = new_plot_data(names, units, self%request%curves, expected)
+    self%is_open = .true.
+  end subroutine open_plot
+
+  !> Take rows.
+  subroutine write_rows(self, rows, err)
+    class(plot_type), intent(inout) :: self
+    real(wp), intent(in) :: rows(:, :)   !< (columns, rows)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    do i = 1, size(rows, 2)
+      call self%data%take(rows(:, i))
+    end do
+  end subroutine write_rows
+
+  !> Draw what was taken: in the terminal, or into a picture with its script beside it. Where gnuplot is not
+  !> there a picture's script is kept all the same.
+  subroutine close_plot(self, err)
+    class(plot_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    if (self%is_open .and. self%data%count > 0) then
+      if (self%request%in_terminal) then
+        call draw_in_terminal(self, err)
+      else
+        call draw_picture(self, err)
+      end if
+    end if
+    self%is_open = .false.
+  end subroutine close_plot
+
+  !> What to tell the user after it is closed.
+  function words(self)
+    class(plot_type), intent(in) :: self
+    character(len=:), allocatable :: words
+
+    words = ''
+    if (allocated(self%said)) words = self%said
+  end function words
+
+  subroutine draw_in_terminal(self, err)
+    class(plot_type), intent(in) :: self
+    type(error_type), allocatable, intent(out) :: err
+    integer :: columns, rows
+    logical :: found
+
+    call find_terminal_size(columns, rows)
+    ! gnuplot writes to the same standard output
+    flush (output_unit)
+    call run_gnuplot(terminal_script(self%request%curves, self%data, columns, rows), found, err)
+    if (.not. allocated(err) .and. .not. found) &
+      call raise(err, exit_file, 'the terminal plot is drawn by gnuplot, which is not here; install '//gnuplot_package)
+    call add_place(err, 'no plot in the terminal')
+  end subroutine draw_in_terminal
+
+  subroutine draw_picture(self, err)
+    class(plot_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: script_path, script, source, folder
+    logical :: found
+
+    script_path = script_of_plot(self%picture)
+    folder = folder_of(self%picture)
+    source = ''
+    if (can_be_read(self%table) .and. folder_of(self%table) == folder) source = name_of(self%table)
+    script = picture_script(self%title, self%request%curves, self%data, name_of(self%picture), name_of(script_path), &
+                            source)
+    call save_text(script_path, script, err)
+    call add_place(err, 'no plot '//self%picture//', and no whole script of it')
+    if (allocated(err)) return
+    if (folder == '') folder = '.'
+    call run_gnuplot(script, found, err, folder, self%picture)
+    call add_place(err, 'no plot '//self%picture)
+    if (allocated(err)) return
+    if (found) then
+      self%said = 'plot: '//self%picture//', drawn by '//script_path
+    else
+      self%is_lacking = .true.
+      self%said = 'plot: gnuplot is not here; install '//gnuplot_package//' and run: gnuplot '//name_of(script_path)
+      if (folder /= '.') self%said = self%said//' in '//folder
+    end if
+  end subroutine draw_picture
+
+  !> Whether gnuplot reads a table of this name as it is: a file of columns between blanks.
+  pure logical function can_be_read(table)
+    character(len=*), intent(in) :: table
+
+    can_be_read = table /= '' .and. table /= '-' .and. ending_of(table) /= 'csv'
+  end function can_be_read
+
+  !> The file of the picture that a plot makes. Where no name is given it stands beside the table, or else in this
+  !> folder with the name of the data file.
+  pure subroutine picture_of_plot(text, table, data_file, i, picture)
+    character(len=*), intent(in) :: text                     !< the argument of --plot
+    character(len=*), intent(in) :: table                    !< file with the whole results; empty or '-': none
+    character(len=*), intent(in) :: data_file
+    integer, intent(in) :: i                                 !< number of the plot in the run
+    character(len=:), allocatable, intent(out) :: picture    !< '-': it is drawn in the terminal
+
+    call target_of_plot(text, picture)
+    if (picture /= '') return
+    if (table /= '' .and. table /= '-') then
+      picture = with_ending(table, '')
+    else
+      picture = with_ending(name_of(data_file), '')
+    end if
+    if (i > 1) picture = picture//'-'//to_text(i)
+    picture = picture//'.svg'
+  end subroutine picture_of_plot
+
+  !> The file of the script that draws a picture; it stands beside the picture.
+  pure function script_of_plot(picture) result(script)
+    character(len=*), intent(in) :: picture
+    character(len=:), allocatable :: script
+
+    script = with_ending(picture, script_ending)
+  end function script_of_plot
+
+  !> Plot rows that are in memory.
+  subroutine plot_columns(text, title, names, units, rows, picture, said, err)
+    character(len=*), intent(in) :: text                  !< what to plot, as the argument of --plot
+    character(len=*), intent(in) :: title                 !< of the mechanism
+    type(string_type), intent(in) :: names(:), units(:)   !< of the columns, time first
+    real(wp), intent(in) :: rows(:, :)                    !< rows(:, i): row i of the results
+    character(len=*), intent(in) :: picture               !< its file, unless the text names one
+    character(len=:), allocatable, intent(out) :: said    !< a line for the user; empty: nothing to say
+    type(error_type), allocatable, intent(out) :: err
+    type(plot_type) :: plot
+
+    said = ''
+    call plot%open(text, title, names, units, size(rows, 2), picture, '', err)
+    if (allocated(err)) return
+    call plot%write_rows(rows, err)
+    call plot%close(err)
+    said = plot%words()
+  end subroutine plot_columns
+end module mech9_plot

@@ -1,0 +1,81 @@
+!> The rows of a run that a plot needs: the columns of its curves, thinned out where there are more rows than a picture can
+!> show.
+module mech9_plot_data
+  use mech9_kinds, only: wp
+  use mech9_text, only: string_type
+  use mech9_plot_request, only: curve_type
+  implicit none
+  private
+  public :: plot_data_type, new_plot_data
+
+  !> Rows that a picture shows at most: ten for each of its pixels from left to right.
+  integer, parameter :: most_rows = 10000
+
+  type :: plot_data_type
+    type(string_type), allocatable :: names(:), units(:)   !< of all columns of the results
+    integer, allocatable :: columns(:)                     !< those that are kept, ascending
+    real(wp), allocatable :: values(:, :)                  !< a column for each row that is kept
+    integer :: count = 0                                   !< rows kept
+    integer :: stride = 1                                  !< every so-manieth row is kept
+    integer :: seen = 0                                    !< rows taken
+  contains
+    procedure :: take
+    procedure :: place_of
+    procedure :: extent
+  end type plot_data_type
+
+contains
+
+  !> Empty data for curves.
+  pure function new_plot_data(names, units, curves, expected) result(data)
+    type(string_type), intent(in) :: names(:), units(:)   !< of all columns of the results
+    type(curve_type), intent(in) :: curves(:)
+    integer, intent(in) :: expected                       !< how many rows will come at most
+    type(plot_data_type) :: data
+    integer :: i
+
+    data%names = names
+    data%units = units
+    data%columns = pack([(i, i=1, size(names))], [(any(curves%x == i .or. curves%y == i), i=1, size(names))])
+    data%stride = 1 + (max(expected, 1) - 1)/most_rows
+    allocate (data%values(size(data%columns), 1 + (max(expected, 1) - 1)/data%stride))
+  end function new_plot_data
+
+  !> Keep what is needed of the next row.
+  pure subroutine take(self, row)
+    class(plot_data_type), intent(inout) :: self
+    real(wp), intent(in) :: row(:)   !< all columns of the results
+
+    if (modulo(self%seen, self%stride) == 0 .and. self%count < size(self%values, 2)) then
+      self%count = self%count + 1
+      self%values(:, self%count) = row(self%columns)
+    end if
+    self%seen = self%seen + 1
+  end subroutine take
+
+  !> Where a column of the results stands among those that are kept.
+  pure integer function place_of(self, column)
+    class(plot_data_type), intent(in) :: self
+    integer, intent(in) :: column
+
+    place_of = count(self%columns <= column)
+  end function place_of
+
+  !> Least and greatest value of some columns; [0, 0] where there is none that is finite.
+  pure function extent(self, columns) result(ends)
+    class(plot_data_type), intent(in) :: self
+    integer, intent(in) :: columns(:)
+    real(wp) :: ends(2), value
+    integer :: i, j
+
+    ends = [huge(value), -huge(value)]
+    do j = 1, self%count
+      do i = 1, size(columns)
+        value = self%values(self%place_of(columns(i)), j)
+        if (.not. abs(value) <= huge(value)) cycle   ! NaN and infinities
+        ends = [min(ends(1), value), max(ends(2), value)]
+      end do
+    end do
+    if (ends(1) > ends(2)) ends = 0.0_wp
+  end function extent
+end module mech9_plot_data

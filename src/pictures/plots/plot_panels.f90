@@ -1,0 +1,97 @@
+!> The panels of a plot: which curves share axes, and what the axes are called.
+module mech9_plot_panels
+  use mech9_text, only: string_type
+  use mech9_plot_request, only: curve_type
+  implicit none
+  private
+  public :: panels_of, axis_label, over_time
+
+contains
+
+  !> Panel of each curve, numbered from 1 in the order of their first curves: curves with the same unit upwards
+  !> over the same column, or over columns of the same unit where none is the time. The closure, a length near
+  !> zero, stands alone.
+  pure function panels_of(curves, names, units) result(panels)
+    type(curve_type), intent(in) :: curves(:)
+    type(string_type), intent(in) :: names(:), units(:)   !< of all columns
+    integer :: panels(size(curves))
+    integer :: i, j, last
+
+    panels = 0
+    last = 0
+    do i = 1, size(curves)
+      do j = 1, i - 1
+        if (units(curves(i)%y)%text /= units(curves(j)%y)%text) cycle
+        if ((names(curves(i)%y)%text == 'closure') .neqv. (names(curves(j)%y)%text == 'closure')) cycle
+        if (curves(i)%x /= curves(j)%x) then
+          if (any([over_time(curves(i)), over_time(curves(j))])) cycle
+          if (units(curves(i)%x)%text /= units(curves(j)%x)%text) cycle
+        end if
+        panels(i) = panels(j)
+        exit
+      end do
+      if (panels(i) > 0) cycle
+      last = last + 1
+      panels(i) = last
+    end do
+  end function panels_of
+
+  !> Whether a curve is drawn over the time, the first column.
+  pure elemental logical function over_time(curve)
+    type(curve_type), intent(in) :: curve
+
+    over_time = curve%x == 1
+  end function over_time
+
+  !> The label of an axis: the column's name where there is one column only, otherwise what the unit measures.
+  pure function axis_label(columns, names, units) result(label)
+    integer, intent(in) :: columns(:)                     !< all of one unit
+    type(string_type), intent(in) :: names(:), units(:)   !< of all columns
+    character(len=:), allocatable :: label
+
+    if (all(columns == columns(1))) then
+      label = names(columns(1))%text
+    else
+      label = quantity(units(columns(1))%text)
+    end if
+    if (units(columns(1))%text /= '1' .and. units(columns(1))%text /= '') &
+      label = trim(label//' ['//written(units(columns(1))%text)//']')
+  end function axis_label
+
+  !> What has this unit in the results.
+  pure function quantity(unit)
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: quantity
+
+    select case (unit)
+    case ('rad', 'deg')
+      quantity = 'angle'
+    case ('rad/s', 'deg/s')
+      quantity = 'angular velocity'
+    case ('rad/s^2', 'deg/s^2')
+      quantity = 'angular acceleration'
+    case ('m')
+      quantity = 'position'
+    case ('m/s')
+      quantity = 'velocity'
+    case ('m/s^2')
+      quantity = 'acceleration'
+    case ('J')
+      quantity = 'energy'
+    case default
+      quantity = ''
+    end select
+  end function quantity
+
+  !> A unit as it is written by hand: with a raised two.
+  pure function written(unit)
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: written
+    character(len=*), parameter :: raised_two = char(194)//char(178)   ! in UTF-8
+    integer :: i
+
+    written = unit
+    i = index(unit, '^2')
+    if (i > 0) written = unit(:i - 1)//raised_two//unit(i + 2:)
+  end function written
+end module mech9_plot_panels

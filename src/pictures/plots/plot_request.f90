@@ -1,0 +1,205 @@
+!> What is to be plotted: the argument of --plot, read against the columns of the results.
+!>
+!>     [TARGET:]NAME,NAME:NAME,...
+!>
+!> A name alone is drawn over time, a pair of names the second against the first. TARGET is the picture's
+!> file (.svg, .png or .pdf), or `term`, the terminal. Without names the coordinates are drawn.
+module mech9_plot_request
+  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_text, only: string_type, nearest_name
+  use mech9_path, only: ending_of
+  implicit none
+  private
+  public :: plot_request_type, curve_type, read_plot_request, target_of_plot, is_picture
+
+  !> One curve: two columns.
+  type :: curve_type
+    integer :: x = 1, y = 1
+  end type curve_type
+
+  type :: plot_request_type
+    character(len=:), allocatable :: target     !< file of the picture; empty: to be chosen
+    logical :: in_terminal = .false.
+    type(curve_type), allocatable :: curves(:)
+  end type plot_request_type
+
+  !> Curves that are drawn where no name is given, at most: as many as there are colours.
+  integer, parameter :: most_curves = 7
+  !> Names that a message lists at most.
+  integer, parameter :: most_names = 40
+  !> Letters of a name that count when the nearest one is looked for.
+  integer, parameter :: longest_name = 64
+  character(len=*), parameter :: terminal = 'term'
+
+contains
+
+  !> Read a request. An unknown name is a wrong command line (exit_usage).
+  pure subroutine read_plot_request(text, names, request, err)
+    character(len=*), intent(in) :: text
+    type(string_type), intent(in) :: names(:)         !< of the columns, the first is the time
+    type(plot_request_type), intent(out) :: request
+    type(error_type), allocatable, intent(out) :: err
+    type(curve_type) :: curve
+    integer :: at
+
+    call take_target(text, request, at)
+    allocate (request%curves(0))
+    if (at > len(text)) then
+      call take_coordinates(names, request)
+      return
+    end if
+    do
+      call take_curve(text, names, at, curve, err)
+      if (allocated(err)) return
+      request%curves = [request%curves, curve]
+      if (at > len(text)) return
+      if (text(at:at) /= ',') then
+        call raise(err, exit_usage, "--plot: a comma is missing before '"//text(at:)//"'")
+        return
+      end if
+      at = at + 1
+    end do
+  end subroutine read_plot_request
+
+  !> Where a plot is to be drawn: the file of a picture, '-' for the terminal, or empty where nothing is said.
+  pure subroutine target_of_plot(text, target)
+    character(len=*), intent(in) :: text                    !< the argument of --plot
+    character(len=:), allocatable, intent(out) :: target
+    type(plot_request_type) :: request
+    integer :: at
+
+    call take_target(text, request, at)
+    target = request%target
+    if (request%in_terminal) target = '-'
+  end subroutine target_of_plot
+
+  !> Whether a file of this name can be a picture that gnuplot makes.
+  pure logical function is_picture(path)
+    character(len=*), intent(in) :: path
+
+    select case (ending_of(path))
+    case ('svg', 'png', 'pdf')
+      is_picture = .true.
+    case default
+      is_picture = .false.
+    end select
+  end function is_picture
+
+  !> What stands before the names: a picture or the terminal. `at` is where the names begin.
+  pure subroutine take_target(text, request, at)
+    character(len=*), intent(in) :: text
+    type(plot_request_type), intent(inout) :: request
+    integer, intent(out) :: at
+    integer :: colon
+
+    request%target = ''
+    at = 1
+    do colon = 1, len(text) + 1
+      if (colon <= len(text)) then
+        if (text(colon:colon) /= ':') cycle
+      end if
+      if (text(:colon - 1) == terminal) then
+        request%in_terminal = .true.
+      else if (is_picture(text(:colon - 1))) then
+        request%target = text(:colon - 1)
+      else
+        cycle
+      end if
+      at = colon + 1
+      return
+    end do
+  end subroutine take_target
+
+  !> The coordinates q1, q2, ..., or as many of them as can be told apart.
+  pure subroutine take_coordinates(names, request)
+    type(string_type), intent(in) :: names(:)
+    type(plot_request_type), intent(inout) :: request
+    integer :: i
+
+    do i = 1, size(names)
+      if (size(request%curves) == most_curves) exit
+      if (len(names(i)%text) < 2) cycle
+      if (names(i)%text(1:1) == 'q' .and. verify(names(i)%text(2:), '0123456789') == 0) &
+        request%curves = [request%curves, curve_type(x=1, y=i)]
+    end do
+  end subroutine take_coordinates
+
+  !> NAME or NAME:NAME, and step over it.
+  pure subroutine take_curve(text, names, at, curve, err)
+    character(len=*), intent(in) :: text
+    type(string_type), intent(in) :: names(:)
+    integer, intent(inout) :: at
+    type(curve_type), intent(out) :: curve
+    type(error_type), allocatable, intent(out) :: err
+
+    call take_name(text, names, at, curve%y, err)
+    if (allocated(err) .or. text(at:min(at, len(text))) /= ':') return
+    at = at + 1
+    curve%x = curve%y
+    call take_name(text, names, at, curve%y, err)
+  end subroutine take_curve
+
+  !> The name that begins at a place, and step over it. Names may hold commas and colons: the longest that
+  !> fits and ends where an item can end is meant.
+  pure subroutine take_name(text, names, at, column, err)
+    character(len=*), intent(in) :: text
+    type(string_type), intent(in) :: names(:)
+    integer, intent(inout) :: at
+    integer, intent(out) :: column
+    type(error_type), allocatable, intent(out) :: err
+    character(len=*), parameter :: ends = ' ,:'
+    integer :: i, length, after
+
+    call skip_blanks(text, at)
+    column = 1
+    length = 0
+    do i = 1, size(names)
+      after = at + len(names(i)%text)
+      if (len(names(i)%text) <= length .or. after - 1 > len(text)) cycle
+      if (text(at:after - 1) /= names(i)%text .or. scan(text(after:)//',', ends) /= 1) cycle
+      column = i
+      length = len(names(i)%text)
+    end do
+    if (length == 0) call refuse_name(text(at:at - 2 + scan(text(at:)//',', ends)), names, err)
+    at = at + length
+    call skip_blanks(text, at)
+  end subroutine take_name
+
+  pure subroutine skip_blanks(text, at)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+
+    do while (text(at:min(at, len(text))) == ' ' .and. at <= len(text))
+      at = at + 1
+    end do
+  end subroutine skip_blanks
+
+  !> An unknown name: which one is near, or which there are.
+  pure subroutine refuse_name(word, names, err)
+    character(len=*), intent(in) :: word
+    type(string_type), intent(in) :: names(:)
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: nearest, hint
+    character(len=longest_name) :: known(size(names))
+    integer :: i
+
+    if (word == '') then
+      call raise(err, exit_usage, '--plot: a name of a column is missing, as in --plot q1,P.x:P.y')
+      return
+    end if
+    do i = 1, size(names)
+      known(i) = names(i)%text
+    end do
+    nearest = nearest_name(word, known)
+    if (nearest /= '') then
+      hint = "; did you mean '"//nearest//"'?"
+    else
+      hint = '; the columns are'
+      do i = 1, min(size(names), most_names)
+        hint = hint//' '//names(i)%text
+      end do
+      if (size(names) > most_names) hint = hint//' ...'
+    end if
+    call raise(err, exit_usage, "--plot: no column of the results is named '"//word//"'"//hint)
+  end subroutine refuse_name
+end module mech9_plot_request

@@ -1,0 +1,372 @@
+!> The script by which gnuplot draws a plot.
+module mech9_plot_script
+  use mech9_kinds, only: wp
+  use mech9_text, only: string_type, to_text
+  use mech9_path, only: ending_of
+  use mech9_number_format, only: number_format_type, number_width
+  use mech9_printable, only: printable, column_name
+  use mech9_gnuplot, only: quoted, quoted_lines, quoted_path
+  use mech9_title_lines, only: title_lines
+  use mech9_plot_request, only: curve_type
+  use mech9_plot_data, only: plot_data_type
+  use mech9_plot_panels, only: panels_of, axis_label, over_time
+  implicit none
+  private
+  public :: picture_script, terminal_script
+
+  character, parameter :: line_end = achar(10)
+  character(len=*), parameter :: data_block = '$data', data_end = 'end_of_data'
+  !> Colours that people with any kind of colour vision tell apart (Okabe and Ito), the dark ones first;
+  !> they differ in grey as well.
+  character(len=7), parameter :: colours(7) = &
+    ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000']
+  !> Up to so many rows each is marked.
+  integer, parameter :: few_rows = 30
+  !> Shorter side of a panel with equal scales against the longer one, at least.
+  real(wp), parameter :: flattest = 0.2_wp
+  !> A space without width, in UTF-8.
+  character(len=*), parameter :: thin_space = char(226)//char(128)//char(139)
+
+contains
+
+  !> The script of a picture. It can be used again: its first line says how.
+  pure function picture_script(title, curves, data, picture, script, table) result(text)
+    character(len=*), intent(in) :: title            !< of the mechanism
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+    character(len=*), intent(in) :: picture          !< name of the file
+    character(len=*), intent(in) :: script           !< name of the script's own file
+    character(len=*), intent(in) :: table            !< file with the results; empty: the script holds the data
+    character(len=:), allocatable :: text, source
+    type(string_type), allocatable :: lines(:)
+    integer :: panels(size(curves)), i
+
+    panels = panels_of(curves, data%names, data%units)
+    lines = drawn_title(title, picture, curves, panels, data)
+    source = data_block
+    text = '# gnuplot '//printable(script)//' draws '//printable(picture)//line_end// &
+           'set encoding utf8'//line_end// &
+           terminal_of(picture, curves, panels, data)//line_end// &
+           'set output '//quoted_path(picture)//line_end//style()
+    if (table == '') then
+      text = text//inline_data(data)
+    else
+      source = quoted_path(table)
+    end if
+    if (maxval(panels) == 1) then
+      text = text//'set title '//quoted_lines(lines)//line_end
+    else
+      text = text//stack(lines, curves, panels, data)
+    end if
+    do i = 1, maxval(panels)
+      text = text//panel(pack(curves, panels == i), data, source, stacked=maxval(panels) > 1, last=i == maxval(panels))
+    end do
+    if (maxval(panels) > 1) text = text//'unset multiplot'//line_end
+    text = text//'unset output'//line_end
+  end function picture_script
+
+  !> The script of a plot in letters, a panel below the other.
+  pure function terminal_script(curves, data, columns, rows) result(text)
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+    integer, intent(in) :: columns, rows   !< of each panel
+    character(len=:), allocatable :: text
+    type(curve_type), allocatable :: own(:)
+    integer :: panels(size(curves)), i
+
+    panels = panels_of(curves, data%names, data%units)
+    text = 'set encoding utf8'//line_end//'set terminal dumb mono noenhanced size '//to_text(columns)//','// &
+           to_text(rows)//line_end//'set key above'//line_end//'set tics nomirror'//line_end//inline_data(data)
+    do i = 1, maxval(panels)
+      own = pack(curves, panels == i)
+      ! a dumb terminal cannot turn the label of the upward axis: it stands above
+      text = text//'set title '//quoted(axis_label(own%y, data%names, data%units))//line_end// &
+             axes(own, data, '')//curve_commands(own, data, data_block, with='lines')
+    end do
+  end function terminal_script
+
+  !> The title in lines that fit above the plot. gnuplot leaves `]]>` as it is in an SVG, where it must not stand: a
+  !> space without width comes between.
+  pure function drawn_title(title, picture, curves, panels, data) result(lines)
+    character(len=*), intent(in) :: title, picture
+    type(curve_type), intent(in) :: curves(:)
+    integer, intent(in) :: panels(:)
+    type(plot_data_type), intent(in) :: data
+    type(string_type), allocatable :: lines(:)
+    integer, parameter :: letter = 10, most = 3
+    integer :: width, height, i, at
+
+    call find_size(curves, panels, data, width, height)
+    lines = title_lines(title, width/letter, most)
+    if (ending_of(picture) /= 'svg') return
+    do i = 1, size(lines)
+      do
+        at = index(lines(i)%text, ']]>')
+        if (at == 0) exit
+        lines(i)%text = lines(i)%text(:at + 1)//thin_space//lines(i)%text(at + 2:)
+      end do
+    end do
+  end function drawn_title
+
+  !> The terminal of gnuplot for the ending of a picture, in its size.
+  pure function terminal_of(picture, curves, panels, data) result(text)
+    character(len=*), intent(in) :: picture
+    type(curve_type), intent(in) :: curves(:)
+    integer, intent(in) :: panels(:)
+    type(plot_data_type), intent(in) :: data
+    character(len=:), allocatable :: text
+    integer :: width, height
+
+    call find_size(curves, panels, data, width, height)
+    select case (ending_of(picture))
+    case ('png')
+      text = 'set terminal pngcairo noenhanced font ''Sans,12'' size '//to_text(width)//','//to_text(height)
+    case ('pdf')
+      text = 'set terminal pdfcairo noenhanced font ''Sans,12'' size '//to_text(width/96.0_wp, 4)//'in,'// &
+             to_text(height/96.0_wp, 4)//'in'
+    case default
+      text = 'set terminal svg noenhanced font ''sans-serif,15'' background ''#ffffff'' size '//to_text(width)//','// &
+             to_text(height)
+    end select
+  end function terminal_of
+
+  !> The size of a picture.
+  pure subroutine find_size(curves, panels, data, width, height)
+    type(curve_type), intent(in) :: curves(:)
+    integer, intent(in) :: panels(:)        !< of the curves
+    type(plot_data_type), intent(in) :: data
+    integer, intent(out) :: width, height   !< [pixels]
+
+    width = 960
+    height = 540
+    if (maxval(panels) > 1) then
+      height = 120 + 230*maxval(panels)
+    else if (equal_scales(curves, data)) then
+      call true_shape(curves, data, width, height)
+    end if
+  end subroutine find_size
+
+  !> The size of a picture with equal scales, around an area of the shape of its ranges.
+  pure subroutine true_shape(curves, data, width, height)
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+    integer, intent(out) :: width, height   !< [pixels]
+    integer, parameter :: longer_side = 700, letter = 9
+    real(wp) :: sides(2)
+
+    sides = spans(curves, data)
+    sides = longer_side*sides/maxval(sides)
+    width = nint(sides(1)) + 140
+    height = nint(sides(2)) + 130
+    if (size(curves) > 1) width = width + letter*(longest_name(curves, data) + 3)
+  end subroutine true_shape
+
+  !> What the axes with equal scales take, without margins. A straight path along an axis gets some room across.
+  pure function spans(curves, data) result(sides)
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+    real(wp) :: sides(2), ends(2)
+
+    ends = data%extent(curves%x)
+    sides(1) = ends(2) - ends(1)
+    ends = data%extent(curves%y)
+    sides(2) = ends(2) - ends(1)
+    sides = max(sides, flattest*maxval(sides))
+  end function spans
+
+  !> What all pictures have in common.
+  pure function style() result(text)
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = 'set border 3 lc rgb ''#606060'''//line_end//'set tics nomirror out'//line_end// &
+           'set grid lc rgb ''#cccccc'' lw 0.8 dt 1'//line_end// &
+           'set key outside right top Left reverse samplen 1.5'//line_end
+    do i = 1, size(colours)
+      text = text//'set linetype '//to_text(i)//' lw 2 pt 7 ps 0.4 lc rgb '''//colours(i)//''''//line_end
+    end do
+    text = text//'set linetype cycle '//to_text(size(colours))//line_end
+  end function style
+
+  !> The rows as a block of data within the script: names, then numbers.
+  pure function inline_data(data) result(text)
+    type(plot_data_type), intent(in) :: data
+    character(len=:), allocatable :: text, rows
+    type(number_format_type) :: format
+    integer :: i, j, at
+
+    format = number_format_type()
+    allocate (character(len=data%count*(size(data%columns)*number_width + 1)) :: rows)
+    at = 0
+    do j = 1, data%count
+      do i = 1, size(data%columns)
+        call format%put(data%values(i, j), rows(at + 1:at + number_width))
+        at = at + number_width
+      end do
+      at = at + 1
+      rows(at:at) = line_end
+    end do
+    text = data_block//' << '//data_end//line_end
+    do i = 1, size(data%columns)
+      text = text//' '//column_name(data%names(data%columns(i))%text)
+    end do
+    text = text//line_end//rows//data_end//line_end
+  end function inline_data
+
+  !> Panels above each other, their axes of one length whatever their labels are.
+  pure function stack(lines, curves, panels, data) result(text)
+    type(string_type), intent(in) :: lines(:)   !< of the title
+    type(curve_type), intent(in) :: curves(:)
+    integer, intent(in) :: panels(:)
+    type(plot_data_type), intent(in) :: data
+    character(len=:), allocatable :: text
+    type(curve_type), allocatable :: own(:)
+    integer :: i, left, right
+
+    left = 12
+    right = 4
+    do i = 1, maxval(panels)
+      own = pack(curves, panels == i)
+      left = max(left, 6 + letters_needed(data%extent(own%y)))
+      if (size(own) > 1) right = max(right, 6 + longest_name(own, data))
+    end do
+    text = 'set multiplot layout '//to_text(maxval(panels))//',1 title '//quoted_lines(lines)//' margins char '// &
+           to_text(left)//',char '//to_text(right)//',char 4,char '//to_text(2 + size(lines))//' spacing char '// &
+           merge('2', '5', all(over_time(curves)))//line_end
+  end function stack
+
+  pure integer function longest_name(curves, data)
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+    integer :: i
+
+    longest_name = 0
+    do i = 1, size(curves)
+      longest_name = max(longest_name, len(curve_name(curves(i), data)))
+    end do
+  end function longest_name
+
+  !> One panel: its axes and its curves.
+  pure function panel(curves, data, source, stacked, last) result(text)
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+    character(len=*), intent(in) :: source   !< of the data, as a word of the script
+    logical, intent(in) :: stacked, last
+    character(len=:), allocatable :: text
+
+    text = axes(curves, data, axis_label(curves%y, data%names, data%units))
+    ! panels over time share the axis of the last one
+    if (stacked .and. .not. last .and. over_time(curves(1))) &
+      text = text//'unset xlabel'//line_end//'set format x '''''//line_end
+    text = text//curve_commands(curves, data, source, &
+                                with=trim(merge('linespoints', 'lines      ', data%count <= few_rows)))
+  end function panel
+
+  !> Labels and ranges. Numbers are written with as many digits as tell them apart.
+  pure function axes(curves, data, label) result(text)
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+    character(len=*), intent(in) :: label   !< of the upward axis
+    character(len=:), allocatable :: text
+    real(wp) :: x(2), y(2), sides(2)
+
+    x = data%extent(curves%x)
+    y = data%extent(curves%y)
+    text = 'set xlabel '//quoted(axis_label(curves%x, data%names, data%units))//line_end// &
+           'set ylabel '//quoted(label)//line_end// &
+           'set format x '//format_for(x)//line_end//'set format y '//format_for(y)//line_end
+    if (equal_scales(curves, data)) then
+      sides = spans(curves, data)
+      text = text//'set size ratio -1'//line_end// &
+             'set xrange '//axis_range(x, sides(1))//line_end//'set yrange '//axis_range(y, sides(2))//line_end
+    else
+      text = text//'set size noratio'//line_end//'set autoscale'//line_end
+      if (over_time(curves(1))) text = text//'set autoscale xfix'//line_end
+    end if
+  end function axes
+
+  !> Whether both axes have the same unit and the picture is to show true shapes.
+  pure logical function equal_scales(curves, data)
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+
+    equal_scales = data%units(curves(1)%x)%text == data%units(curves(1)%y)%text .and. .not. over_time(curves(1))
+    if (equal_scales) equal_scales = maxval(spans(curves, data)) > tiny(1.0_wp)
+  end function equal_scales
+
+  !> The range of an axis around what the data take, with a margin.
+  pure function axis_range(ends, span) result(text)
+    real(wp), intent(in) :: ends(2), span
+    character(len=:), allocatable :: text
+    real(wp) :: middle, half
+
+    middle = 0.5_wp*(ends(1) + ends(2))
+    half = 0.55_wp*span
+    text = '['//to_text(middle - half, 9)//':'//to_text(middle + half, 9)//']'
+  end function axis_range
+
+  !> How gnuplot writes the numbers of an axis.
+  pure function format_for(ends) result(text)
+    real(wp), intent(in) :: ends(2)
+    character(len=:), allocatable :: text
+
+    text = quoted('%.'//to_text(digits_needed(ends))//'g')
+  end function format_for
+
+  !> Letters that the marks of an axis take: the digits, and for numbers like -3.5e-13 or -0.00035 more.
+  pure integer function letters_needed(ends)
+    real(wp), intent(in) :: ends(2)
+    real(wp), parameter :: smallest_short = 1e-2_wp, largest_short = 1e6_wp
+    integer, parameter :: exponent = 4
+    real(wp) :: size
+
+    size = maxval(abs(ends))
+    letters_needed = digits_needed(ends)
+    if ((size > 0.0_wp .and. size < smallest_short) .or. size >= largest_short) letters_needed = letters_needed + exponent
+  end function letters_needed
+
+  !> Digits by which neighbouring marks of an axis differ, six at least.
+  pure integer function digits_needed(ends)
+    real(wp), intent(in) :: ends(2)
+    real(wp) :: size, span
+
+    digits_needed = 6
+    size = maxval(abs(ends))
+    span = ends(2) - ends(1)
+    if (span > epsilon(span)*size) digits_needed = max(6, min(15, 2 + ceiling(log10(size/span))))
+  end function digits_needed
+
+  !> The plot command.
+  pure function curve_commands(curves, data, source, with) result(text)
+    type(curve_type), intent(in) :: curves(:)
+    type(plot_data_type), intent(in) :: data
+    character(len=*), intent(in) :: source, with
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = 'plot '
+    do i = 1, size(curves)
+      text = text//source
+      if (source /= data_block .and. data%stride > 1) text = text//' every '//to_text(data%stride)
+      text = text//' using '//quoted(column_name(data%names(curves(i)%x)%text))//':'// &
+             quoted(column_name(data%names(curves(i)%y)%text))//' with '//with//' linetype '//to_text(i)
+      if (size(curves) == 1) then
+        text = text//' notitle'
+      else
+        text = text//' title '//quoted(curve_name(curves(i), data))
+      end if
+      if (i < size(curves)) text = text//', \'//line_end//'     '
+    end do
+    text = text//line_end
+  end function curve_commands
+
+  !> What the key calls a curve.
+  pure function curve_name(curve, data) result(name)
+    type(curve_type), intent(in) :: curve
+    type(plot_data_type), intent(in) :: data
+    character(len=:), allocatable :: name
+
+    name = data%names(curve%y)%text
+    if (.not. over_time(curve)) name = data%names(curve%x)%text//':'//name
+  end function curve_name
+end module mech9_plot_script

@@ -1,0 +1,176 @@
+!> The structure of a mechanism as a graph in the language of Graphviz, and as a picture that dot makes of it.
+!>
+!> Links are nodes, pairs are edges, drawn in the order of computation. Links that a block reaches first stand
+!> together in a cluster; its pairs have its colour. Independent coordinates are drawn heavy.
+module mech9_structure_graph
+  use mech9_error, only: error_type, raise, add_place, exit_file
+  use mech9_text, only: string_type, to_text
+  use mech9_path, only: ending_of, with_ending
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_planning, only: chain_names
+  use mech9_text_file, only: save_text
+  use mech9_printable, only: printable, with_escapes
+  use mech9_child_process, only: child_outcome_type, run_child
+  implicit none
+  private
+  public :: save_structure_graph, text_of_graph
+
+  character, parameter :: line_end = achar(10)
+  !> Colours that people with any kind of colour vision tell apart, in turn for the blocks.
+  character(len=7), parameter :: colours(6) = &
+    ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#b07800', '#56b4e9']
+  !> Links up to which dot lays the graph out in layers, within a second; beyond, forces between links do.
+  integer, parameter :: most_layered = 300
+  !> Links of a block that a label lists at most.
+  integer, parameter :: most_listed = 8
+
+contains
+
+  !> Write the graph into a file; by its ending as text (.dot, .gv), or as a picture (.svg, .png, .pdf) with the text
+  !> beside it. Where dot is not there the text is kept, and `said` tells how to use it.
+  subroutine save_structure_graph(path, mechanism, plan, drawn, said, err)
+    character(len=*), intent(in) :: path
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    logical, intent(out) :: drawn                        !< or else the words tell why there is no such picture
+    character(len=:), allocatable, intent(out) :: said   !< a line for the user
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: text, text_path
+
+    text = structure_graph(mechanism, plan)
+    text_path = text_of_graph(path)
+    said = 'graph: '//path
+    drawn = .true.
+    call save_text(text_path, text, err)
+    if (allocated(err) .or. text_path == path) return
+    call draw(path, text, text_path, drawn, said, err)
+    call add_place(err, 'no picture of the structure')
+  end subroutine save_structure_graph
+
+  !> The file of a graph's text: the one that is asked for, or one beside the picture that is.
+  pure function text_of_graph(path) result(text_path)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: text_path
+
+    select case (ending_of(path))
+    case ('svg', 'png', 'pdf')
+      text_path = with_ending(path, 'dot')
+    case default
+      text_path = path
+    end select
+  end function text_of_graph
+
+  !> Let dot draw.
+  subroutine draw(path, text, text_path, drawn, said, err)
+    character(len=*), intent(in) :: path, text, text_path
+    logical, intent(out) :: drawn
+    character(len=:), allocatable, intent(inout) :: said
+    type(error_type), allocatable, intent(out) :: err
+    type(child_outcome_type) :: outcome
+    type(string_type) :: words(3)
+
+    words(1)%text = 'dot'
+    words(2)%text = '-T'//ending_of(path)
+    words(3)%text = '-o'//path
+    call run_child(words, text, outcome, err)
+    drawn = .not. allocated(err) .and. outcome%found
+    if (allocated(err)) return
+    if (.not. outcome%found) then
+      said = 'graph: dot is not here; install Graphviz (Debian: apt-get install graphviz) and run: '// &
+             'dot -T'//ending_of(path)//' -o '//path//' '//text_path
+    else if (outcome%code /= 0) then
+      call raise(err, exit_file, 'dot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%said)))
+    end if
+  end subroutine draw
+
+  !> The text of the graph.
+  pure function structure_graph(mechanism, plan) result(text)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    character(len=:), allocatable :: text
+    integer :: b
+
+    text = 'graph mechanism {'//line_end
+    if (mechanism%title /= '') text = text//'  label='//quoted(mechanism%title)//'; labelloc=t; fontsize=18;'//line_end
+    if (plan%n_links > most_layered) text = text//'  layout=sfdp; overlap=prism; outputorder=edgesfirst;'//line_end
+    text = text//'  fontname="sans-serif"; ranksep=0.6; nodesep=0.5;'//line_end// &
+           '  node [fontname="sans-serif", shape=circle, style=filled, fillcolor=white, width=0.5, fixedsize=true];'// &
+           line_end//'  edge [fontname="sans-serif", fontsize=11];'//line_end// &
+           '  1 [shape=box, width=0.9, fillcolor="#d8d8d8", penwidth=2, label="1 frame"];'//line_end
+    do b = 1, size(plan%blocks)
+      text = text//cluster(plan, b)
+    end do
+    do b = 1, size(plan%blocks)
+      text = text//edges(mechanism, plan, b)
+    end do
+    text = text//'}'//line_end
+  end function structure_graph
+
+  !> The links that a block reaches first.
+  pure function cluster(plan, b) result(text)
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: b
+    character(len=:), allocatable :: text
+    integer :: s
+
+    text = '  subgraph cluster_'//to_text(b)//' {'//line_end// &
+           '    label='//quoted('block '//to_text(b)//': '//words_of(plan, plan%blocks(b)))//'; labelloc=b; fontsize=11; '// &
+           'style=rounded; color="'//colour(b)//'"; fontcolor="'//colour(b)//'";'//line_end
+    do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
+      if (plan%frame_of(plan%steps(s)%link) == s) &
+        text = text//'    '//to_text(plan%steps(s)%link)//' [color="'//colour(b)//'"];'//line_end
+    end do
+    text = text//'  }'//line_end
+  end function cluster
+
+  !> What a block solves, and for what.
+  pure function words_of(plan, block) result(words)
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    character(len=:), allocatable :: words
+    integer :: i, listed
+
+    words = chain_names(block)
+    listed = min(size(block%unknowns), most_listed)
+    if (listed == 0) return
+    words = words//' for q'//to_text([(plan%steps(block%unknowns(i))%coordinate, i=1, listed)], ', q')
+    if (listed < size(block%unknowns)) words = words//', ...'
+  end function words_of
+
+  !> The pairs of a block, from the link that is known.
+  pure function edges(mechanism, plan, b) result(text)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    integer, intent(in) :: b
+    character(len=:), allocatable :: text
+    integer :: s, k, from
+
+    text = ''
+    do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
+      associate (step => plan%steps(s))
+        k = step%coordinate
+        from = sum(mechanism%structure%links(:, k)) - step%link
+        text = text//'  '//to_text(from)//' -- '//to_text(step%link)//' [color="'//colour(b)//'", label="   q'// &
+               to_text(k)//' '//trim(mechanism%pairs(k)%pair%kind_name())//'\l'
+        if (.not. step%dependent) text = text//'   independent\l", penwidth="4'
+        text = text//'"];'//line_end
+      end associate
+    end do
+  end function edges
+
+  pure character(len=7) function colour(b)
+    integer, intent(in) :: b
+
+    colour = colours(1 + modulo(b - 1, size(colours)))
+  end function colour
+
+  !> Any text as a string of Graphviz: in double quotes only they and the backslash have a meaning. `&`, which
+  !> begins names of letters, is such a name.
+  pure function quoted(text) result(string)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: string
+
+    string = '"'//with_escapes(printable(text), '"\&', [character(len=5) :: '\"', '\\', '&amp;'])//'"'
+  end function quoted
+end module mech9_structure_graph

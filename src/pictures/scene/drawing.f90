@@ -1,0 +1,195 @@
+!> A scene drawn: where its nodes stand on the page, in which order items cover each other, and the lines they are made of.
+module mech9_drawing
+  use mech9_kinds, only: wp
+  use mech9_film, only: film_type
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, item_type, facing_path, spring, in_thread, in_damper
+  implicit none
+  private
+  public :: drawing_type, draw_frame, drawing_order, outline_of
+
+  !> Nodes on the page.
+  type :: drawing_type
+    real(wp), allocatable :: xy(:, :)     !< (2,n) [px]
+    real(wp), allocatable :: depth(:)     !< (n) nearness to the viewer [px]
+  end type drawing_type
+
+  !> Depths that differ by less than a part of the page are one: then the order in the scene counts.
+  real(wp), parameter :: depth_steps = 0.5_wp   ! steps per px
+
+contains
+
+  !> A frame of the film on the page.
+  pure function draw_frame(scene, film, projection, frame) result(drawing)
+    type(scene_type), intent(in) :: scene
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    integer, intent(in) :: frame
+    type(drawing_type) :: drawing
+    real(wp), allocatable :: places(:, :)
+    integer :: i
+
+    places = scene%places_at(film, frame)
+    allocate (drawing%xy(2, scene%n_nodes), drawing%depth(scene%n_nodes))
+    do i = 1, scene%n_nodes
+      call projection%on_page(places(:, i), drawing%xy(:, i), drawing%depth(i))
+    end do
+    drawing%depth = drawing%depth*projection%scale
+  end function draw_frame
+
+  !> The items in the order in which they are drawn: bodies from the farthest to the nearest, each by the mean
+  !> of its nodes, but none before those that it lies upon.
+  pure function drawing_order(scene, drawing) result(order)
+    type(scene_type), intent(in) :: scene
+    type(drawing_type), intent(in) :: drawing
+    integer, allocatable :: order(:)
+    integer :: keys(scene%n_items), i, j
+
+    allocate (order(scene%n_items))
+    order = [(i, i=1, scene%n_items)]
+    if (scene%last_sorted <= scene%first_sorted) return
+    do i = scene%first_sorted, scene%last_sorted
+      associate (item => scene%items(i))
+        keys(i) = nint(depth_steps*sum(drawing%depth(item%nodes))/size(item%nodes))
+        do j = 1, size(item%above)
+          if (item%above(j) > 0) keys(i) = max(keys(i), keys(item%above(j)))
+        end do
+      end associate
+    end do
+    call sort(keys, order, scene%first_sorted, scene%last_sorted)
+  end function drawing_order
+
+  !> Merge sort of the numbers order(first:last) by their keys; equal ones keep their order.
+  pure recursive subroutine sort(keys, order, first, last)
+    integer, intent(in) :: keys(:), first, last
+    integer, intent(inout) :: order(:)
+    integer :: merged(last - first + 1), middle, i, j, n
+
+    if (last <= first) return
+    middle = (first + last)/2
+    call sort(keys, order, first, middle)
+    call sort(keys, order, middle + 1, last)
+    i = first
+    j = middle + 1
+    do n = 1, size(merged)
+      if (j > last) then
+        merged(n) = order(i)
+        i = i + 1
+      else if (i > middle) then
+        merged(n) = order(j)
+        j = j + 1
+      else if (keys(order(j)) < keys(order(i))) then
+        merged(n) = order(j)
+        j = j + 1
+      else
+        merged(n) = order(i)
+        i = i + 1
+      end if
+    end do
+    order(first:last) = merged
+  end subroutine sort
+
+  !> The corners of a path, of segments, or of the windings of a spring, on the page [px]. None where a facing
+  !> path shows its back.
+  pure function outline_of(item, drawing, symbol) result(corners)
+    type(item_type), intent(in) :: item
+    type(drawing_type), intent(in) :: drawing
+    real(wp), intent(in) :: symbol                !< size of symbols
+    real(wp), allocatable :: corners(:, :)        !< (2,n)
+
+    if (item%shape == spring) then
+      associate (from => drawing%xy(:, item%nodes(1)), to => drawing%xy(:, item%nodes(2)), aside => symbol*item%shift(1))
+        if (item%style == in_damper) then
+          corners = damper(from, to, aside, symbol)
+        else
+          corners = windings(from, to, item%style == in_thread, aside, symbol)
+        end if
+      end associate
+      return
+    end if
+    corners = drawing%xy(:, item%nodes)
+    ! y points down on the page: counterclockwise has a negative area
+    if (item%shape == facing_path) then
+      if (area(corners) > -1.0e-3_wp) corners = corners(:, :0)
+    end if
+  end function outline_of
+
+  pure real(wp) function area(corners)
+    real(wp), intent(in) :: corners(:, :)
+    integer :: i, next
+
+    area = 0.0_wp
+    do i = 1, size(corners, 2)
+      next = mod(i, size(corners, 2)) + 1
+      area = area + 0.5_wp*(corners(1, i)*corners(2, next) - corners(2, i)*corners(1, next))
+    end do
+  end function area
+
+  !> How many turns a spring has, or a thread of a given length [px].
+  pure integer function coil_count(is_thread, length, symbol)
+    logical, intent(in) :: is_thread
+    real(wp), intent(in) :: length, symbol
+
+    coil_count = 10
+    if (is_thread) coil_count = max(3, min(60, nint(length/(6.0_wp*symbol))))
+  end function coil_count
+
+  !> How far its turns reach to either side [px].
+  pure real(wp) function coil_height(is_thread, symbol)
+    logical, intent(in) :: is_thread
+    real(wp), intent(in) :: symbol
+
+    coil_height = merge(3.5_wp, 6.0_wp, is_thread)*symbol
+  end function coil_height
+
+  !> A zigzag from one place to another: straight ends of a fifth of its length, of a thread none.
+  pure function windings(from, to, is_thread, aside, symbol) result(corners)
+    real(wp), intent(in) :: from(2), to(2)       !< its ends [px]
+    logical, intent(in) :: is_thread
+    real(wp), intent(in) :: aside                !< how far it lies to the side of the line between them [px]
+    real(wp), intent(in) :: symbol               !< size of symbols
+    real(wp), allocatable :: corners(:, :)       !< (2,n)
+    real(wp) :: along(2), across(2), length, lead, at, side
+    integer :: n, i
+
+    along = to - from
+    length = norm2(along)
+    n = 2*coil_count(is_thread, length, symbol)
+    allocate (corners(2, n + 3))
+    across = 0.0_wp
+    if (length > 0.0_wp) across = [-along(2), along(1)]/length
+    lead = merge(0.0_wp, 0.2_wp, is_thread)
+    corners(:, 1) = from
+    corners(:, n + 3) = to
+    do i = 0, n
+      at = lead + (1.0_wp - 2.0_wp*lead)*i/n
+      side = merge(0.0_wp, real(1 - 2*mod(i, 2), wp), i == 0 .or. i == n)
+      corners(:, i + 2) = from + at*along + (aside + side*coil_height(is_thread, symbol))*across
+    end do
+  end function windings
+
+  !> A cup with a piston in it, each with its rod: lines by twos.
+  pure function damper(from, to, aside, symbol) result(corners)
+    real(wp), intent(in) :: from(2), to(2)       !< its ends [px]
+    real(wp), intent(in) :: aside                !< how far it lies to the side of the line between them [px]
+    real(wp), intent(in) :: symbol               !< size of symbols
+    real(wp) :: corners(2, 12)
+    !> Bottom and rim of the cup, and the piston, along the line.
+    real(wp), parameter :: bottom = 0.42_wp, rim = 0.66_wp, piston = 0.56_wp
+    real(wp), parameter :: places(12) = [0.0_wp, bottom, bottom, bottom, bottom, rim, bottom, rim, piston, piston, piston, 1.0_wp]
+    !> To which side, in halves of the cup's width.
+    real(wp), parameter :: sides(12) = [0.0_wp, 0.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -0.7_wp, 0.7_wp, &
+                                        0.0_wp, 0.0_wp]
+    real(wp), parameter :: half = 5.0_wp         !< of the cup's width [px]
+    real(wp) :: along(2), across(2)
+    integer :: i
+
+    along = to - from
+    across = 0.0_wp
+    if (norm2(along) > 0.0_wp) across = [-along(2), along(1)]/norm2(along)
+    do i = 1, size(places)
+      corners(:, i) = from + places(i)*along
+      if (i > 1 .and. i < size(places)) corners(:, i) = corners(:, i) + (aside + half*symbol*sides(i))*across
+    end do
+  end function damper
+end module mech9_drawing

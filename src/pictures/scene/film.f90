@@ -1,0 +1,190 @@
+!> A film: the poses of all links and the recorded columns at some of the outputs of a run, and the paths of the points.
+module mech9_film
+  use mech9_kinds, only: wp
+  use mech9_text, only: string_type
+  use mech9_rotation, only: turn, turn_back
+  use mech9_hermite, only: hermite_type, build_hermite
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_columns, only: columns_type
+  use mech9_frame_motion, only: point_motion, link_motion
+  implicit none
+  private
+  public :: film_type, new_film
+
+  !> More frames than these nobody sees; mechanisms of many links get fewer, so that a film of a
+  !> thousand links still fits into a few megabytes.
+  integer, parameter :: most_frames = 300, most_poses = 60000
+  !> Points of a path: finer than a line is wide. Between outputs that are few, points are put in, but not
+  !> where a point goes so many times farther than the straight way, so that the curve is not known.
+  integer, parameter :: most_path_points = 1200, most_between = 8
+  real(wp), parameter :: detour = 2.5_wp
+
+  !> Frames and paths, in the system of link 1. Outputs that are not kept are left out evenly.
+  type :: film_type
+    integer :: n_frames = 0                      !< taken so far
+    integer :: n_path_points = 0                 !< taken so far
+    real(wp), allocatable :: times(:)            !< of the frames [s]
+    real(wp), allocatable :: r(:, :, :, :)       !< (3,3,N,frames) rotation of each link
+    real(wp), allocatable :: p(:, :, :)          !< (3,N,frames) origin of each link [m]
+    type(string_type), allocatable :: names(:)   !< of the columns, without the time
+    type(string_type), allocatable :: units(:)   !< of the columns
+    real(wp), allocatable :: values(:, :)        !< (columns,frames) what they hold
+    real(wp), allocatable :: paths(:, :, :)      !< (3,points,path points) where the points were [m]
+    integer, private :: n_outputs = 0            !< seen so far
+    integer, private :: expected = 1             !< outputs
+    integer, private :: frame_stride = 1, path_stride = 1
+    integer, private :: between = 1              !< path points for each output
+    real(wp), allocatable, private :: latest(:, :, :)   !< (3,points,3) where the points were, how fast, acceleration
+    real(wp), private :: latest_time = 0.0_wp
+  contains
+    procedure :: take
+    procedure :: position
+    procedure :: direction
+    procedure :: local
+  end type film_type
+
+contains
+
+  !> A film with room for the frames of a run, and for what they hold of its columns, if they are given.
+  pure function new_film(mechanism, outputs, columns) result(film)
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: outputs               !< expected number of outputs
+    type(columns_type), intent(in), optional :: columns   !< of the rows that are taken, the time first
+    type(film_type) :: film
+    integer :: n, frames, points
+
+    n = mechanism%structure%n_links
+    film%expected = outputs
+    frames = max(2, min(most_frames, most_poses/n))
+    film%frame_stride = max(1, (outputs + frames - 2)/max(frames - 1, 1))
+    film%path_stride = max(1, (outputs + most_path_points - 2)/(most_path_points - 1))
+    film%between = max(1, min(most_between, most_path_points/max(outputs, 1)))
+    frames = (max(outputs, 1) - 1)/film%frame_stride + 2
+    points = film%between*((max(outputs, 1) - 1)/film%path_stride + 2)
+    allocate (film%times(frames), source=0.0_wp)
+    allocate (film%names(0), film%units(0))
+    if (present(columns)) then
+      film%names = columns%names(2:columns%count)
+      film%units = columns%units(2:columns%count)
+    end if
+    allocate (film%values(size(film%names), frames), source=0.0_wp)
+    allocate (film%r(3, 3, n, frames), film%p(3, n, frames), source=0.0_wp)
+    allocate (film%paths(3, size(mechanism%points), points), film%latest(3, size(mechanism%points), 3), source=0.0_wp)
+  end function new_film
+
+  !> The next output of the run; it is kept if its turn has come, or if it is the last.
+  pure subroutine take(self, mechanism, plan, state, row)
+    class(film_type), intent(inout) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state        !< positions known
+    real(wp), intent(in) :: row(:)               !< the columns at this output, as far as the film has room for them
+    logical :: last
+
+    last = self%n_outputs + 1 == self%expected
+    if (mod(self%n_outputs, self%path_stride) == 0 .or. last) call take_points(self, mechanism, plan, state)
+    if (self%n_frames < size(self%times) .and. (mod(self%n_outputs, self%frame_stride) == 0 .or. last)) &
+      call take_frame(self, plan, state, row)
+    self%n_outputs = self%n_outputs + 1
+  end subroutine take
+
+  !> Go on with the paths of the points.
+  pure subroutine take_points(self, mechanism, plan, state)
+    class(film_type), intent(inout) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    real(wp) :: now(3, size(mechanism%points), 3)
+    integer :: i, n, new
+
+    do i = 1, size(mechanism%points)
+      associate (point => mechanism%points(i))
+        call point_motion(plan, state, point%link, point%position, now(:, i, 1), now(:, i, 2), now(:, i, 3))
+      end associate
+    end do
+    new = self%between
+    if (self%n_path_points == 0) new = 1
+    if (self%n_path_points + new > size(self%paths, 3)) return
+    n = self%n_path_points
+    do i = 1, size(mechanism%points)
+      if (new > 1) call curve_to(self%latest(:, i, :), now(:, i, :), state%t - self%latest_time, &
+                                 self%paths(:, i, n + 1:n + new - 1))
+      self%paths(:, i, n + new) = now(:, i, 1)
+    end do
+    self%n_path_points = n + new
+    self%latest = now
+    self%latest_time = state%t
+  end subroutine take_points
+
+  !> Points of the way from one output to the next, evenly in time.
+  pure subroutine curve_to(from, to, duration, way)
+    real(wp), intent(in) :: from(3, 3), to(3, 3) !< position, velocity, acceleration by columns
+    real(wp), intent(in) :: duration             !< [s]
+    real(wp), intent(out) :: way(:, :)           !< (3,points)
+    type(hermite_type) :: hermite
+    real(wp) :: chord(3), rate(3), rate2(3), part
+    integer :: n
+
+    chord = to(:, 1) - from(:, 1)
+    if (max(norm2(from(:, 2)), norm2(to(:, 2)))*abs(duration) > detour*norm2(chord)) then
+      do n = 1, size(way, 2)
+        way(:, n) = from(:, 1) + chord*n/(size(way, 2) + 1)
+      end do
+      return
+    end if
+    call build_hermite([0.0_wp, duration], reshape([from(:, 1), to(:, 1)], [3, 2]), &
+                       reshape([from(:, 2), to(:, 2)], [3, 2]), reshape([from(:, 3), to(:, 3)], [3, 2]), hermite)
+    do n = 1, size(way, 2)
+      part = real(n, wp)/(size(way, 2) + 1)
+      call hermite%evaluate(part*duration, way(:, n), rate, rate2)
+    end do
+  end subroutine curve_to
+
+  pure subroutine take_frame(self, plan, state, row)
+    class(film_type), intent(inout) :: self
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: state
+    real(wp), intent(in) :: row(:)
+    real(wp) :: omega(3), v(3)
+    integer :: i
+
+    self%n_frames = self%n_frames + 1
+    self%times(self%n_frames) = state%t
+    self%values(:, self%n_frames) = row(2:size(self%names) + 1)
+    do i = 1, plan%n_links
+      call link_motion(plan, state, i, self%r(:, :, i, self%n_frames), self%p(:, i, self%n_frames), omega, v)
+    end do
+  end subroutine take_frame
+
+  !> Where a point of a link is in a frame of the film [m].
+  pure function position(self, frame, link, point)
+    class(film_type), intent(in) :: self
+    integer, intent(in) :: frame, link
+    real(wp), intent(in) :: point(3)             !< in the link's system [m]
+    real(wp) :: position(3)
+
+    position = self%p(:, link, frame) + turn(self%r(:, :, link, frame), point)
+  end function position
+
+  !> A direction of a link, in fixed axes, in a frame of the film.
+  pure function direction(self, frame, link, vector)
+    class(film_type), intent(in) :: self
+    integer, intent(in) :: frame, link
+    real(wp), intent(in) :: vector(3)            !< in the link's axes
+    real(wp) :: direction(3)
+
+    direction = turn(self%r(:, :, link, frame), vector)
+  end function direction
+
+  !> Which point of a link is at a place of link 1 in a frame of the film [m].
+  pure function local(self, frame, link, place)
+    class(film_type), intent(in) :: self
+    integer, intent(in) :: frame, link
+    real(wp), intent(in) :: place(3)             !< in the system of link 1 [m]
+    real(wp) :: local(3)
+
+    local = turn_back(self%r(:, :, link, frame), place - self%p(:, link, frame))
+  end function local
+end module mech9_film

@@ -1,0 +1,60 @@
+!> The clock of a film: the time of a frame as text, with as many decimals as tell one frame from the next.
+module mech9_film_clock
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_film, only: film_type
+  implicit none
+  private
+  public :: clock_decimals, clock_text
+
+  !> More decimals than these, or larger times, are written as powers of ten.
+  integer, parameter :: most_decimals = 7
+  real(wp), parameter :: largest = 1.0e6_wp
+  !> Times agree with so many decimals where they are nearer to them than this part of the last one, or of
+  !> the time between frames where that is less.
+  real(wp), parameter :: near = 0.01_wp
+  !> Frames that are so many units of the last decimal apart are told apart.
+  real(wp), parameter :: enough = 3.0_wp
+
+contains
+
+  !> How many decimals the times of a film have: the fewest that all of them agree with, or those that tell the
+  !> frames apart. None fit where this is negative.
+  pure integer function clock_decimals(film) result(decimals)
+    type(film_type), intent(in) :: film
+    real(wp) :: step, scaled(film%n_frames)
+
+    associate (times => film%times(:film%n_frames))
+      if (maxval(abs(times)) < largest) then
+        step = largest
+        if (film%n_frames > 1) step = abs(times(film%n_frames) - times(1))/(film%n_frames - 1)
+        do decimals = 0, most_decimals
+          scaled = times*10.0_wp**decimals
+          if (all(abs(scaled - anint(scaled)) < near*min(1.0_wp, step*10.0_wp**decimals))) return
+          if (step*10.0_wp**decimals >= enough) return
+        end do
+      end if
+    end associate
+    decimals = -1
+  end function clock_decimals
+
+  !> The time of a frame as it stands below a picture.
+  pure function clock_text(time, decimals) result(text)
+    real(wp), intent(in) :: time                 !< [s]
+    integer, intent(in) :: decimals              !< negative: four digits, and a power of ten where it needs one
+    character(len=:), allocatable :: text
+    character(len=24) :: number
+    character(len=8) :: form
+
+    if (decimals < 0) then
+      text = 't = '//to_text(time, 4)//' s'
+      return
+    end if
+    write (form, '(a,i0,a)') '(f24.', decimals, ')'
+    write (number, form) time
+    number = adjustl(number)
+    if (decimals == 0) number = number(:index(number, '.') - 1)
+    if (verify(trim(number), '-0.') == 0 .and. number(1:1) == '-') number = number(2:)
+    text = 't = '//trim(number)//' s'
+  end function clock_text
+end module mech9_film_clock

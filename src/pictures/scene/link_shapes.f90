@@ -1,0 +1,149 @@
+!> The shape of a link that has these points: a bar, a plate around them, or bars from one to the next.
+module mech9_link_shapes
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: cross, unit
+  implicit none
+  private
+  public :: distinct_points, find_shape
+
+contains
+
+  !> Which of the points are not the same as one before them.
+  pure function distinct_points(points, tolerance) result(chosen)
+    real(wp), intent(in) :: points(:, :)          !< (3,n)
+    real(wp), intent(in) :: tolerance
+    integer, allocatable :: chosen(:)
+    logical :: new(size(points, 2))
+    integer :: i, j
+
+    do i = 1, size(new)
+      new(i) = .true.
+      do j = 1, i - 1
+        if (.not. new(j)) cycle
+        new(i) = norm2(points(:, i) - points(:, j)) > tolerance
+        if (.not. new(i)) exit
+      end do
+    end do
+    chosen = pack([(i, i=1, size(new))], new)
+  end function distinct_points
+
+  !> The outline of points, no two of which are the same: `closed` around a plate, where they lie in one
+  !> plane; else, or where all but one lie on a rail, pairs of points that bars join.
+  pure subroutine find_shape(points, tolerance, rails, order, closed)
+    real(wp), intent(in) :: points(:, :)          !< (3,n)
+    real(wp), intent(in) :: tolerance
+    integer, intent(in) :: rails(:, :)            !< (2,n) points that a bar must join
+    integer, allocatable, intent(out) :: order(:) !< numbers of points
+    logical, intent(out) :: closed
+    real(wp) :: normal(3), along(3), off(size(points, 2)), x(2, size(points, 2))
+    integer :: first, second, third, i
+
+    closed = .false.
+    allocate (order(0))
+    if (size(points, 2) < 2) return
+    first = farthest(points, sum(points, 2)/size(points, 2))
+    second = farthest(points, points(:, first))
+    along = unit(points(:, second) - points(:, first))
+    do i = 1, size(points, 2)
+      off(i) = norm2(cross(along, points(:, i) - points(:, first)))
+    end do
+    third = maxloc(off, dim=1)
+    if (off(third) <= tolerance) then
+      order = [first, second]
+      return
+    end if
+    normal = unit(cross(along, points(:, third) - points(:, first)))
+    do i = 1, size(points, 2)
+      off(i) = abs(dot_product(normal, points(:, i) - points(:, first)))
+      x(1, i) = dot_product(along, points(:, i) - points(:, first))
+      x(2, i) = dot_product(cross(normal, along), points(:, i) - points(:, first))
+    end do
+    closed = maxval(off) <= tolerance .and. beside(points, rails, tolerance) /= 1
+    if (closed) then
+      order = hull(x)
+    else
+      order = spanning_bars(points, rails)
+    end if
+  end subroutine find_shape
+
+  !> How many points do not lie on the first rail; none where there is no rail.
+  pure integer function beside(points, rails, tolerance)
+    real(wp), intent(in) :: points(:, :)
+    integer, intent(in) :: rails(:, :)
+    real(wp), intent(in) :: tolerance
+    real(wp) :: along(3)
+    integer :: i
+
+    beside = 0
+    if (size(rails, 2) == 0) return
+    along = unit(points(:, rails(2, 1)) - points(:, rails(1, 1)))
+    do i = 1, size(points, 2)
+      if (norm2(cross(along, points(:, i) - points(:, rails(1, 1)))) > tolerance) beside = beside + 1
+    end do
+  end function beside
+
+  pure integer function farthest(points, from)
+    real(wp), intent(in) :: points(:, :), from(3)
+    integer :: i
+
+    farthest = maxloc([(norm2(points(:, i) - from), i=1, size(points, 2))], dim=1)
+  end function farthest
+
+  !> The points around a set in a plane, counterclockwise: from each one to the next so that none lies outside.
+  pure function hull(x) result(around)
+    real(wp), intent(in) :: x(:, :)               !< (2,n)
+    integer, allocatable :: around(:)
+    real(wp) :: side
+    integer :: found(size(x, 2)), n, i, next
+
+    found(1) = minloc(x(1, :), dim=1)
+    n = 1
+    do
+      next = merge(2, 1, found(n) == 1)
+      do i = 1, size(x, 2)
+        if (i == found(n) .or. i == next) cycle
+        associate (a => x(:, next) - x(:, found(n)), b => x(:, i) - x(:, found(n)))
+          side = a(1)*b(2) - a(2)*b(1)
+          if (side < 0.0_wp .or. (side <= 0.0_wp .and. norm2(b) > norm2(a))) next = i
+        end associate
+      end do
+      if (next == found(1) .or. n == size(x, 2)) exit
+      n = n + 1
+      found(n) = next
+    end do
+    around = found(:n)
+  end function hull
+
+  !> The shortest bars that hold points in space together: each point is joined to the nearest one that is;
+  !> the ends of a rail are joined to each other.
+  pure function spanning_bars(points, rails) result(ends)
+    real(wp), intent(in) :: points(:, :)
+    integer, intent(in) :: rails(:, :)            !< without common points
+    integer, allocatable :: ends(:)               !< two for each bar
+    real(wp) :: distance(size(points, 2))
+    integer :: nearest(size(points, 2)), i, n, new
+    logical :: joined(size(points, 2))
+
+    allocate (ends(2*(size(points, 2) - 1)))
+    joined = .false.
+    distance = huge(distance)
+    nearest = 0
+    new = 1
+    if (size(rails, 2) > 0) new = rails(1, 1)
+    do n = 1, size(points, 2)
+      joined(new) = .true.
+      if (n > 1) ends(2*n - 3:2*n - 2) = [nearest(new), new]
+      do i = 1, size(points, 2)
+        if (norm2(points(:, i) - points(:, new)) >= distance(i)) cycle
+        distance(i) = norm2(points(:, i) - points(:, new))
+        nearest(i) = new
+      end do
+      do i = 1, size(rails, 2)
+        if (all(rails(:, i) /= new)) cycle
+        distance(sum(rails(:, i)) - new) = -1.0_wp
+        nearest(sum(rails(:, i)) - new) = new
+      end do
+      new = minloc(distance, dim=1, mask=.not. joined)
+    end do
+  end function spanning_bars
+end module mech9_link_shapes

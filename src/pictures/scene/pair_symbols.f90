@@ -1,0 +1,363 @@
+!> The symbols of pairs: rings, pins, balls and blocks, what guides blocks, and stands on the frame.
+!>
+!> Pairs at one place are one joint for the eye: two axes a universal joint, three a ball, an axis along
+!> which a pair slides and about which one turns a cylindrical joint.
+module mech9_pair_symbols
+  use mech9_kinds, only: wp, pi
+  use mech9_rotation, only: cross, unit
+  use mech9_pose, only: default_zero
+  use mech9_text, only: to_text
+  use mech9_film, only: film_type
+  use mech9_pair_axes, only: turning, sliding, screwing, free
+  use mech9_skeleton, only: skeleton_type, place_type
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, open_path, facing_path, segments, spring, mark, in_guide, in_ground, in_hatch, &
+                         in_block, in_pin, in_pin_end, in_cross, in_thread, as_stand, as_ring, as_ball, as_free
+  implicit none
+  private
+  public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_ground
+
+  !> Nodes of pairs, and which pairs are one joint.
+  type :: symbols_type
+    logical :: planar = .false.              !< seen along all axes
+    integer, allocatable :: node(:)          !< (M) where each pair is
+    !> (2,M) of a pair that slides the ends of its guide; of a tube and its rod their far ends.
+    integer, allocatable :: guide(:, :)
+    integer, allocatable :: joint(:)         !< (M) the first pair of the joint it is part of
+    logical, allocatable :: hangs(:)         !< (M) the joint of which this is the first pair hangs from its stand
+  end type symbols_type
+
+  !> Sizes on the page [px].
+  real(wp), parameter :: block_half = 13.0_wp, guide_more = 9.0_wp, block_side = 10.0_wp, hatch_step = 7.0_wp, &
+                         hatch_length = 7.0_wp, pin_half = 10.0_wp, pin_radius = 5.0_wp
+  integer, parameter :: corners = 14         !< of the round end of a pin
+  !> Pairs that near, as a part of the mechanism's size, are one joint; axes that near are parallel.
+  real(wp), parameter :: same = 0.004_wp, parallel = 0.01_wp
+
+contains
+
+  !> The nodes of all pairs, and the joints that they make.
+  subroutine prepare_symbols(film, skeleton, projection, planar, scene, symbols)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
+    logical, intent(in) :: planar
+    type(scene_type), intent(inout) :: scene
+    type(symbols_type), intent(out) :: symbols
+    real(wp) :: more, ends(3, 2)
+    integer :: k, i, side, links(2)
+
+    symbols%planar = planar
+    allocate (symbols%node(size(skeleton%places)), symbols%guide(2, size(skeleton%places)))
+    symbols%guide = 0
+    more = projection%metres(block_half + guide_more)
+    do k = 1, size(skeleton%places)
+      associate (place => skeleton%places(k))
+        call scene%add_node(place%links(place%carrier), place%points(:, place%carrier), symbols%node(k))
+        if (place%kind /= sliding .and. place%kind /= screwing) cycle
+        if (place%telescopic) then
+          links = place%links
+          ends = place%pins
+        else
+          side = 3 - place%carrier
+          links = place%links(side)
+          ends(:, 1) = place%points(:, side) + (place%least - more)*place%axes(:, side)
+          ends(:, 2) = place%points(:, side) + (place%most + more)*place%axes(:, side)
+        end if
+        do i = 1, 2
+          call scene%add_node(links(i), ends(:, i), symbols%guide(i, k))
+        end do
+      end associate
+    end do
+    symbols%joint = joints_of(film, skeleton)
+    allocate (symbols%hangs(size(symbols%joint)), source=.false.)
+  end subroutine prepare_symbols
+
+  !> The first pair of the joint of each pair: pairs that share a link and stand at one place of it.
+  pure function joints_of(film, skeleton) result(joint)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    integer, allocatable :: joint(:)
+    real(wp) :: at(3, size(skeleton%places))
+    integer :: link, i, j, a, b, k
+
+    allocate (joint(size(skeleton%places)))
+    do k = 1, size(joint)
+      joint(k) = k
+      associate (place => skeleton%places(k))
+        at(:, k) = film%position(1, place%links(place%carrier), place%points(:, place%carrier))
+      end associate
+    end do
+    do link = 1, skeleton%graph%n_links
+      do i = skeleton%graph%first(link), skeleton%graph%first(link + 1) - 1
+        a = skeleton%graph%pair_at(i)
+        if (at_guide(skeleton%places(a), link)) cycle
+        do j = skeleton%graph%first(link), i - 1
+          b = skeleton%graph%pair_at(j)
+          if (at_guide(skeleton%places(b), link)) cycle
+          if (maxval(abs(at(:, a) - at(:, b))) > same*skeleton%size) cycle
+          where (joint == max(joint(a), joint(b))) joint = min(joint(a), joint(b))
+        end do
+      end do
+    end do
+  end function joints_of
+
+  !> Whether a pair only passes along this link, which guides it.
+  pure logical function at_guide(place, link)
+    type(place_type), intent(in) :: place
+    integer, intent(in) :: link
+
+    at_guide = (place%kind == sliding .or. place%kind == screwing .or. place%kind == free) &
+               .and. place%links(place%carrier) /= link
+  end function at_guide
+
+  !> Guides on the frame: a centre line, and hatched ground beside it.
+  subroutine add_guides(skeleton, projection, scene, symbols)
+    type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
+    type(scene_type), intent(inout) :: scene
+    type(symbols_type), intent(in) :: symbols
+    real(wp) :: ends(3, 2), axis(3), down(3)
+    integer :: k
+
+    do k = 1, size(skeleton%places)
+      associate (place => skeleton%places(k))
+        if (all(place%links /= 1) .or. (place%kind /= sliding .and. place%kind /= screwing)) cycle
+        ends(:, 1) = scene%node_at(:, symbols%guide(1, k))
+        ends(:, 2) = scene%node_at(:, symbols%guide(2, k))
+        call scene%add_item(open_path, in_guide, symbols%guide(:, k))
+        axis = unit(ends(:, 2) - ends(:, 1))
+        down = cross(axis, projection%view%toward)
+        if (norm2(down) < 0.1_wp) cycle
+        down = unit(down)
+        if (dot_product(down, projection%view%up) > 1.0e-6_wp) down = -down
+        call add_ground(projection, ends, axis, down, block_side, scene)
+      end associate
+    end do
+  end subroutine add_guides
+
+  !> A hatched line of the frame, beside a guide or where a spring ends.
+  subroutine add_ground(projection, ends, axis, down, aside, scene)
+    type(projection_type), intent(in) :: projection
+    real(wp), intent(in) :: ends(3, 2)              !< of the guide, in the system of link 1 [m]
+    real(wp), intent(in) :: axis(3)                 !< from the first to the second one, of unit length
+    real(wp), intent(in) :: down(3)                 !< across it, where the ground is, of unit length
+    real(wp), intent(in) :: aside                   !< distance of the line from the guide [px]
+    type(scene_type), intent(inout) :: scene
+    integer, parameter :: most_hatches = 200
+    integer :: from, to, n, i
+    integer, allocatable :: hatches(:)
+    real(wp) :: step, start(3)
+
+    start = ends(:, 1) + projection%metres(aside)*down
+    call scene%add_node(1, start, from)
+    call scene%add_node(1, ends(:, 2) + projection%metres(aside)*down, to)
+    call scene%add_item(open_path, in_ground, [from, to])
+    n = max(1, min(most_hatches, nint(norm2(ends(:, 2) - ends(:, 1))/projection%metres(hatch_step))))
+    step = norm2(ends(:, 2) - ends(:, 1))/n
+    allocate (hatches(2*n))
+    do i = 1, n
+      call scene%add_node(1, start + i*step*axis, hatches(2*i - 1))
+      call scene%add_node(1, start + i*step*axis + projection%metres(hatch_length)*(down - 0.8_wp*axis), hatches(2*i))
+    end do
+    call scene%add_item(segments, in_hatch, hatches)
+  end subroutine add_ground
+
+  !> Stands of the joints that turn on the frame. They stand below, unless what they hold hangs from them.
+  subroutine add_stands(film, skeleton, projection, scene, symbols)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
+    type(scene_type), intent(inout) :: scene
+    type(symbols_type), intent(inout) :: symbols
+    logical :: done(size(skeleton%places))
+    real(wp) :: direction(2)
+    integer :: k
+
+    done = .false.
+    do k = 1, size(skeleton%places)
+      associate (place => skeleton%places(k))
+        if (place%kind /= turning .or. all(place%links /= 1) .or. done(symbols%joint(k))) cycle
+        done(symbols%joint(k)) = .true.
+        direction = [0.0_wp, 1.0_wp]
+        symbols%hangs(symbols%joint(k)) = hangs(film, skeleton, projection, k)
+        if (symbols%hangs(symbols%joint(k))) direction = -direction
+        call scene%add_item(mark, as_stand, symbols%node(k:k), shift=direction)
+      end associate
+    end do
+  end subroutine add_stands
+
+  !> Whether the links at a joint of the frame are below it all the time.
+  pure logical function hangs(film, skeleton, projection, k)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
+    integer, intent(in) :: k
+    real(wp) :: below, apart(3)
+    integer :: frame, i, j, other
+
+    below = 0.0_wp
+    hangs = .true.
+    associate (graph => skeleton%graph, place => skeleton%places(k))
+      other = maxval(place%links)
+      do frame = 1, film%n_frames, max(1, film%n_frames/40)
+        do i = graph%first(other), graph%first(other + 1) - 1
+          j = graph%pair_at(i)
+          if (j == k) cycle
+          associate (neighbour => skeleton%places(j))
+            apart = film%position(frame, neighbour%links(neighbour%carrier), neighbour%points(:, neighbour%carrier)) &
+                    - film%position(frame, place%links(1), place%points(:, 1))
+          end associate
+          apart = projection%view%seen(apart)
+          hangs = hangs .and. apart(2) < 0.3_wp*abs(apart(1))
+          below = below - apart(2)
+        end do
+      end do
+    end associate
+    hangs = hangs .and. below > 0.0_wp
+  end function hangs
+
+  !> Symbols of all joints.
+  subroutine add_symbols(film, skeleton, projection, shapes, scene, symbols)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
+    integer, intent(in) :: shapes(:)              !< items of the links
+    type(scene_type), intent(inout) :: scene
+    type(symbols_type), intent(in) :: symbols
+    integer, allocatable :: pairs(:)
+    integer :: joint, k
+
+    do joint = 1, size(symbols%joint)
+      if (symbols%joint(joint) /= joint) cycle
+      pairs = pack([(k, k=1, size(symbols%joint))], symbols%joint == joint)
+      call add_joint(film, skeleton, projection, shapes, pairs, scene, symbols)
+    end do
+  end subroutine add_symbols
+
+  subroutine add_joint(film, skeleton, projection, shapes, pairs, scene, symbols)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
+    integer, intent(in) :: shapes(:), pairs(:)
+    type(scene_type), intent(inout) :: scene
+    type(symbols_type), intent(in) :: symbols
+    integer, allocatable :: turns(:)
+    integer :: i, above(4)
+    character(len=:), allocatable :: names
+
+    above = 0
+    do i = 1, min(2, size(pairs))
+      above(2*i - 1:2*i) = shapes(skeleton%places(pairs(i))%links)
+    end do
+    names = names_of(pairs)
+    do i = 1, size(pairs)
+      if (skeleton%places(pairs(i))%kind == free) &
+        call scene%add_item(mark, as_free, symbols%node(pairs(i):pairs(i)), above=above, text=names)
+      if (skeleton%places(pairs(i))%kind == sliding .or. skeleton%places(pairs(i))%kind == screwing) &
+        call add_block(skeleton%places(pairs(i)), pairs(i), projection, above, names, scene, symbols)
+    end do
+    turns = turning_axes(film, skeleton, pairs)
+    if (count(skeleton%places(pairs)%kind == turning) == 0) return
+    if (symbols%planar) then
+      call scene%add_item(mark, as_ring, symbols%node(pairs(1):pairs(1)), above=above, text=names)
+    else if (size(turns) >= 3) then
+      call scene%add_item(mark, as_ball, symbols%node(pairs(1):pairs(1)), above=above, text=names)
+    else
+      do i = 1, size(turns)
+        call add_pin(skeleton%places(turns(i)), projection%metres(1.0_wp), size(turns) > 1, above, names, scene)
+      end do
+    end if
+  end subroutine add_joint
+
+  !> The names of the coordinates of some pairs.
+  pure function names_of(pairs) result(names)
+    integer, intent(in) :: pairs(:)
+    character(len=:), allocatable :: names
+    integer :: i
+
+    names = 'q'//to_text(pairs(1))
+    do i = 2, size(pairs)
+      names = names//' q'//to_text(pairs(i))
+    end do
+  end function names_of
+
+  !> The turning pairs of a joint with axes of their own: neither along one before, nor along one that slides.
+  pure function turning_axes(film, skeleton, pairs) result(chosen)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    integer, intent(in) :: pairs(:)
+    integer, allocatable :: chosen(:)
+    real(wp) :: axes(3, size(pairs))
+    logical :: new(size(pairs))
+    integer :: i, j
+
+    do i = 1, size(pairs)
+      associate (place => skeleton%places(pairs(i)))
+        axes(:, i) = film%direction(1, place%links(1), place%axes(:, 1))
+        new(i) = place%kind == turning
+      end associate
+    end do
+    do i = 1, size(pairs)
+      if (.not. new(i)) cycle
+      do j = 1, size(pairs)
+        if (j == i .or. (j > i .and. skeleton%places(pairs(j))%kind == turning)) cycle
+        if (skeleton%places(pairs(j))%kind == free) cycle
+        if (norm2(cross(axes(:, i), axes(:, j))) < parallel) new(i) = .false.
+      end do
+    end do
+    chosen = pack(pairs, new)
+  end function turning_axes
+
+  !> The block of a pair that slides, or the nut of a helical one with the thread it runs on.
+  subroutine add_block(place, k, projection, above, names, scene, symbols)
+    type(place_type), intent(in) :: place
+    integer, intent(in) :: k
+    type(projection_type), intent(in) :: projection
+    integer, intent(in) :: above(4)
+    character(len=*), intent(in) :: names
+    type(scene_type), intent(inout) :: scene
+    type(symbols_type), intent(in) :: symbols
+    integer :: from, to
+
+    if (place%telescopic) return
+    if (place%kind == screwing) call scene%add_item(spring, in_thread, symbols%guide(:, k), above=above)
+    associate (point => place%points(:, place%carrier), axis => place%axes(:, place%carrier), &
+               link => place%links(place%carrier))
+      call scene%add_node(link, point - projection%metres(block_half)*axis, from)
+      call scene%add_node(link, point + projection%metres(block_half)*axis, to)
+      call scene%add_item(open_path, in_block, [from, to], link, above=above, text=names)
+    end associate
+  end subroutine add_block
+
+  !> A pin: a short cylinder along the axis. Of its ends the one that is turned to the viewer is drawn.
+  subroutine add_pin(place, px, crossed, above, names, scene)
+    type(place_type), intent(in) :: place
+    real(wp), intent(in) :: px                    !< length of 1 px in the mechanism [m]
+    logical, intent(in) :: crossed                !< it is one of two: a bar of the cross that they make
+    integer, intent(in) :: above(4)
+    character(len=*), intent(in) :: names
+    type(scene_type), intent(inout) :: scene
+    real(wp) :: across(3), third(3), angle
+    integer :: ends(2), around(corners), i, j
+
+    associate (point => place%points(:, 1), axis => place%axes(:, 1), link => place%links(1))
+      do i = 1, 2
+        call scene%add_node(link, point + (2*i - 3)*px*pin_half*axis, ends(i))
+      end do
+      call scene%add_item(open_path, merge(in_cross, in_pin, crossed), ends, above=above, text=names)
+      if (crossed) return
+      across = default_zero(axis)
+      across = unit(across - dot_product(across, axis)*axis)
+      do i = 1, 2
+        ! seen from outside, each end runs counterclockwise
+        third = (2*i - 3)*cross(axis, across)
+        do j = 1, corners
+          angle = 2.0_wp*pi*j/corners
+          call scene%add_node(link, scene%node_at(:, ends(i)) + px*pin_radius*(cos(angle)*across + sin(angle)*third), around(j))
+        end do
+        call scene%add_item(facing_path, in_pin_end, around, above=above)
+      end do
+    end associate
+  end subroutine add_pin
+end module mech9_pair_symbols

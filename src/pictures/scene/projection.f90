@@ -1,0 +1,204 @@
+!> The projection of a mechanism onto a page: view, scale and margins, so that the whole motion is seen.
+module mech9_projection
+  use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
+  use mech9_spring_load, only: spring_load_type
+  use mech9_film, only: film_type
+  use mech9_pair_axes, only: free
+  use mech9_skeleton, only: skeleton_type, place_type
+  use mech9_view, only: view_type
+  implicit none
+  private
+  public :: projection_type, fit_projection
+
+  !> Pages are measured in px, x to the right and y down, as browsers do.
+  type :: projection_type
+    type(view_type) :: view
+    real(wp) :: centre(3) = 0.0_wp     !< what stands in the middle [m]
+    real(wp) :: scale = 1.0_wp         !< px per m
+    real(wp) :: width = 640.0_wp, height = 480.0_wp
+    real(wp) :: middle(2) = 0.0_wp     !< where the centre stands [px]
+    real(wp) :: symbol = 1.0_wp        !< size of symbols: 1 as drawn here, less where there is little room
+  contains
+    procedure :: on_page
+    procedure :: metres
+  end type projection_type
+
+  !> Room for the mechanism, and around it for symbols, title and scale [px].
+  real(wp), parameter :: widest = 600.0_wp, highest = 480.0_wp, margin = 44.0_wp, above = 34.0_wp, below = 56.0_wp
+  real(wp), parameter :: least_width = 400.0_wp, least_height = 150.0_wp
+  !> Pairs of one link are that far apart where symbols have their full size [px].
+  real(wp), parameter :: roomy = 55.0_wp
+  !> Room for a mechanism that is turned, as a part of its diagonal: few are that long from every side.
+  real(wp), parameter :: wide = 0.85_wp
+  !> Frames of a film that are looked at.
+  integer, parameter :: most_looked_at = 60
+
+  !> What encloses all that has to be seen, in the directions of a view [m].
+  type :: box_type
+    real(wp) :: low(3) = huge(1.0_wp), high(3) = -huge(1.0_wp)
+  end type box_type
+
+contains
+
+  !> The projection in which the whole motion fits the page. One that may be `turned` has room for the
+  !> mechanism seen from everywhere.
+  subroutine fit_projection(mechanism, film, skeleton, view, turned, projection)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(view_type), intent(in) :: view
+    logical, intent(in) :: turned
+    type(projection_type), intent(out) :: projection
+    type(box_type) :: box
+    real(wp) :: middle(3), extent(2), diagonal
+
+    call enclose_motion(mechanism, film, skeleton, view, box)
+    middle = 0.5_wp*(box%low + box%high)
+    extent = box%high(:2) - box%low(:2)
+    diagonal = norm2(box%high - box%low)
+    ! without any extent, as much room as the mechanism is large
+    if (diagonal < 1.0e-6_wp*skeleton%size) then
+      diagonal = skeleton%size
+      extent = diagonal
+    end if
+    if (turned) extent = max(extent, wide*diagonal)
+    projection%view = view
+    projection%centre = middle(1)*view%right + middle(2)*view%up + middle(3)*view%toward
+    ! a mechanism that seems to be one point still has a scale
+    extent = max(extent, 0.001_wp*diagonal)
+    projection%scale = min(widest/extent(1), highest/extent(2))
+    projection%width = max(least_width, projection%scale*extent(1)) + 2.0_wp*margin
+    projection%height = max(least_height, projection%scale*extent(2)) + above + below + 2.0_wp*margin
+    projection%middle = [0.5_wp*projection%width, 0.5_wp*(projection%height + above - below)]
+    projection%symbol = max(0.25_wp, min(1.0_wp, projection%scale*usual_distance(film, skeleton, view)/roomy))
+  end subroutine fit_projection
+
+  !> The box around pairs, points, springs and paths, in frames that stand for the film.
+  subroutine enclose_motion(mechanism, film, skeleton, view, box)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(view_type), intent(in) :: view
+    type(box_type), intent(out) :: box
+    integer :: frame, k, side, i
+
+    do frame = 1, film%n_frames, max(1, film%n_frames/most_looked_at)
+      do k = 1, size(skeleton%places)
+        associate (place => skeleton%places(k))
+          side = place%carrier
+          call enclose(view, film%position(frame, place%links(side), place%points(:, side)), box)
+          if (place%telescopic) cycle
+          if (place%kind == free) call enclose_curve(film, view, place%links, frame, box)
+          ! where a block can be, it is guided
+          side = 3 - side
+          call enclose(view, film%position(frame, place%links(side), &
+                                           place%points(:, side) + place%least*place%axes(:, side)), box)
+          call enclose(view, film%position(frame, place%links(side), &
+                                           place%points(:, side) + place%most*place%axes(:, side)), box)
+        end associate
+      end do
+      do i = 1, size(mechanism%points)
+        call enclose(view, film%position(frame, mechanism%points(i)%link, mechanism%points(i)%position), box)
+      end do
+      do i = 1, size(mechanism%bodies)
+        call enclose(view, film%position(frame, mechanism%bodies(i)%link, mechanism%bodies(i)%centre), box)
+      end do
+      do i = 1, size(mechanism%loads)
+        select type (load => mechanism%loads(i)%load)
+        type is (spring_load_type)
+          call enclose(view, film%position(frame, load%links(1), load%positions(:, 1)), box)
+          call enclose(view, film%position(frame, load%links(2), load%positions(:, 2)), box)
+        end select
+      end do
+    end do
+    do i = 1, film%n_path_points
+      do k = 1, size(film%paths, 2)
+        call enclose(view, film%paths(:, k, i), box)
+      end do
+    end do
+  end subroutine enclose_motion
+
+  !> The curve on which the first link guides the origin of the second one, where it is in a frame.
+  pure subroutine enclose_curve(film, view, links, frame, box)
+    type(film_type), intent(in) :: film
+    type(view_type), intent(in) :: view
+    integer, intent(in) :: links(2), frame
+    type(box_type), intent(inout) :: box
+    integer :: other
+
+    do other = 1, film%n_frames, max(1, film%n_frames/most_looked_at)
+      call enclose(view, film%position(frame, links(1), film%local(other, links(1), film%p(:, links(2), other))), box)
+    end do
+  end subroutine enclose_curve
+
+  pure subroutine enclose(view, place, box)
+    type(view_type), intent(in) :: view
+    real(wp), intent(in) :: place(3)
+    type(box_type), intent(inout) :: box
+
+    box%low = min(box%low, view%seen(place))
+    box%high = max(box%high, view%seen(place))
+  end subroutine enclose
+
+  !> The usual distance between the pairs of a link that are farthest apart, as seen [m]: half of the links have no more.
+  pure real(wp) function usual_distance(film, skeleton, view)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(view_type), intent(in) :: view
+    real(wp), allocatable :: largest(:)
+    real(wp) :: apart(3)
+    logical, allocatable :: left(:)
+    integer :: link, i, j, n
+
+    associate (graph => skeleton%graph, places => skeleton%places)
+      allocate (largest(graph%n_links), source=0.0_wp)
+      do link = 2, graph%n_links
+        do i = graph%first(link), graph%first(link + 1) - 1
+          do j = graph%first(link), i - 1
+            apart = place_of(film, places(graph%pair_at(i))) - place_of(film, places(graph%pair_at(j)))
+            apart = view%seen(apart)
+            largest(link) = max(largest(link), norm2(apart(:2)))
+          end do
+        end do
+      end do
+    end associate
+    ! the median of the links whose pairs are at more than one place
+    allocate (left(size(largest)), source=largest > 0.01_wp*skeleton%size)
+    n = min(count(left), count(left)/2 + 1)
+    usual_distance = skeleton%size
+    do i = 1, n
+      j = minloc(largest, dim=1, mask=left)
+      usual_distance = largest(j)
+      left(j) = .false.
+    end do
+  end function usual_distance
+
+  pure function place_of(film, place) result(at)
+    type(film_type), intent(in) :: film
+    class(place_type), intent(in) :: place
+    real(wp) :: at(3)
+
+    at = film%position(1, place%links(place%carrier), place%points(:, place%carrier))
+  end function place_of
+
+  !> Where a place of link 1 stands on the page [px], and how near to the viewer it is [m].
+  pure subroutine on_page(self, place, xy, depth)
+    class(projection_type), intent(in) :: self
+    real(wp), intent(in) :: place(3)           !< [m]
+    real(wp), intent(out) :: xy(2), depth
+    real(wp) :: seen(3)
+
+    seen = self%view%seen(place - self%centre)
+    xy = self%middle + self%scale*[seen(1), -seen(2)]
+    depth = seen(3)
+  end subroutine on_page
+
+  !> The length in the mechanism that is so long on the page, for symbols in space [m].
+  pure real(wp) function metres(self, length)
+    class(projection_type), intent(in) :: self
+    real(wp), intent(in) :: length             !< [px] at full size of symbols
+
+    metres = length*self%symbol/self%scale
+  end function metres
+end module mech9_projection

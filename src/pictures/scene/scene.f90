@@ -1,0 +1,141 @@
+!> A scene: what a picture shows, as points of links and the lines, plates and marks between them, whatever the view and whoever
+!> draws it.
+module mech9_scene
+  use mech9_kinds, only: wp
+  use mech9_film, only: film_type
+  implicit none
+  private
+  public :: scene_type, item_type
+  public :: open_path, closed_path, facing_path, segments, spring, mark, label
+  public :: in_trace, in_curve, in_guide, in_ground, in_hatch, in_plate, in_block, in_tube, in_pin, in_pin_end, in_spring, &
+            in_thread, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
+            as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_pairs
+
+  !> What an item is made of. A facing path is a flat outline that is drawn only where its front, round which
+  !> it runs counterclockwise, is turned to the viewer. Segments join each odd node to the next one.
+  integer, parameter :: open_path = 0, closed_path = 1, facing_path = 2, segments = 3, spring = 4, mark = 5, label = 6
+
+  !> What an item stands for: how it is drawn.
+  integer, parameter :: in_trace = 1, in_curve = 2, in_guide = 3, in_ground = 4, in_hatch = 5, in_plate = 6, in_block = 7, &
+                        in_tube = 8, in_pin = 9, in_pin_end = 10, in_spring = 11, in_thread = 12, in_cross = 13, in_cam = 14, &
+                        as_stand = 15, as_ring = 16, as_ball = 17, as_dot = 18, as_centre = 19, as_free = 20, &
+                        as_name = 21, as_number = 22, as_coordinate = 23, as_input = 24, as_leader = 25, &
+                        in_damper = 26, as_coil = 27, as_cup = 28
+
+  !> One thing to draw.
+  type :: item_type
+    integer :: shape = open_path
+    integer :: style = in_plate
+    integer :: link = 0                       !< whose colour it has; 0: none
+    integer, allocatable :: nodes(:)
+    integer :: above(4) = 0                   !< items that it lies upon, whatever their depth
+    character(len=:), allocatable :: text     !< of a label; of a joint the names of its coordinates
+    !> Of a label: where it stands from its node, to the right and down [px]; of a stand its direction, of a leading line
+    !> its end, also to the right and down. Of a spring or damper first: how far it lies aside of the line between its nodes.
+    real(wp) :: shift(2) = 0.0_wp
+  end type item_type
+
+  !> Nodes are points of links. Items stand in the order in which they are drawn; those from `first_sorted`
+  !> to `last_sorted` are bodies in space, of which a nearer one covers a farther one.
+  type :: scene_type
+    integer :: n_nodes = 0, n_items = 0
+    integer, allocatable :: node_link(:)
+    real(wp), allocatable :: node_at(:, :)    !< (3,n) in the link's system [m]
+    type(item_type), allocatable :: items(:)
+    integer :: first_sorted = 1, last_sorted = 0
+  contains
+    procedure :: add_node
+    procedure :: add_item
+    procedure :: places_at
+  end type scene_type
+
+contains
+
+  !> Whether the corners of an item belong together by twos, each pair a line of its own.
+  pure logical function in_pairs(item)
+    type(item_type), intent(in) :: item
+
+    in_pairs = item%shape == segments .or. item%style == in_damper
+  end function in_pairs
+
+  !> One more point of a link.
+  pure subroutine add_node(self, link, at, node)
+    class(scene_type), intent(inout) :: self
+    integer, intent(in) :: link
+    real(wp), intent(in) :: at(3)             !< in the link's system [m]
+    integer, intent(out) :: node              !< its number
+    integer, allocatable :: links(:)
+    real(wp), allocatable :: places(:, :)
+
+    if (.not. allocated(self%node_link)) allocate (self%node_link(64), self%node_at(3, 64))
+    if (self%n_nodes == size(self%node_link)) then
+      allocate (links(2*self%n_nodes), places(3, 2*self%n_nodes))
+      links(:self%n_nodes) = self%node_link
+      places(:, :self%n_nodes) = self%node_at
+      call move_alloc(links, self%node_link)
+      call move_alloc(places, self%node_at)
+    end if
+    self%n_nodes = self%n_nodes + 1
+    node = self%n_nodes
+    self%node_link(node) = link
+    self%node_at(:, node) = at
+  end subroutine add_node
+
+  !> One more thing to draw, above those that are there.
+  pure subroutine add_item(self, shape, style, nodes, link, above, text, shift)
+    class(scene_type), intent(inout) :: self
+    integer, intent(in) :: shape, style
+    integer, intent(in) :: nodes(:)
+    integer, intent(in), optional :: link
+    integer, intent(in), optional :: above(:)      !< items; at most four count, zeros do not
+    character(len=*), intent(in), optional :: text
+    real(wp), intent(in), optional :: shift(2)
+    type(item_type), allocatable :: grown(:)
+    integer :: i
+
+    if (.not. allocated(self%items)) allocate (self%items(32))
+    if (self%n_items == size(self%items)) then
+      allocate (grown(2*self%n_items))
+      do i = 1, self%n_items
+        call move_item(self%items(i), grown(i))
+      end do
+      call move_alloc(grown, self%items)
+    end if
+    self%n_items = self%n_items + 1
+    associate (item => self%items(self%n_items))
+      item%shape = shape
+      item%style = style
+      item%nodes = nodes
+      if (present(link)) item%link = link
+      if (present(above)) item%above(:min(4, size(above))) = above(:min(4, size(above)))
+      if (present(text)) item%text = text
+      if (present(shift)) item%shift = shift
+    end associate
+  end subroutine add_item
+
+  pure subroutine move_item(from, to)
+    type(item_type), intent(inout) :: from, to
+
+    to%shape = from%shape
+    to%style = from%style
+    to%link = from%link
+    to%above = from%above
+    to%shift = from%shift
+    call move_alloc(from%nodes, to%nodes)
+    if (allocated(from%text)) call move_alloc(from%text, to%text)
+  end subroutine move_item
+
+  !> Where all nodes are in a frame of the film, in the system of link 1 [m].
+  pure function places_at(self, film, frame) result(places)
+    class(scene_type), intent(in) :: self
+    type(film_type), intent(in) :: film
+    integer, intent(in) :: frame
+    real(wp), allocatable :: places(:, :)     !< (3,n)
+    integer :: i
+
+    allocate (places(3, self%n_nodes))
+    do i = 1, self%n_nodes
+      places(:, i) = film%position(frame, self%node_link(i), self%node_at(:, i))
+    end do
+  end function places_at
+end module mech9_scene

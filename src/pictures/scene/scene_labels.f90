@@ -1,0 +1,339 @@
+!> The labels of a scene: names of points, names of coordinates at their joints, numbers of links. They are placed for the first
+!> frame of a film.
+module mech9_scene_labels
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_film, only: film_type
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, closed_path, segments, mark, label, as_name, as_number, as_coordinate, &
+                         as_input, as_leader
+  use mech9_drawing, only: drawing_type, draw_frame
+  use mech9_label_places, only: obstacles_type, label_type, spot_type, spots_around, place_labels
+  use mech9_label_obstacles, only: find_obstacles, clear_radius
+  use mech9_pair_symbols, only: symbols_type
+  implicit none
+  private
+  public :: add_labels
+
+  !> Links and coordinates are labelled where there are no more than these.
+  integer, parameter :: most_labelled = 24
+  !> Letters of a point's name, of a coordinate's, of an independent one's, and of a number: width and height [px].
+  real(wp), parameter :: name_letter = 8.2_wp, name_height = 11.0_wp, coordinate_letter = 6.3_wp, input_letter = 7.0_wp, &
+                         coordinate_height = 10.0_wp, number_letter = 7.0_wp, number_height = 9.5_wp
+  !> How far letters reach below their line, and the room between two names [px].
+  real(wp), parameter :: below = 2.0_wp, between = 4.0_wp
+
+  !> A label that is going to be added to a scene.
+  type :: entry_type
+    integer :: style = as_name
+    integer :: node = 0                          !< where it stands; 0: on a link, at the place of its spot
+    integer :: link = 0                          !< whose colour it has
+    integer :: pairs(most_labelled) = 0          !< whose coordinates it names, zeros behind
+    integer :: n_pairs = 0
+    integer :: columns = 1                       !< how many of them stand in a row
+    integer :: first_stacked = huge(1)           !< from this spot on they stand one below the other
+    character(len=:), allocatable :: text
+    real(wp), allocatable :: places(:, :)        !< (3,spots) of a number: the point of the link at each spot [m]
+  end type entry_type
+
+contains
+
+  !> Add the labels to a scene that is whole but for them.
+  subroutine add_labels(mechanism, film, projection, symbols, nodes, shapes, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(projection_type), intent(in) :: projection
+    type(symbols_type), intent(in) :: symbols
+    integer, intent(in) :: nodes(:)              !< of the points
+    integer, intent(in) :: shapes(:, :)          !< (2,links) item that shows a link, and a node of it; 0: none
+    type(scene_type), intent(inout) :: scene
+    type(obstacles_type) :: obstacles
+    type(drawing_type) :: drawing
+    type(label_type), allocatable :: labels(:)
+    type(entry_type), allocatable :: entries(:)
+    integer :: n, i
+
+    drawing = draw_frame(scene, film, projection, 1)
+    call find_obstacles(scene, drawing, projection, obstacles)
+    allocate (labels(size(nodes) + size(symbols%joint) + size(shapes, 2)))
+    allocate (entries(size(labels)))
+    n = 0
+    do i = 1, size(nodes)
+      n = n + 1
+      call enter_name(mechanism%points(i)%name, nodes(i), scene, drawing, projection, entries(n), labels(n))
+    end do
+    if (size(symbols%joint) <= most_labelled) then
+      do i = 1, size(symbols%joint)
+        if (symbols%joint(i) /= i) cycle
+        n = n + 1
+        call enter_coordinates(i, mechanism%structure%independent, symbols, scene, drawing, projection, entries(n), labels(n))
+      end do
+    end if
+    if (size(shapes, 2) <= most_labelled) then
+      do i = 2, size(shapes, 2)
+        if (all(shapes(:, i) == 0)) cycle
+        n = n + 1
+        call enter_number(i, shapes(:, i), film, scene, drawing, projection, entries(n), labels(n))
+      end do
+    end if
+    call place_labels(obstacles, [projection%width, projection%height], labels(:n))
+    do i = 1, n
+      call add_entry(entries(i), labels(i), mechanism%structure%independent, film, drawing, projection, scene)
+    end do
+  end subroutine add_labels
+
+  !> The name of a point.
+  subroutine enter_name(name, node, scene, drawing, projection, entry, label)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: node                  !< where the point is
+    type(scene_type), intent(in) :: scene
+    type(drawing_type), intent(in) :: drawing
+    type(projection_type), intent(in) :: projection
+    type(entry_type), intent(out) :: entry
+    type(label_type), intent(out) :: label
+
+    entry%style = as_name
+    entry%node = node
+    entry%text = name
+    label%at = drawing%xy(:, node)
+    associate (at => label%at)
+      label%spots = spots_around(at, clear_radius(scene, drawing, projection%symbol, at), &
+                                 [name_letter*len(name), name_height], to_left=.false.)
+    end associate
+  end subroutine enter_name
+
+  !> The names of the coordinates of a joint, in a row or one below the other.
+  subroutine enter_coordinates(joint, independent, symbols, scene, drawing, projection, entry, label)
+    integer, intent(in) :: joint                 !< the first pair of it
+    logical, intent(in) :: independent(:)        !< coordinates
+    type(symbols_type), intent(in) :: symbols
+    type(scene_type), intent(in) :: scene
+    type(drawing_type), intent(in) :: drawing
+    type(projection_type), intent(in) :: projection
+    type(entry_type), intent(out) :: entry
+    type(label_type), intent(out) :: label
+    type(spot_type), allocatable :: stacked(:)
+    real(wp), parameter :: dislike = 2.0_wp
+    real(wp) :: widths(most_labelled), clear
+    integer :: k, n
+
+    n = 0
+    do k = 1, size(symbols%joint)
+      if (symbols%joint(k) /= joint) cycle
+      n = n + 1
+      entry%pairs(n) = k
+      widths(n) = width_of(k, independent)
+    end do
+    entry%n_pairs = n
+    entry%style = as_coordinate
+    entry%node = symbols%node(joint)
+    label%at = drawing%xy(:, entry%node)
+    associate (at => label%at)
+      clear = clear_radius(scene, drawing, projection%symbol, at)
+      label%spots = spots_around(at, clear, [sum(widths(:n)) + between*(n - 1), coordinate_height], to_left=.true.)
+      if (n == 1) return
+      stacked = spots_around(at, clear, [maxval(widths(:n)), coordinate_height*n], to_left=.true.)
+      stacked%cost = stacked%cost + dislike
+      entry%first_stacked = size(label%spots) + 1
+      label%spots = [label%spots, stacked]
+    end associate
+  end subroutine enter_coordinates
+
+  !> The number of a link: on its bars or its plate, beside them, or with a line that leads there; of a link that is
+  !> drawn at one place only, beside that.
+  subroutine enter_number(link, shape, film, scene, drawing, projection, entry, label)
+    integer, intent(in) :: link
+    integer, intent(in) :: shape(2)              !< item that shows the link, and a node of it; 0: none
+    type(film_type), intent(in) :: film
+    type(scene_type), intent(in) :: scene
+    type(drawing_type), intent(in) :: drawing
+    type(projection_type), intent(in) :: projection
+    type(entry_type), intent(out) :: entry
+    type(label_type), intent(out) :: label
+    real(wp) :: size_of_box(2)
+    real(wp), allocatable :: places(:, :)
+
+    entry%style = as_number
+    entry%link = link
+    entry%text = to_text(link)
+    size_of_box = [number_letter*len(entry%text), number_height]
+    label%owner = link
+    label%of_place = .false.
+    if (shape(1) == 0) then
+      entry%node = shape(2)
+      associate (at => drawing%xy(:, entry%node))
+        label%spots = spots_around(at, max(9.0_wp*projection%symbol, clear_radius(scene, drawing, projection%symbol, at)), &
+                                   size_of_box, to_left=.false.)
+      end associate
+      return
+    end if
+    places = scene%places_at(film, 1)
+    associate (item => scene%items(shape(1)))
+      if (item%shape == closed_path) then
+        call look_in_plate(places(:, item%nodes), projection, size_of_box, entry%places, label%spots)
+      else
+        call look_on_bars(places(:, item%nodes), item%shape == segments, projection, size_of_box, entry%places, label%spots)
+      end if
+    end associate
+  end subroutine enter_number
+
+  !> Spots within a plate: in its middle, and from there towards its corners.
+  subroutine look_in_plate(corners, projection, size_of_box, places, spots)
+    real(wp), intent(in) :: corners(:, :)                 !< (3,n) in the system of link 1 [m]
+    type(projection_type), intent(in) :: projection
+    real(wp), intent(in) :: size_of_box(2)                !< of the number [px]
+    real(wp), allocatable, intent(out) :: places(:, :)    !< (3,spots) in the system of link 1 [m]
+    type(spot_type), allocatable, intent(out) :: spots(:)
+    integer, parameter :: most_corners = 24
+    real(wp), parameter :: parts(3) = [0.25_wp, 0.5_wp, 0.7_wp]
+    real(wp) :: middle(3)
+    integer :: i, j, n, step
+
+    middle = sum(corners, 2)/size(corners, 2)
+    step = 1 + (size(corners, 2) - 1)/most_corners
+    allocate (places(3, 1 + size(parts)*size(corners, 2)), spots(1 + size(parts)*size(corners, 2)))
+    n = 1
+    places(:, 1) = middle
+    do i = 1, size(parts)
+      do j = 1, size(corners, 2), step
+        n = n + 1
+        places(:, n) = middle + parts(i)*(corners(:, j) - middle)
+      end do
+    end do
+    places = places(:, :n)
+    spots = spots(:n)
+    do i = 1, n
+      spots(i) = spot_at(places(:, i), [0.0_wp, 0.0_wp], projection, size_of_box, 0.3_wp*i)
+    end do
+  end subroutine look_in_plate
+
+  !> Spots on bars, beside them, and at the end of a leading line.
+  subroutine look_on_bars(ends, apart, projection, size_of_box, places, spots)
+    real(wp), intent(in) :: ends(:, :)                    !< (3,n) in the system of link 1 [m]
+    logical, intent(in) :: apart                          !< two for each bar, else one bar goes on to the next end
+    type(projection_type), intent(in) :: projection
+    real(wp), intent(in) :: size_of_box(2)                !< of the number [px]
+    real(wp), allocatable, intent(out) :: places(:, :)    !< (3,spots) in the system of link 1 [m]
+    type(spot_type), allocatable, intent(out) :: spots(:)
+    !> Not quite in the middle first, where the mass centre is often.
+    real(wp), parameter :: parts(11) = [0.4_wp, 0.6_wp, 0.5_wp, 0.33_wp, 0.67_wp, 0.25_wp, 0.75_wp, 0.18_wp, 0.82_wp, 0.12_wp, &
+                                        0.88_wp]
+    !> On a bar, beside it, and farther off: how far from it [px], and how much less it is liked.
+    real(wp), parameter :: offsets(5) = [0.0_wp, 11.0_wp, -11.0_wp, 26.0_wp, -26.0_wp]
+    real(wp), parameter :: prices(5) = [0.0_wp, 9.0_wp, 9.5_wp, 20.0_wp, 20.5_wp]
+    !> A long bar is liked better than a short one, by a part of its length; none is longer on a page [px].
+    real(wp), parameter :: by_length = 0.02_wp, longest = 1000.0_wp
+    real(wp) :: along(2), across(2), place(3), first(2), last(2), cost, depth
+    integer :: bars, i, j, k, n, at
+
+    bars = merge(size(ends, 2)/2, size(ends, 2) - 1, apart)
+    n = size(offsets)*size(parts)*bars
+    allocate (places(3, n), spots(n))
+    n = 0
+    do i = 1, bars
+      at = merge(2*i - 1, i, apart)
+      call projection%on_page(ends(:, at), first, depth)
+      call projection%on_page(ends(:, at + 1), last, depth)
+      along = last - first
+      across = [0.0_wp, 1.0_wp]
+      if (norm2(along) > 1.0e-6_wp) across = [along(2), -along(1)]/norm2(along)
+      do j = 1, size(parts)
+        place = ends(:, at) + parts(j)*(ends(:, at + 1) - ends(:, at))
+        cost = 0.5_wp*j + by_length*(longest - norm2(along))
+        do k = 1, size(offsets)
+          n = n + 1
+          places(:, n) = place
+          spots(n) = spot_at(place, offsets(k)*across, projection, size_of_box, cost + prices(k))
+        end do
+      end do
+    end do
+  end subroutine look_on_bars
+
+  !> A spot beside a place; a line leads to one that is far.
+  pure function spot_at(place, offset, projection, size_of_box, cost) result(spot)
+    real(wp), intent(in) :: place(3)             !< in the system of link 1 [m]
+    real(wp), intent(in) :: offset(2)            !< of the middle of the box [px]
+    type(projection_type), intent(in) :: projection
+    real(wp), intent(in) :: size_of_box(2), cost
+    type(spot_type) :: spot
+    real(wp), parameter :: near = 15.0_wp
+    real(wp) :: at(2), depth
+
+    call projection%on_page(place, at, depth)
+    spot%low = at + offset - 0.5_wp*size_of_box
+    spot%high = at + offset + 0.5_wp*size_of_box
+    spot%cost = cost
+    if (norm2(offset) < near) return
+    spot%from = at
+    spot%to = at + offset*(1.0_wp - 0.6_wp*number_height/norm2(offset))
+  end function spot_at
+
+  !> Add a label where it has been placed, with the line that leads to it.
+  subroutine add_entry(entry, placed, independent, film, drawing, projection, scene)
+    type(entry_type), intent(in) :: entry
+    type(label_type), intent(in) :: placed
+    logical, intent(in) :: independent(:)
+    type(film_type), intent(in) :: film
+    type(drawing_type), intent(in) :: drawing
+    type(projection_type), intent(in) :: projection
+    type(scene_type), intent(inout) :: scene
+    real(wp) :: at(2), depth
+    integer :: node
+
+    associate (spot => placed%spots(placed%chosen))
+      node = entry%node
+      if (node == 0) then
+        call scene%add_node(entry%link, film%local(1, entry%link, entry%places(:, placed%chosen)), node)
+        call projection%on_page(entry%places(:, placed%chosen), at, depth)
+      else
+        at = drawing%xy(:, node)
+      end if
+      if (any(abs(spot%to - spot%from) > 0.0_wp)) &
+        call scene%add_item(mark, as_leader, [node], shift=(spot%to - at)/projection%symbol)
+      select case (entry%style)
+      case (as_name)
+        call scene%add_item(label, as_name, [node], text=entry%text, shift=[spot%low(1), spot%high(2) - below] - at)
+      case (as_number)
+        call scene%add_item(label, as_number, [node], entry%link, text=entry%text, shift=0.5_wp*(spot%low + spot%high) - at)
+      case default
+        call add_coordinates(entry, node, spot, placed%chosen >= entry%first_stacked, at, independent, scene)
+      end select
+    end associate
+  end subroutine add_entry
+
+  !> The names of coordinates within their common box, each a label of its own: only independent ones have their colour.
+  subroutine add_coordinates(entry, node, spot, stacked, at, independent, scene)
+    type(entry_type), intent(in) :: entry
+    integer, intent(in) :: node
+    type(spot_type), intent(in) :: spot
+    logical, intent(in) :: stacked               !< one below the other
+    real(wp), intent(in) :: at(2)                !< the joint [px]
+    logical, intent(in) :: independent(:)
+    type(scene_type), intent(inout) :: scene
+    real(wp) :: last(2)
+    integer :: i, k
+
+    ! a label of this kind ends at its place
+    last = [spot%low(1), spot%high(2) - below]
+    if (stacked) last = [spot%high(1), spot%low(2) + coordinate_height - below]
+    do i = 1, entry%n_pairs
+      k = entry%pairs(i)
+      if (.not. stacked) last(1) = last(1) + width_of(k, independent)
+      call scene%add_item(label, merge(as_input, as_coordinate, independent(k)), [node], text='q'//to_text(k), shift=last - at)
+      if (stacked) then
+        last(2) = last(2) + coordinate_height
+      else
+        last(1) = last(1) + between
+      end if
+    end do
+  end subroutine add_coordinates
+
+  !> The width of a coordinate's name [px].
+  pure real(wp) function width_of(k, independent)
+    integer, intent(in) :: k                     !< number of the coordinate
+    logical, intent(in) :: independent(:)
+
+    width_of = merge(input_letter, coordinate_letter, independent(k))*(1 + len(to_text(k)))
+  end function width_of
+end module mech9_scene_labels

@@ -1,0 +1,264 @@
+!> From a mechanism and its film to a scene: paths and guides, links, springs, pairs, points and labels.
+module mech9_scene_making
+  use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
+  use mech9_spring_load, only: spring_load_type
+  use mech9_film, only: film_type
+  use mech9_pair_axes, only: free, turning
+  use mech9_skeleton, only: skeleton_type
+  use mech9_projection, only: projection_type
+  use mech9_scene, only: scene_type, open_path, closed_path, segments, mark, in_plate, in_tube, &
+                         in_cam, as_dot, as_centre
+  use mech9_scene_paths, only: add_paths, add_curves
+  use mech9_link_shapes, only: distinct_points, find_shape
+  use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
+  use mech9_spring_symbols, only: add_springs
+  use mech9_scene_labels, only: add_labels
+  implicit none
+  private
+  public :: make_scene
+
+  !> Points of a link nearer than this part of the mechanism's size are one for the eye.
+  real(wp), parameter :: same = 0.004_wp
+
+  !> Points that give a link its shape, in the link's system, with the nodes that stand there.
+  type :: outline_type
+    integer :: count = 0
+    real(wp), allocatable :: points(:, :)   !< (3,count)
+    integer, allocatable :: nodes(:)
+  end type outline_type
+
+contains
+
+  !> The scene of a film. It is drawn for one projection: symbols have their size on the page.
+  subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(projection_type), intent(in) :: projection
+    logical, intent(in) :: planar               !< seen along the normal of its plane
+    logical, intent(in) :: with_masses          !< mark the mass centres
+    type(scene_type), intent(out) :: scene
+    type(symbols_type) :: symbols
+    type(outline_type) :: outlines(skeleton%graph%n_links)
+    integer :: shapes(skeleton%graph%n_links)   !< item of each link, 0: none
+    logical :: cams(size(skeleton%places))
+    integer :: nodes(size(mechanism%points)), link
+
+    call prepare_symbols(film, skeleton, projection, planar, scene, symbols)
+    call add_paths(mechanism, film, 1.0_wp/projection%scale, scene)
+    call add_curves(film, skeleton, scene, cams)
+    call add_guides(skeleton, projection, scene, symbols)
+    call add_stands(film, skeleton, projection, scene, symbols)
+    shapes = 0
+    scene%first_sorted = scene%n_items + 1
+    do link = 2, size(outlines)
+      call find_outline(mechanism, skeleton, symbols, link, scene, outlines(link))
+      call add_shape(skeleton, symbols, link, .true., scene, outlines(link), shapes(link))
+    end do
+    ! bars above plates that are as near
+    do link = 2, size(outlines)
+      if (shapes(link) == 0) call add_shape(skeleton, symbols, link, .false., scene, outlines(link), shapes(link))
+      call add_reach(skeleton, symbols, cams, link, scene, outlines(link), shapes(link))
+    end do
+    call add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
+    call add_symbols(film, skeleton, projection, shapes, scene, symbols)
+    scene%last_sorted = scene%n_items
+    call add_points(mechanism, with_masses, nodes, scene)
+    call add_labels(mechanism, film, projection, symbols, nodes, shown_by(outlines, shapes, scene), scene)
+  end subroutine make_scene
+
+  !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
+  !> mass centre besides.
+  subroutine find_outline(mechanism, skeleton, symbols, link, scene, outline)
+    type(mechanism_type), intent(in) :: mechanism
+    type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
+    integer, intent(in) :: link
+    type(scene_type), intent(inout) :: scene
+    type(outline_type), intent(out) :: outline
+    integer :: i, k, side
+
+    associate (graph => skeleton%graph)
+      do i = graph%first(link), graph%first(link + 1) - 1
+        k = graph%pair_at(i)
+        associate (place => skeleton%places(k))
+          side = merge(1, 2, place%links(1) == link)
+          if (place%kind == turning .or. side == place%carrier) then
+            call add_to_outline(outline, place%points(:, side), symbols%node(k))
+          else if (place%telescopic .or. place%kind == free) then
+            cycle
+          else
+            call add_to_outline(outline, scene%node_at(:, symbols%guide(1, k)), symbols%guide(1, k))
+            call add_to_outline(outline, scene%node_at(:, symbols%guide(2, k)), symbols%guide(2, k))
+          end if
+        end associate
+      end do
+    end associate
+    do i = 1, size(mechanism%points)
+      if (mechanism%points(i)%link == link) call add_place(scene, link, mechanism%points(i)%position, outline)
+    end do
+    do i = 1, size(mechanism%loads)
+      select type (load => mechanism%loads(i)%load)
+      type is (spring_load_type)
+        if (load%links(1) == link) call add_place(scene, link, load%positions(:, 1), outline)
+        if (load%links(2) == link) call add_place(scene, link, load%positions(:, 2), outline)
+      end select
+    end do
+    ! what hangs on one pair reaches to its mass at least
+    if (skeleton%graph%first(link + 1) - skeleton%graph%first(link) > 1) return
+    do i = 1, size(mechanism%bodies)
+      if (mechanism%bodies(i)%link == link) call add_place(scene, link, mechanism%bodies(i)%centre, outline)
+    end do
+  end subroutine find_outline
+
+  subroutine add_place(scene, link, at, outline)
+    type(scene_type), intent(inout) :: scene
+    integer, intent(in) :: link
+    real(wp), intent(in) :: at(3)
+    type(outline_type), intent(inout) :: outline
+    integer :: node
+
+    call scene%add_node(link, at, node)
+    call add_to_outline(outline, at, node)
+  end subroutine add_place
+
+  pure subroutine add_to_outline(outline, point, node)
+    type(outline_type), intent(inout) :: outline
+    real(wp), intent(in) :: point(3)
+    integer, intent(in) :: node
+    real(wp), allocatable :: points(:, :)
+    integer, allocatable :: nodes(:)
+
+    if (.not. allocated(outline%nodes)) allocate (outline%points(3, 8), outline%nodes(8))
+    if (outline%count == size(outline%nodes)) then
+      allocate (points(3, 2*outline%count), nodes(2*outline%count))
+      points(:, :outline%count) = outline%points
+      nodes(:outline%count) = outline%nodes
+      call move_alloc(points, outline%points)
+      call move_alloc(nodes, outline%nodes)
+    end if
+    outline%count = outline%count + 1
+    outline%points(:, outline%count) = point
+    outline%nodes(outline%count) = node
+  end subroutine add_to_outline
+
+  !> The plate of a link, or its bars.
+  subroutine add_shape(skeleton, symbols, link, plates, scene, outline, shape)
+    type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
+    integer, intent(in) :: link
+    logical, intent(in) :: plates               !< only a plate, or only bars
+    type(scene_type), intent(inout) :: scene
+    type(outline_type), intent(inout) :: outline
+    integer, intent(inout) :: shape             !< item of the link, where it gets one
+    integer, allocatable :: chosen(:), order(:)
+    logical :: closed
+
+    if (outline%count == 0) return
+    chosen = distinct_points(outline%points(:, :outline%count), same*skeleton%size)
+    outline%points(:, :size(chosen)) = outline%points(:, chosen)
+    outline%nodes(:size(chosen)) = outline%nodes(chosen)
+    outline%count = size(chosen)
+    call find_shape(outline%points(:, :outline%count), same*skeleton%size, rails_of(skeleton, symbols, link, outline), &
+                    order, closed)
+    if (size(order) == 0 .or. (closed .neqv. plates)) return
+    call scene%add_item(merge(closed_path, segments, closed), in_plate, outline%nodes(order), link)
+    shape = scene%n_items
+  end subroutine add_shape
+
+  !> Which points of an outline are the ends of a guide that is part of the link.
+  pure function rails_of(skeleton, symbols, link, outline) result(rails)
+    type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
+    integer, intent(in) :: link
+    type(outline_type), intent(in) :: outline
+    integer, allocatable :: rails(:, :)         !< (2,n) numbers of points
+    integer :: ends(2), i, n
+
+    allocate (rails(2, 0))
+    do i = skeleton%graph%first(link), skeleton%graph%first(link + 1) - 1
+      associate (guide => symbols%guide(:, skeleton%graph%pair_at(i)))
+        if (any(guide == 0)) cycle
+        do n = 1, 2
+          ends(n) = findloc(outline%nodes(:outline%count), guide(n), dim=1)
+        end do
+      end associate
+      if (all(ends > 0)) rails = reshape([rails, ends], [2, size(rails, 2) + 1])
+    end do
+  end function rails_of
+
+  !> What reaches from a link to pairs that move along it.
+  subroutine add_reach(skeleton, symbols, cams, link, scene, outline, shape)
+    type(skeleton_type), intent(in) :: skeleton
+    type(symbols_type), intent(in) :: symbols
+    logical, intent(in) :: cams(:)
+    integer, intent(in) :: link
+    type(scene_type), intent(inout) :: scene
+    type(outline_type), intent(inout) :: outline
+    integer, intent(inout) :: shape
+    integer :: i, k, side
+
+    associate (graph => skeleton%graph)
+      do i = graph%first(link), graph%first(link + 1) - 1
+        k = graph%pair_at(i)
+        associate (place => skeleton%places(k))
+          side = merge(1, 2, place%links(1) == link)
+          if (place%telescopic .and. side == place%carrier) then
+            call scene%add_item(open_path, in_tube, [symbols%guide(1, k), symbols%node(k)], link, above=[shape])
+            shape = scene%n_items
+          else if (place%telescopic) then
+            call scene%add_item(open_path, in_plate, [symbols%guide(2, k), symbols%node(k)], link)
+            shape = scene%n_items
+            call add_to_outline(outline, place%pins(:, side), symbols%guide(2, k))
+          else if (place%kind == free .and. side == 1 .and. outline%count > 0 .and. .not. cams(k)) then
+            call scene%add_item(open_path, in_plate, [outline%nodes(1), symbols%node(k)], link)
+            if (shape == 0) shape = scene%n_items
+          end if
+        end associate
+      end do
+    end associate
+  end subroutine add_reach
+
+  !> Points and mass centres.
+  subroutine add_points(mechanism, with_masses, nodes, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    logical, intent(in) :: with_masses
+    integer, intent(out) :: nodes(:)              !< of the points
+    type(scene_type), intent(inout) :: scene
+    integer :: i, node
+
+    if (with_masses) then
+      do i = 1, size(mechanism%bodies)
+        if (mechanism%bodies(i)%link == 1 .or. .not. mechanism%bodies(i)%mass > 0.0_wp) cycle
+        call scene%add_node(mechanism%bodies(i)%link, mechanism%bodies(i)%centre, node)
+        call scene%add_item(mark, as_centre, [node])
+      end do
+    end if
+    do i = 1, size(mechanism%points)
+      call scene%add_node(mechanism%points(i)%link, mechanism%points(i)%position, nodes(i))
+      call scene%add_item(mark, as_dot, nodes(i:i), mechanism%points(i)%link)
+    end do
+  end subroutine add_points
+
+  !> The item that shows each link, and a node of it; a cam has an item of its own; 0: none.
+  pure function shown_by(outlines, shapes, scene) result(shown)
+    type(outline_type), intent(in) :: outlines(:)
+    integer, intent(in) :: shapes(:)              !< item of each link, 0: none
+    type(scene_type), intent(in) :: scene
+    integer :: shown(2, size(shapes))
+    integer :: i
+
+    shown = 0
+    shown(1, :) = shapes
+    do i = 1, scene%n_items
+      associate (item => scene%items(i))
+        if (item%style /= in_cam) cycle
+        if (shown(1, item%link) == 0) shown(1, item%link) = i
+      end associate
+    end do
+    do i = 1, size(outlines)
+      if (outlines(i)%count > 0) shown(2, i) = outlines(i)%nodes(1)
+    end do
+  end function shown_by
+end module mech9_scene_making

@@ -1,0 +1,114 @@
+!> Curves of a scene: where points have been, and where users' pairs lead their links.
+module mech9_scene_paths
+  use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
+  use mech9_film, only: film_type
+  use mech9_pair_axes, only: free
+  use mech9_skeleton, only: skeleton_type
+  use mech9_scene, only: scene_type, open_path, closed_path, in_trace, in_curve, in_cam
+  implicit none
+  private
+  public :: add_paths, add_curves
+
+  !> Lines may leave a curve by so much [px], and pass so many points of it.
+  real(wp), parameter :: straight = 0.15_wp
+  integer, parameter :: longest_straight = 40
+
+contains
+
+  !> Where the points have been.
+  subroutine add_paths(mechanism, film, px, scene)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    real(wp), intent(in) :: px                  !< length of 1 px in the mechanism [m]
+    type(scene_type), intent(inout) :: scene
+    integer, allocatable :: chosen(:), nodes(:)
+    integer :: i, n
+
+    if (film%n_path_points < 2) return
+    do i = 1, size(mechanism%points)
+      if (mechanism%points(i)%link == 1) cycle
+      chosen = bends_of(film%paths(:, i, :film%n_path_points), straight*px)
+      if (allocated(nodes)) deallocate (nodes)
+      allocate (nodes(size(chosen)))
+      do n = 1, size(chosen)
+        call scene%add_node(1, film%paths(:, i, chosen(n)), nodes(n))
+      end do
+      call scene%add_item(open_path, in_trace, nodes, mechanism%points(i)%link)
+    end do
+  end subroutine add_paths
+
+  !> Which points of a path have to be kept so that none of the others lies farther than `tolerance` from the line.
+  pure function bends_of(path, tolerance) result(kept)
+    real(wp), intent(in) :: path(:, :)          !< (3,n)
+    real(wp), intent(in) :: tolerance           !< [m]
+    integer, allocatable :: kept(:)
+    logical :: keep(size(path, 2))
+    integer :: from, to, i
+
+    keep = .false.
+    keep([1, size(keep)]) = .true.
+    from = 1
+    do to = 3, size(keep)
+      ! a bound on how many are looked at again and again
+      if (to - from < longest_straight) then
+        if (all([(distance(path(:, i), path(:, from), path(:, to)) <= tolerance, i=from + 1, to - 1)])) cycle
+      end if
+      keep(to - 1) = .true.
+      from = to - 1
+    end do
+    kept = pack([(i, i=1, size(keep))], keep)
+  end function bends_of
+
+  !> Distance of a point from a line between two others [m].
+  pure real(wp) function distance(point, from, to)
+    real(wp), intent(in) :: point(3), from(3), to(3)
+    real(wp) :: along(3), part
+
+    along = to - from
+    part = 0.0_wp
+    if (dot_product(along, along) > 0.0_wp) &
+      part = max(0.0_wp, min(1.0_wp, dot_product(point - from, along)/dot_product(along, along)))
+    distance = norm2(point - from - part*along)
+  end function distance
+
+  !> The curves on which users' pairs guide the origins of their moving links; one that closes is the edge of a cam.
+  subroutine add_curves(film, skeleton, scene, cams)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(scene_type), intent(inout) :: scene
+    logical, intent(out) :: cams(:)             !< (M) the pair runs around a cam
+    integer :: nodes(film%n_frames), k, frame
+
+    cams = .false.
+    if (film%n_frames < 2) return
+    do k = 1, size(skeleton%places)
+      associate (place => skeleton%places(k))
+        if (place%kind /= free) cycle
+        do frame = 1, film%n_frames
+          call scene%add_node(place%links(1), film%local(frame, place%links(1), film%p(:, place%links(2), frame)), &
+                              nodes(frame))
+        end do
+        cams(k) = closes(scene%node_at(:, nodes)) .and. place%links(1) /= 1
+        if (cams(k)) then
+          call scene%add_item(closed_path, in_cam, nodes, place%links(1))
+        else
+          call scene%add_item(open_path, in_curve, nodes, place%links(1))
+        end if
+      end associate
+    end do
+  end subroutine add_curves
+
+  !> Whether a curve comes back to where it began, up to two of its steps.
+  pure logical function closes(curve)
+    real(wp), intent(in) :: curve(:, :)         !< (3,n)
+    real(wp) :: length
+    integer :: i
+
+    length = 0.0_wp
+    do i = 2, size(curve, 2)
+      length = length + norm2(curve(:, i) - curve(:, i - 1))
+    end do
+    closes = norm2(curve(:, size(curve, 2)) - curve(:, 1)) < 2.0_wp*length/size(curve, 2) .and. size(curve, 2) > 8
+  end function closes
+end module mech9_scene_paths

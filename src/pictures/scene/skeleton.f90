@@ -1,0 +1,166 @@
+!> The skeleton of a mechanism's picture: at which point of its axis each pair is drawn.
+!>
+!> A data file may give any point of an axis. Mostly it gives the one where a designer would put the
+!> bearing, so that it is kept, unless it lies far from everything else: then the pair moves along its axis
+!> to where its links are.
+module mech9_skeleton
+  use mech9_kinds, only: wp
+  use mech9_link_graph, only: link_graph_type, graph_from_structure
+  use mech9_mechanism, only: mechanism_type
+  use mech9_spring_load, only: spring_load_type
+  use mech9_film, only: film_type
+  use mech9_pair_axes, only: pair_axes_type, pair_axes, turning, free
+  implicit none
+  private
+  public :: skeleton_type, place_type, make_skeleton
+
+  !> Where a pair is drawn. Side 1 is its reference link, side 2 its moving link.
+  type, extends(pair_axes_type) :: place_type
+    !> The side whose link carries what is drawn; it slides along the axis of the other side.
+    integer :: carrier = 1
+    !> Travel of the carrier's point along the other side's axis, from that side's point [m].
+    real(wp) :: least = 0.0_wp, most = 0.0_wp
+    !> Its two links are a tube and a rod in it; the carrier's point is the mouth of the tube, `pins` its
+    !> far end and that of the rod, each in its link.
+    logical :: telescopic = .false.
+    real(wp) :: pins(3, 2) = 0.0_wp
+  end type place_type
+
+  !> Places of all pairs, and who meets whom.
+  type :: skeleton_type
+    type(place_type), allocatable :: places(:)
+    type(link_graph_type) :: graph
+    real(wp) :: size = 1.0_wp          !< of the mechanism at the start: diagonal of what encloses it [m]
+  end type skeleton_type
+
+  !> A given point is too far off where the nearest pair of its links is farther along the axis than the mechanism
+  !> is wide, this many times ...
+  real(wp), parameter :: far = 1.5_wp
+  !> ... and this many times farther than for other pairs.
+  real(wp), parameter :: unusual = 4.0_wp
+
+contains
+
+  !> Places of all pairs but the sliding ones, which follow from these.
+  subroutine make_skeleton(mechanism, film, skeleton)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film          !< its first frame is looked at
+    type(skeleton_type), intent(out) :: skeleton
+    type(pair_axes_type), allocatable :: axes(:)
+
+    axes = pair_axes(mechanism%pairs)
+    skeleton%graph = graph_from_structure(mechanism%structure)
+    allocate (skeleton%places(size(axes)))
+    skeleton%places%pair_axes_type = axes
+    where (axes%kind == free) skeleton%places%carrier = 2
+    call draw_near(film, skeleton)
+    skeleton%size = size_of(mechanism, film, skeleton%places)
+  end subroutine make_skeleton
+
+  !> Move points that are far off along their axes.
+  subroutine draw_near(film, skeleton)
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(inout) :: skeleton
+    real(wp), dimension(3, size(skeleton%places)) :: given, directions
+    real(wp) :: shift(size(skeleton%places)), widest, allowed
+    integer :: k
+
+    associate (places => skeleton%places)
+      do k = 1, size(places)
+        given(:, k) = film%position(1, places(k)%links(1), places(k)%points(:, 1))
+        directions(:, k) = film%direction(1, places(k)%links(1), places(k)%axes(:, 1))
+      end do
+      widest = 0.0_wp
+      shift = 0.0_wp
+      do k = 1, size(places)
+        if (places(k)%kind == turning) call look_along(skeleton, given, directions(:, k), k, shift(k), widest)
+      end do
+      if (count(places%kind == turning) < 2 .or. .not. widest > 0.0_wp) return
+      allowed = max(far*widest, unusual*median(pack(abs(shift), places%kind == turning)))
+      do k = 1, size(places)
+        if (places(k)%kind /= turning .or. abs(shift(k)) <= allowed) cycle
+        places(k)%points = places(k)%points + shift(k)*places(k)%axes
+      end do
+    end associate
+  end subroutine draw_near
+
+  !> How far along the axis of a turning pair the nearest pair of its links is, in that sense. `widest` grows to the
+  !> distance of the axis from one of them.
+  pure subroutine look_along(skeleton, given, axis, k, along, widest)
+    type(skeleton_type), intent(in) :: skeleton
+    real(wp), intent(in) :: given(:, :), axis(3)
+    integer, intent(in) :: k
+    real(wp), intent(inout) :: along             !< zero where there is none [m]
+    real(wp), intent(inout) :: widest            !< [m]
+    real(wp) :: apart(3), part
+    integer :: side, link, i, j
+    logical :: first
+
+    first = .true.
+    do side = 1, 2
+      link = skeleton%places(k)%links(side)
+      do i = skeleton%graph%first(link), skeleton%graph%first(link + 1) - 1
+        j = skeleton%graph%pair_at(i)
+        if (j == k .or. skeleton%places(j)%kind /= turning) cycle
+        apart = given(:, j) - given(:, k)
+        part = dot_product(apart, axis)
+        widest = max(widest, norm2(apart - part*axis))
+        if (first .or. abs(part) < abs(along)) along = part
+        first = .false.
+      end do
+    end do
+  end subroutine look_along
+
+  pure real(wp) function median(values)
+    real(wp), intent(in) :: values(:)
+    real(wp) :: least
+    integer :: i
+
+    ! the least value that at least half of them do not exceed
+    median = huge(median)
+    do i = 1, size(values)
+      least = values(i)
+      if (2*count(values <= least) >= size(values)) median = min(median, least)
+    end do
+  end function median
+
+  !> Diagonal of the box around everything of the mechanism that has a place.
+  pure real(wp) function size_of(mechanism, film, places)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(place_type), intent(in) :: places(:)
+    real(wp) :: low(3), high(3)
+    integer :: i, side
+
+    low = huge(low)
+    high = -huge(high)
+    do i = 1, size(places)
+      do side = 1, 2
+        call enclose(film%position(1, places(i)%links(side), places(i)%points(:, side)), low, high)
+      end do
+    end do
+    do i = 1, size(mechanism%points)
+      call enclose(film%position(1, mechanism%points(i)%link, mechanism%points(i)%position), low, high)
+    end do
+    do i = 1, size(mechanism%bodies)
+      call enclose(film%position(1, mechanism%bodies(i)%link, mechanism%bodies(i)%centre), low, high)
+    end do
+    do i = 1, size(mechanism%loads)
+      select type (load => mechanism%loads(i)%load)
+      type is (spring_load_type)
+        call enclose(film%position(1, load%links(1), load%positions(:, 1)), low, high)
+        call enclose(film%position(1, load%links(2), load%positions(:, 2)), low, high)
+      end select
+    end do
+    size_of = norm2(high - low)
+    if (.not. size_of > 0.0_wp) size_of = 1.0_wp
+  end function size_of
+
+  pure subroutine enclose(place, low, high)
+    real(wp), intent(in) :: place(3)
+    real(wp), intent(inout) :: low(3), high(3)
+
+    low = min(low, place)
+    high = max(high, place)
+  end subroutine enclose
+end module mech9_skeleton

@@ -1,0 +1,203 @@
+!> Where pairs that slide are drawn: which link carries the block and which one guides it, where the block sits, how far it
+!> travels, and which pairs are a tube and a rod in it.
+module mech9_slide_places
+  use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
+  use mech9_film, only: film_type
+  use mech9_pair_axes, only: sliding, screwing, turning, free
+  use mech9_skeleton, only: skeleton_type, place_type
+  implicit none
+  private
+  public :: place_slides
+
+  !> Places that near, as a part of the mechanism's size, are the same for the eye.
+  real(wp), parameter :: same = 0.01_wp
+  !> Where the mouth of a tube is, as a part of the least distance between the ends.
+  real(wp), parameter :: mouth = 0.62_wp
+
+  !> Pins of one link: the places of its other pairs, in the link's system.
+  type :: pins_type
+    integer :: count = 0
+    logical :: alone = .true.           !< the link has no traced points elsewhere
+    real(wp), allocatable :: at(:, :)   !< (3,count)
+  contains
+    procedure :: all_at_one_place
+  end type pins_type
+
+contains
+
+  !> Places of all pairs that slide; the others have theirs.
+  subroutine place_slides(mechanism, film, skeleton)
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(inout) :: skeleton
+    type(pins_type) :: pins(2)
+    integer :: k, side
+
+    do k = 1, size(skeleton%places)
+      if (skeleton%places(k)%kind /= sliding .and. skeleton%places(k)%kind /= screwing) cycle
+      do side = 1, 2
+        call find_pins(mechanism, skeleton, k, skeleton%places(k)%links(side), pins(side))
+      end do
+      call judge_telescopic(film, pins, skeleton%size, skeleton%places(k))
+      if (.not. skeleton%places(k)%telescopic) then
+        call choose_carrier(pins, skeleton%size, skeleton%places(k))
+        call seat_block(pins(skeleton%places(k)%carrier), skeleton%size, skeleton%places(k))
+      end if
+      call find_travel(film, skeleton%places(k))
+    end do
+  end subroutine place_slides
+
+  !> The places of a link's other pairs that turn or are the user's; without any, its points.
+  subroutine find_pins(mechanism, skeleton, k, link, pins)
+    type(mechanism_type), intent(in) :: mechanism
+    type(skeleton_type), intent(in) :: skeleton
+    integer, intent(in) :: k, link
+    type(pins_type), intent(out) :: pins
+    integer :: i, j, side, own
+
+    associate (graph => skeleton%graph)
+      allocate (pins%at(3, graph%first(link + 1) - graph%first(link) + size(mechanism%points)), source=0.0_wp)
+      do i = graph%first(link), graph%first(link + 1) - 1
+        j = graph%pair_at(i)
+        if (j == k) cycle
+        side = merge(1, 2, skeleton%places(j)%links(1) == link)
+        if (skeleton%places(j)%kind == turning .or. (skeleton%places(j)%kind == free .and. side == 2)) &
+          call add_pin(pins, skeleton%places(j)%points(:, side))
+      end do
+    end associate
+    own = pins%count
+    do i = 1, size(mechanism%points)
+      if (mechanism%points(i)%link /= link) cycle
+      if (own == 0) then
+        call add_pin(pins, mechanism%points(i)%position)
+      else if (norm2(mechanism%points(i)%position - pins%at(:, 1)) > same*skeleton%size) then
+        pins%alone = .false.
+      end if
+    end do
+  end subroutine find_pins
+
+  pure subroutine add_pin(pins, point)
+    type(pins_type), intent(inout) :: pins
+    real(wp), intent(in) :: point(3)
+
+    pins%count = pins%count + 1
+    pins%at(:, pins%count) = point
+  end subroutine add_pin
+
+  !> Whether a link has pins, all at one place, on a line.
+  pure logical function all_at_one_place(self, point, axis, tolerance)
+    class(pins_type), intent(in) :: self
+    real(wp), intent(in) :: point(3), axis(3)    !< of the line
+    real(wp), intent(in) :: tolerance            !< [m]
+    integer :: i
+
+    all_at_one_place = self%count > 0
+    do i = 1, self%count
+      if (norm2(self%at(:, i) - self%at(:, 1)) > tolerance) all_at_one_place = .false.
+      if (norm2(off_line(self%at(:, i), point, axis)) > tolerance) all_at_one_place = .false.
+    end do
+  end function all_at_one_place
+
+  !> From a line to a point, across the line.
+  pure function off_line(place, point, axis) result(across)
+    real(wp), intent(in) :: place(3), point(3), axis(3)
+    real(wp) :: across(3)
+
+    across = place - point
+    across = across - dot_product(across, axis)*axis
+  end function off_line
+
+  !> A tube and a rod: each of the two moving links has its pins at one place of the axis, and these two never
+  !> come together.
+  subroutine judge_telescopic(film, pins, size, place)
+    type(film_type), intent(in) :: film
+    type(pins_type), intent(in) :: pins(2)
+    real(wp), intent(in) :: size
+    type(place_type), intent(inout) :: place
+    real(wp) :: apart, least, most
+    integer :: frame, side
+
+    if (any(place%links == 1) .or. .not. all(pins%alone)) return
+    do side = 1, 2
+      if (.not. pins(side)%all_at_one_place(place%points(:, side), place%axes(:, side), same*size)) return
+      place%pins(:, side) = pins(side)%at(:, 1)
+    end do
+    least = huge(least)
+    most = -huge(most)
+    do frame = 1, film%n_frames
+      apart = dot_product(film%local(frame, place%links(1), film%position(frame, place%links(2), place%pins(:, 2))) &
+                          - place%pins(:, 1), place%axes(:, 1))
+      least = min(least, apart)
+      most = max(most, apart)
+    end do
+    place%telescopic = least > 5.0_wp*same*size .or. most < -5.0_wp*same*size
+    if (.not. place%telescopic) return
+    place%carrier = 1
+    if (least < 0.0_wp) least = most
+    place%points(:, 1) = place%pins(:, 1) + mouth*least*place%axes(:, 1)
+  end subroutine judge_telescopic
+
+  !> The frame guides; else the link whose only pin is on the axis is a block; else the moving link is.
+  subroutine choose_carrier(pins, size, place)
+    type(pins_type), intent(in) :: pins(2)
+    real(wp), intent(in) :: size
+    type(place_type), intent(inout) :: place
+    logical :: is_block(2)
+    integer :: side
+
+    do side = 1, 2
+      is_block(side) = pins(side)%all_at_one_place(place%points(:, side), place%axes(:, side), same*size)
+    end do
+    place%carrier = 2
+    if (is_block(1) .and. .not. is_block(2)) place%carrier = 1
+    ! a lever has its pivot on the axis too, but more besides
+    if (all(is_block) .and. pins(1)%alone .and. .not. pins(2)%alone) place%carrier = 1
+    if (place%links(1) == 1) place%carrier = 2
+    if (place%links(2) == 1) place%carrier = 1
+  end subroutine choose_carrier
+
+  !> Put the block to the nearest pin of its link if that is on the axis; else beside that pin, unless the given
+  !> point is near that place.
+  subroutine seat_block(pins, size, place)
+    type(pins_type), intent(in) :: pins
+    real(wp), intent(in) :: size
+    type(place_type), intent(inout) :: place
+    real(wp) :: across(3), foot(3), distance, nearest
+    integer :: i
+
+    nearest = huge(nearest)
+    associate (point => place%points(:, place%carrier), axis => place%axes(:, place%carrier))
+      foot = point
+      do i = 1, pins%count
+        distance = norm2(pins%at(:, i) - point)
+        if (distance >= nearest) cycle
+        nearest = distance
+        across = off_line(pins%at(:, i), point, axis)
+        foot = pins%at(:, i) - across
+        ! the line itself is nobody's own where it is far from the link: only its direction counts
+        if (norm2(across) > 0.75_wp*size .and. place%kind == sliding) foot = pins%at(:, i)
+        if (norm2(across) > same*size .and. norm2(foot - point) < 0.3_wp*size) foot = point
+      end do
+      place%points(:, place%carrier) = foot
+    end associate
+  end subroutine seat_block
+
+  !> How far the carrier's point travels in the other link.
+  subroutine find_travel(film, place)
+    type(film_type), intent(in) :: film
+    type(place_type), intent(inout) :: place
+    real(wp) :: at(3), along
+    integer :: frame, guide
+
+    guide = 3 - place%carrier
+    do frame = 1, film%n_frames
+      at = film%local(frame, place%links(guide), &
+                      film%position(frame, place%links(place%carrier), place%points(:, place%carrier)))
+      if (frame == 1) place%points(:, guide) = at
+      along = dot_product(at - place%points(:, guide), place%axes(:, guide))
+      place%least = min(place%least, along)
+      place%most = max(place%most, along)
+    end do
+  end subroutine find_travel
+end module mech9_slide_places

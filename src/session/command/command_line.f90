@@ -1,0 +1,394 @@
+!> The command line: its words, and what they ask for.
+module mech9_command_line
+  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_text, only: string_type, nearest_name, starts_with
+  use mech9_options, only: option_type, options_table, option_names, find_option, &
+                           no_argument, optional_argument, whole_number, assignment
+  implicit none
+  private
+  public :: command_line_type, get_command_words, parse_command_line
+
+  !> An option as it was given.
+  type :: given_type
+    character(len=len(options_table%name)) :: name = ''
+    character(len=:), allocatable :: argument         !< empty where it has none
+  end type given_type
+
+  !> What a command line asks for: a data file, and options by the names of the table of options.
+  type :: command_line_type
+    character(len=:), allocatable :: file             !< the data file; empty where none is given
+    character(len=:), allocatable :: line             !< all words, as a shell would take them
+    type(given_type), allocatable, private :: given(:)
+  contains
+    procedure :: has
+    procedure :: argument
+    procedure :: arguments
+    procedure :: number
+    procedure :: converses
+    procedure :: answer
+  end type command_line_type
+
+contains
+
+  !> The words of this program's own command line, without the program's name.
+  subroutine get_command_words(words)
+    type(string_type), allocatable, intent(out) :: words(:)
+    integer :: i, length
+
+    allocate (words(command_argument_count()))
+    do i = 1, size(words)
+      call get_command_argument(i, length=length)
+      allocate (character(len=length) :: words(i)%text)
+      if (length > 0) call get_command_argument(i, words(i)%text)
+    end do
+  end subroutine get_command_words
+
+  !> Read the words. An error is a wrong command line (exit_usage).
+  pure subroutine parse_command_line(words, program_name, options, err)
+    type(string_type), intent(in) :: words(:)      !< without the program's name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d: whose options count
+    type(command_line_type), intent(out) :: options
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+    logical :: only_files
+
+    options%file = ''
+    options%line = shell_line(words)
+    allocate (options%given(0))
+    only_files = .false.
+    i = 1
+    do while (i <= size(words))
+      if (words(i)%text == '--' .and. .not. only_files) then
+        only_files = .true.
+        i = i + 1
+      else if (is_option(words(i)%text) .and. .not. only_files) then
+        call read_option(words, i, program_name, options, err)
+      else
+        call take_file(words(i)%text, options, err)
+        i = i + 1
+      end if
+      if (allocated(err)) return
+    end do
+    call judge(program_name, options, err)
+  end subroutine parse_command_line
+
+  !> Words as one line that a shell takes for the same words.
+  pure function shell_line(words) result(line)
+    type(string_type), intent(in) :: words(:)   !< as a program is given them
+    character(len=:), allocatable :: line
+    integer :: i, n, at
+
+    n = max(size(words) - 1, 0)
+    do i = 1, size(words)
+      n = n + shell_length(words(i)%text)
+    end do
+    allocate (character(len=n) :: line)
+    line(:) = ''
+    at = 1
+    do i = 1, size(words)
+      n = shell_length(words(i)%text)
+      call write_for_shell(words(i)%text, line(at:at + n - 1))
+      at = at + n + 1
+    end do
+  end function shell_line
+
+  !> Length of a word as a shell must be given it.
+  pure integer function shell_length(word)
+    character(len=*), intent(in) :: word
+    integer :: i
+
+    shell_length = len(word)
+    if (is_harmless(word)) return
+    shell_length = len(word) + 2
+    do i = 1, len(word)
+      if (word(i:i) == "'") shell_length = shell_length + 3
+    end do
+  end function shell_length
+
+  !> A word as a shell must be given it: in quotes where it holds what a shell would not take as it is.
+  pure subroutine write_for_shell(word, text)
+    character(len=*), intent(in) :: word
+    character(len=*), intent(inout) :: text   !< of length shell_length(word)
+    character(len=*), parameter :: quote = "'\''"
+    integer :: i, at
+
+    text = word
+    if (is_harmless(word)) return
+    text(1:1) = "'"
+    at = 2
+    do i = 1, len(word)
+      if (word(i:i) == "'") then
+        text(at:at + len(quote) - 1) = quote
+        at = at + len(quote)
+      else
+        text(at:at) = word(i:i)
+        at = at + 1
+      end if
+    end do
+    text(at:at) = "'"
+  end subroutine write_for_shell
+
+  !> Whether a shell takes a word as it is.
+  pure logical function is_harmless(word)
+    character(len=*), intent(in) :: word
+    character(len=*), parameter :: harmless = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+%@'
+
+    is_harmless = word /= '' .and. verify(word, harmless) == 0
+  end function is_harmless
+
+  !> A single dash is not an option: it names standard input or output.
+  pure logical function is_option(word)
+    character(len=*), intent(in) :: word
+
+    is_option = starts_with(word, '-') .and. len(word) > 1
+  end function is_option
+
+  pure subroutine take_file(word, options, err)
+    character(len=*), intent(in) :: word
+    type(command_line_type), intent(inout) :: options
+    type(error_type), allocatable, intent(out) :: err
+
+    if (word == '') then
+      call raise(err, exit_usage, 'the name of the data file is empty')
+    else if (options%file /= '') then
+      call raise(err, exit_usage, "two data files are given, '"//options%file//"' and '"//word &
+                 //"'; a run takes one")
+    else
+      options%file = word
+    end if
+  end subroutine take_file
+
+  !> Read the option that begins at words(i), and step over it.
+  pure subroutine read_option(words, i, program_name, options, err)
+    type(string_type), intent(in) :: words(:)
+    integer, intent(inout) :: i
+    character(len=*), intent(in) :: program_name
+    type(command_line_type), intent(inout) :: options
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: name, argument
+    integer :: equals, place
+    logical :: has_argument
+
+    equals = index(words(i)%text, '=')
+    has_argument = equals > 0
+    name = words(i)%text
+    argument = ''
+    if (has_argument) then
+      argument = name(equals + 1:)
+      name = name(:equals - 1)
+    end if
+    place = 0
+    if (starts_with(name, '--')) place = find_option(name(3:), program_name)
+    if (place == 0) then
+      call raise_unknown(name, program_name, err)
+      return
+    end if
+    i = i + 1
+    if (options_table(place)%takes /= no_argument .and. .not. has_argument .and. i <= size(words)) then
+      has_argument = .not. is_option(words(i)%text)
+      if (has_argument) then
+        argument = words(i)%text
+        i = i + 1
+      end if
+    end if
+    call judge_argument(options_table(place), argument, has_argument, options, err)
+    if (.not. allocated(err)) call append(options%given, options_table(place)%name, argument)
+  end subroutine read_option
+
+  pure subroutine raise_unknown(name, program_name, err)
+    character(len=*), intent(in) :: name   !< with its dashes
+    character(len=*), intent(in) :: program_name
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: nearest, hint
+    integer :: i
+
+    nearest = nearest_name(name(verify(name//'x', '-'):), option_names(program_name))
+    hint = program_name//' --help lists the options'
+    if (nearest /= '') hint = 'did you mean --'//nearest//'?'
+    do i = 1, size(options_table)
+      if ('--'//options_table(i)%name == name) hint = 'only '//trim(options_table(i)%programs)//' has it'
+    end do
+    call raise(err, exit_usage, "unknown option '"//name//"'; "//hint)
+  end subroutine raise_unknown
+
+  !> Whether an option may be given so: its argument and how often.
+  pure subroutine judge_argument(option, argument, has_argument, options, err)
+    type(option_type), intent(in) :: option
+    character(len=*), intent(in) :: argument
+    logical, intent(in) :: has_argument
+    type(command_line_type), intent(in) :: options   !< what was given before
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: name
+
+    name = '--'//trim(option%name)
+    if (option%takes == no_argument) then
+      if (has_argument) call raise(err, exit_usage, name//' takes no argument')
+    else if (option%takes == optional_argument .and. .not. has_argument) then
+      return
+    else if (argument == '') then
+      call raise(err, exit_usage, name//' needs an argument: '//name//' '//trim(option%argument))
+    else if (options%has(option%name) .and. .not. option%repeats) then
+      call raise(err, exit_usage, name//' is given more than once')
+    else if (option%form == whole_number .and. .not. is_whole_number(argument)) then
+      call raise(err, exit_usage, name//" needs a whole number from 1 on, not '"//argument//"'")
+    else if (option%form == assignment .and. .not. is_assignment(argument)) then
+      call raise(err, exit_usage, name//' needs '//trim(option%argument)//', as in '//name &
+                 //" time.end=2; not '"//argument//"'")
+    end if
+  end subroutine judge_argument
+
+  !> Is it a whole number from 1 on that an integer can hold?
+  pure logical function is_whole_number(text)
+    character(len=*), intent(in) :: text
+    integer :: value, status
+
+    is_whole_number = .false.
+    if (verify(text, '0123456789') > 0) return
+    read (text, *, iostat=status) value
+    if (status == 0) is_whole_number = value > 0
+  end function is_whole_number
+
+  !> Is it of the form GROUP.NAME=VALUE? The grammar of the data file knows the names.
+  pure logical function is_assignment(text)
+    character(len=*), intent(in) :: text
+    integer :: equals, dot
+
+    equals = index(text, '=')
+    dot = index(text(:max(equals - 1, 0)), '.')
+    is_assignment = dot > 1 .and. dot < equals - 1
+  end function is_assignment
+
+  !> One option more. An array constructor would be shorter, but gfortran 12 leaks what is in it.
+  pure subroutine append(given, name, argument)
+    type(given_type), allocatable, intent(inout) :: given(:)
+    character(len=*), intent(in) :: name, argument
+    type(given_type), allocatable :: longer(:)
+    integer :: i
+
+    allocate (longer(size(given) + 1))
+    do i = 1, size(given)
+      longer(i)%name = given(i)%name
+      call move_alloc(given(i)%argument, longer(i)%argument)
+    end do
+    longer(size(longer))%name = name
+    longer(size(longer))%argument = argument
+    call move_alloc(longer, given)
+  end subroutine append
+
+  !> Whether an option is given.
+  pure logical function has(self, name)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name    !< without the dashes
+
+    has = place_of(self, name) > 0
+  end function has
+
+  !> The argument of an option that is given at most once; empty where it, or the option, is not given.
+  pure function argument(self, name) result(text)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name    !< without the dashes
+    character(len=:), allocatable :: text
+    integer :: place
+
+    place = place_of(self, name)
+    text = ''
+    if (place > 0) text = self%given(place)%argument
+  end function argument
+
+  !> The arguments of an option that may be repeated, in their order.
+  pure subroutine arguments(self, name, texts)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name    !< without the dashes
+    type(string_type), allocatable, intent(out) :: texts(:)
+    integer :: i, n
+
+    allocate (texts(count(self%given%name == name)))
+    n = 0
+    do i = 1, size(self%given)
+      if (self%given(i)%name /= name) cycle
+      n = n + 1
+      texts(n)%text = self%given(i)%argument
+    end do
+  end subroutine arguments
+
+  !> The argument of an option that takes a whole number; `default` where it is not given.
+  pure integer function number(self, name, default)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name    !< without the dashes
+    integer, intent(in) :: default
+    integer :: place
+
+    number = default
+    place = place_of(self, name)
+    if (place > 0) read (self%given(place)%argument, *) number   ! judged when it was taken
+  end function number
+
+  !> Where an option stands among the given ones; 0 where it is not given.
+  pure integer function place_of(self, name)
+    class(command_line_type), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    do place_of = size(self%given), 1, -1
+      if (self%given(place_of)%name == name) return
+    end do
+  end function place_of
+
+  !> What the words mean together.
+  pure subroutine judge(program_name, options, err)
+    character(len=*), intent(in) :: program_name
+    type(command_line_type), intent(in) :: options
+    type(error_type), allocatable, intent(out) :: err
+
+    if (options%has('help') .or. options%has('version') .or. options%has('help-data')) return
+    if (options%has('quiet') .and. options%has('verbose')) then
+      call raise(err, exit_usage, '--quiet and --verbose contradict each other')
+    else if (options%has('no-write') .and. (options%has('table') .or. options%has('hdf5') .or. options%has('plot'))) then
+      call raise(err, exit_usage, '--no-write contradicts --table, --hdf5 and --plot')
+    else if (options%has('animate') .and. options%answer() /= '') then
+      call raise(err, exit_usage, '--animate shows a run, and --'//options%answer()//' makes none; leave one of them out')
+    else if (options%converses()) then
+      call judge_conversation(program_name, options, err)
+    end if
+  end subroutine judge
+
+  !> The option that is answered instead of a run, the first where there are several; empty where none is given.
+  pure function answer(self) result(name)
+    class(command_line_type), intent(in) :: self
+    character(len=:), allocatable :: name
+    character(len=*), parameter :: answers(*) = [character(len=9) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph']
+    integer :: i
+
+    name = ''
+    do i = size(answers), 1, -1
+      if (self%has(trim(answers(i)))) name = trim(answers(i))
+    end do
+  end function answer
+
+  !> Whether a conversation is asked for, instead of work on a data file as it is.
+  pure logical function converses(self)
+    class(command_line_type), intent(in) :: self
+
+    converses = self%file == '' .or. self%has('dialogue') .or. self%has('edit') .or. self%has('resume')
+  end function converses
+
+  !> A conversation is about one file or none, and ends with a run, not with an answer.
+  pure subroutine judge_conversation(program_name, options, err)
+    character(len=*), intent(in) :: program_name
+    type(command_line_type), intent(in) :: options
+    type(error_type), allocatable, intent(out) :: err
+    character(len=:), allocatable :: missing
+    character(len=9), parameter :: generic(6) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'set']
+    integer :: i
+
+    do i = 1, size(generic)
+      if (.not. options%has(trim(generic(i)))) cycle
+      missing = 'no data file is given'
+      if (options%file /= '' .or. options%has('edit') .or. options%has('resume')) missing = 'this is a conversation'
+      call raise(err, exit_usage, missing//'; --'//trim(generic(i))//' is for a data file alone: '//program_name// &
+                 ' FILE --'//trim(generic(i)))
+      return
+    end do
+    if (count([options%file /= '', options%has('edit'), options%has('resume')]) > 1) &
+      call raise(err, exit_usage, 'more than one data file is given; a conversation takes one')
+  end subroutine judge_conversation
+end module mech9_command_line

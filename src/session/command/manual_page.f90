@@ -1,0 +1,171 @@
+!> The manual page of a program, in the language of man(7).
+module mech9_manual_page
+  use mech9_text, only: to_text, starts_with
+  use mech9_printable, only: with_escapes
+  use mech9_options, only: options_table
+  use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group
+  use mech9_data_help, only: takes_text, meaning_text, use_text
+  use mech9_help_text, only: purpose, option_form, exit_table
+  use mech9_version, only: version
+  implicit none
+  private
+  public :: manual_page
+
+  character, parameter :: eol = achar(10)
+
+contains
+
+  !> The whole page, of whole lines.
+  pure function manual_page(program_name) result(page)
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=:), allocatable :: page
+
+    page = '.TH '//program_name//' 1 "" "MECH9 '//version//'" "User Commands"'//eol// &
+           '.SH NAME'//eol//line(program_name//' - '//purpose(program_name))// &
+           '.SH SYNOPSIS'//eol//'.B '//program_name//eol//'.RI [ FILE ]'//eol//line('[options]')// &
+           description(program_name)//options_of(program_name)//conversation(program_name)//data_file()// &
+           examples(program_name)//environment()//exit_status()
+  end function manual_page
+
+  pure function description(program_name) result(text)
+    character(len=*), intent(in) :: program_name
+    character(len=:), allocatable :: text
+
+    text = '.SH DESCRIPTION'//eol
+    if (program_name == 'mech9k') then
+      text = text//line('Follows a mechanism with closed kinematic chains while its independent coordinates are driven &
+                        &as functions of time: positions, velocities and accelerations of all coordinates and of &
+                        &chosen points.')
+    else
+      text = text//line('Integrates the motion of a mechanism with closed kinematic chains under forces, from &
+                        &Lagrange''s equations in its independent coordinates.')
+    end if
+    text = text// &
+      paragraph('The mechanism is described by numbers in a data file: which links meet, which coordinates are &
+                &independent, how each pair moves. Mistakes in the file are shown with line and column, all at once.')// &
+      paragraph('Results go to files or standard output, talk to standard error. Progress is shown on a terminal only.')
+  end function description
+
+  pure function options_of(program_name) result(text)
+    character(len=*), intent(in) :: program_name
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = '.SH OPTIONS'//eol
+    do i = 1, size(options_table)
+      if (index(options_table(i)%programs, program_name) == 0) cycle
+      text = text//entry(option_form(options_table(i)), trim(options_table(i)%help))
+    end do
+  end function options_of
+
+  pure function conversation(program_name) result(text)
+    character(len=*), intent(in) :: program_name
+    character(len=:), allocatable :: text
+
+    text = '.SH CONVERSATION'//eol// &
+      line('Without FILE '//program_name//' asks for the data, one after the other. Enter takes what stands in brackets; &
+           &? explains the question, back returns to the one before, list shows all answers, quit leaves. An answer that &
+           &cannot be right is refused at once with the reason. The structure is judged as soon as it is complete, and the &
+           &geometry by putting the mechanism together.')// &
+      paragraph('In the summary at the end any answer can be changed, by its number or its name, as in "time end = 2". &
+                &The answers are saved as a data file that repeats the run. What is typed is kept on the way: after Ctrl-C, &
+                &or when the terminal is closed, --resume goes on.')// &
+      paragraph('After the run its results can be shown, plotted in the terminal or into a picture, and compared with &
+                &those of the run before; an answer can be changed and the mechanism run again.')// &
+      paragraph('On a terminal lines can be edited; the arrow keys recall earlier answers, and Tab completes words. &
+                &Answers may come from a file or a pipe as well: '//program_name//' < answers.')
+  end function conversation
+
+  pure function environment() result(text)
+    character(len=:), allocatable :: text
+
+    text = '.SH ENVIRONMENT'//eol// &
+           entry('TERM', 'With dumb, or without any, lines are not edited, and no cursor is moved.')
+  end function environment
+
+  !> Every group and name of the data file.
+  pure function data_file() result(text)
+    character(len=:), allocatable :: text
+    integer, allocatable :: rows(:)
+    integer :: i, k
+
+    text = '.SH DATA FILE'//eol// &
+           line('Groups of Fortran namelist, &GROUP NAME=VALUE, ... /, in any order; ! begins a comment. &
+                &The same text comes from --help-data.')
+    do i = 1, size(group_table)
+      text = text//'.SS '//escaped('&'//trim(group_table(i)%name))//eol// &
+             line(trim(group_table(i)%help)//' ('//use_text(group_table(i))//').')
+      rows = rows_of_group(group_table(i)%name)
+      do k = 1, size(rows)
+        text = text//item(item_table(rows(k)))
+      end do
+    end do
+  end function data_file
+
+  pure function item(row) result(text)
+    type(item_row_type), intent(in) :: row
+    character(len=:), allocatable :: text, example
+
+    example = trim(row%name)//' = '//trim(row%example)
+    if (starts_with(row%example, trim(row%name))) example = trim(row%example)
+    text = entry(example, meaning_text(row))//'.br'//eol//line(takes_text(row))
+  end function item
+
+  pure function examples(program_name) result(text)
+    character(len=*), intent(in) :: program_name
+    character(len=:), allocatable :: text
+
+    text = '.SH EXAMPLES'//eol// &
+           entry(program_name, 'Ask for a mechanism, save and run it.')// &
+           entry(program_name//' --edit mine.nml', 'The same, beginning with the data of a file.')// &
+           entry(program_name//' mine.nml --check', &
+                 'Read the file, judge structure and mobility, put the mechanism together.')// &
+           entry(program_name//' mine.nml --table mine.dat', &
+                 'Run it; the table goes to mine.dat.')// &
+           entry(program_name//' mine.nml --set time.end=2 --table -', &
+                 'Run it two seconds long; the table goes to standard output.')
+  end function examples
+
+  pure function exit_status() result(text)
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = '.SH EXIT STATUS'//eol
+    do i = 1, size(exit_table)
+      text = text//entry(to_text(exit_table(i)%code), trim(exit_table(i)%meaning))
+    end do
+    text = text//paragraph('After 6, 7 and 130 the results up to there are kept and the files are closed.')
+  end function exit_status
+
+  !> Something and what is said of it, indented below.
+  pure function entry(label, words) result(text)
+    character(len=*), intent(in) :: label, words
+    character(len=:), allocatable :: text
+
+    text = '.TP'//eol//'.B "'//escaped(label)//'"'//eol//line(words)
+  end function entry
+
+  pure function paragraph(words) result(text)
+    character(len=*), intent(in) :: words
+    character(len=:), allocatable :: text
+
+    text = '.PP'//eol//line(words)
+  end function paragraph
+
+  !> Words as a line of text, which begins with no command of roff.
+  pure function line(words) result(text)
+    character(len=*), intent(in) :: words
+    character(len=:), allocatable :: text
+
+    text = escaped(words)//eol
+    if (scan(words(:min(1, len(words))), '.') == 1) text = '\&'//text
+  end function line
+
+  !> The text with every letter meant as it stands: to roff some are commands, others it would make prettier.
+  pure function escaped(words) result(text)
+    character(len=*), intent(in) :: words
+    character(len=:), allocatable :: text
+
+    text = with_escapes(words, '\-''"^~`', [character(len=5) :: '\e', '\-', '\(aq', '\(dq', '\(ha', '\(ti', '\(ga'])
+  end function escaped
+end module mech9_manual_page

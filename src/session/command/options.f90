@@ -1,0 +1,98 @@
+!> The one table of the options of the command line; reading and help both come from it.
+module mech9_options
+  implicit none
+  private
+  public :: option_type, options_table, option_names, find_option
+  public :: no_argument, optional_argument, needed_argument, any_text, whole_number, assignment
+
+  integer, parameter :: no_argument = 0, optional_argument = 1, needed_argument = 2
+  !> What an argument looks like: any text, a whole number from 1 on, GROUP.NAME=VALUE.
+  integer, parameter :: any_text = 0, whole_number = 1, assignment = 2
+
+  !> One option.
+  type :: option_type
+    character(len=12) :: name             !< without the dashes
+    integer :: takes = no_argument        !< whether it takes an argument
+    character(len=18) :: argument = ''    !< the argument's name in the help
+    integer :: form = any_text            !< what the argument looks like
+    logical :: repeats = .false.          !< whether it may be given more than once
+    character(len=13) :: programs = ''    !< the programs that have it
+    character(len=72) :: help = ''        !< one line
+  end type option_type
+
+  character(len=*), parameter :: both = 'mech9k mech9d'
+
+  type(option_type), parameter :: options_table(*) = [ &
+    option_type('check', no_argument, '', any_text, .false., both, &
+                'read, judge and assemble the mechanism, do not run it'), &
+    option_type('structure', no_argument, '', any_text, .false., both, &
+                'print the structural vectors nrg, nws, rdw, nrw'), &
+    option_type('plan', no_argument, '', any_text, .false., both, &
+                'print what will be computed, in which order, and what is skipped'), &
+    option_type('branches', no_argument, '', any_text, .false., both, &
+                'list the assemblies found for the start from many random guesses'), &
+    option_type('starts', needed_argument, 'N', whole_number, .false., both, &
+                'how many guesses --branches tries; 100 unless given'), &
+    option_type('range', no_argument, '', any_text, .false., 'mech9k', &
+                'print how far each independent coordinate can go from the start'), &
+    option_type('graph', needed_argument, 'FILE', any_text, .false., both, &
+                'draw links, pairs and blocks as a graph: .dot, .svg, .png or .pdf'), &
+    option_type('table', needed_argument, 'PATH', any_text, .false., both, &
+                'write the table there; - is standard output; .csv: with commas'), &
+    option_type('hdf5', needed_argument, 'PATH', any_text, .false., both, &
+                'write the results as an HDF5 file there'), &
+    option_type('plot', needed_argument, '[TARGET:]NAMES', any_text, .true., both, &
+                'plot columns, as in q3,P.x or P.x:P.y; TARGET is a picture or term'), &
+    option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &
+                'draw the mechanism at the start'), &
+    option_type('animate', needed_argument, 'FILE', any_text, .false., both, &
+                'draw it moving: a page (.html), or a picture (.svg, .gif)'), &
+    option_type('view', needed_argument, 'VIEW', any_text, .false., both, &
+                'of both drawings: xy, xz, ... iso, or a direction as 1,-2,1'), &
+    option_type('no-write', no_argument, '', any_text, .false., both, &
+                'compute all that is asked for, write no results'), &
+    option_type('report', needed_argument, 'FILE', any_text, .false., both, &
+                'write how it went, what was wrong and what it took as JSON'), &
+    option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
+                'replace a value of the data file; may be repeated'), &
+    option_type('dialogue', no_argument, '', any_text, .false., both, &
+                'ask for the data in a conversation; so does no FILE at all'), &
+    option_type('edit', needed_argument, 'FILE', any_text, .false., both, &
+                'open a data file in the conversation'), &
+    option_type('resume', needed_argument, 'FILE', any_text, .false., both, &
+                'go on with a conversation that was left or interrupted'), &
+    option_type('quiet', no_argument, '', any_text, .false., both, &
+                'say nothing but errors'), &
+    option_type('verbose', no_argument, '', any_text, .false., both, &
+                'say more: the structural vectors and the plan before the run'), &
+    option_type('help', no_argument, '', any_text, .false., both, &
+                'print this text'), &
+    option_type('help-data', optional_argument, 'GROUP[.NAME]', any_text, .false., both, &
+                'explain the data file, one group of it, or one name'), &
+    option_type('version', no_argument, '', any_text, .false., both, &
+                'print the version')]
+
+contains
+
+  !> Place of an option in the table; 0 where the program has none of that name.
+  pure integer function find_option(name, program_name) result(place)
+    character(len=*), intent(in) :: name           !< without the dashes
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+
+    do place = 1, size(options_table)
+      if (options_table(place)%name == name &
+          .and. index(options_table(place)%programs, program_name) > 0) return
+    end do
+    place = 0
+  end function find_option
+
+  !> The names of all options of a program, without the dashes.
+  pure function option_names(program_name) result(names)
+    character(len=*), intent(in) :: program_name
+    character(len=len(options_table%name)), allocatable :: names(:)
+    integer :: i
+
+    names = pack(options_table%name, [(index(options_table(i)%programs, program_name) > 0, &
+                                       i=1, size(options_table))])
+  end function option_names
+end module mech9_options

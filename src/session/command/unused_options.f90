@@ -1,0 +1,64 @@
+!> Options that are given and have nothing to act on, in words: no error, but no silence either.
+module mech9_unused_options
+  use mech9_command_line, only: command_line_type
+  use mech9_mechanism, only: mechanism_type
+  implicit none
+  private
+  public :: print_unused_options
+
+  !> What only a run, or the reading of more than the structure, takes notice of.
+  character(len=*), parameter :: of_runs(*) = [character(len=8) :: 'table', 'hdf5', 'plot', 'no-write']
+  character(len=*), parameter :: of_mechanisms(*) = [character(len=8) :: 'check', 'plan', 'branches', 'range', 'graph', 'sketch']
+
+contains
+
+  !> A line for each reason for which options come to nothing.
+  subroutine print_unused_options(unit, program_name, options, mechanism)
+    integer, intent(in) :: unit
+    character(len=*), intent(in) :: program_name
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism     !< may ask for pictures, too
+    character(len=:), allocatable :: answer, names
+    logical :: drawn
+
+    answer = options%answer()
+    if (answer /= '') then
+      call list_given(options, of_runs, names)
+      if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --'//answer//' makes no run'
+    end if
+    if (answer == 'structure') then
+      call list_given(options, of_mechanisms, names)
+      if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --structure looks at the structure alone'
+    end if
+    if (options%has('starts') .and. (answer == 'structure' .or. .not. options%has('branches'))) &
+      write (unit, '(a)') program_name//': without effect: --starts; it says how many guesses --branches tries'
+    drawn = options%has('sketch')
+    if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(mechanism)
+    if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
+      write (unit, '(a)') program_name//': without effect: --view; no picture of the mechanism is drawn'
+  end subroutine print_unused_options
+
+  !> Whether the data file asks for pictures of the mechanism.
+  pure logical function pictures_of(mechanism)
+    type(mechanism_type), intent(in) :: mechanism
+
+    pictures_of = .false.
+    if (allocated(mechanism%output%sketch)) pictures_of = mechanism%output%sketch /= ''
+    if (allocated(mechanism%output%animation)) pictures_of = pictures_of .or. mechanism%output%animation /= ''
+  end function pictures_of
+
+  !> Those of some options that are given: "--table, --hdf5".
+  pure subroutine list_given(options, names, list)
+    type(command_line_type), intent(in) :: options
+    character(len=*), intent(in) :: names(:)
+    character(len=:), allocatable, intent(out) :: list
+    integer :: i
+
+    list = ''
+    do i = 1, size(names)
+      if (.not. options%has(trim(names(i)))) cycle
+      if (list /= '') list = list//', '
+      list = list//'--'//trim(names(i))
+    end do
+  end subroutine list_given
+end module mech9_unused_options

@@ -1,0 +1,115 @@
+!> What an HDF5 file of results holds besides the rows: where they come from, and the structure they belong to.
+module mech9_hdf5_record
+  use mech9_text, only: to_text
+  use mech9_lapack, only: ilaver
+  use mech9_mechanism, only: mechanism_type
+  use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
+  use mech9_command_line, only: command_line_type
+  use mech9_version, only: version, revision, compiler, sundials_version
+  implicit none
+  private
+  public :: write_provenance, write_structure
+
+  !> More links than this, and C would be larger than the results.
+  integer, parameter :: largest_matrix = 1000
+
+contains
+
+  !> Where the results come from: enough to compute them again.
+  subroutine write_provenance(file, program_name, options, mechanism, data_text)
+    type(hdf5_file_type), intent(inout) :: file
+    character(len=*), intent(in) :: program_name
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: data_text       !< of the data file, as it is
+
+    call file%add_attribute('/', 'title', mechanism%title)
+    call file%add_attribute('/', 'source', program_name//' '//version)
+    call file%put('provenance/program', program_name, 'program that wrote this file')
+    call file%put('provenance/version', version, 'version of the program')
+    call file%put('provenance/revision', revision, 'git revision of its sources; empty where unknown')
+    call file%put('provenance/compiler', compiler(), 'compiler that built it')
+    call file%put('provenance/libraries', libraries(), 'libraries that it stands on')
+    call file%put('provenance/created', present_time(), 'when the run began')
+    call file%put('provenance/command_line', program_name//' '//options%line, 'command line of the run')
+    call file%put('provenance/data_file', options%file, 'name of the data file')
+    call file%put('provenance/data', data_text, 'text of the data file')
+  end subroutine write_provenance
+
+  function libraries() result(text)
+    character(len=:), allocatable :: text
+    integer :: major, minor, patch
+
+    call ilaver(major, minor, patch)
+    text = hdf5_version()//', SUNDIALS '//sundials_version//', LAPACK '//to_text(major)//'.'//to_text(minor)//'.'// &
+           to_text(patch)
+  end function libraries
+
+  !> Date and time as 2026-01-31T12:00:00+01:00.
+  function present_time() result(text)
+    character(len=25) :: text
+    character(len=10) :: date, time, zone
+
+    call date_and_time(date, time, zone)
+    text = date(1:4)//'-'//date(5:6)//'-'//date(7:8)//'T'//time(1:2)//':'//time(3:4)//':'//time(5:6)// &
+           zone(1:3)//':'//zone(4:5)
+  end function present_time
+
+  !> The first and the second set of structural data.
+  subroutine write_structure(file, mechanism)
+    type(hdf5_file_type), intent(inout) :: file
+    type(mechanism_type), intent(in) :: mechanism
+    integer :: links(2, size(mechanism%pairs)), k
+
+    do k = 1, size(mechanism%pairs)
+      links(:, k) = [mechanism%pairs(k)%pair%reference, mechanism%pairs(k)%pair%moving]
+    end do
+    associate (structure => mechanism%structure, vectors => mechanism%vectors)
+      call file%put('structure/end', [1, 2], 'end of a pair: 1 the reference link, 2 the moving link')
+      call file%make_scale('structure/end')
+      call file%put('structure/links', links, 'links that each pair joins')
+      call file%attach_scales('structure/links', ['/coordinate   ', '/structure/end'])
+      call file%put('structure/independent', merge(1, 0, structure%independent), '1 where the coordinate is independent')
+      call file%attach_scales('structure/independent', ['/coordinate'])
+      call write_matrix(file, structure%n_links, links)
+      call file%put('structure/position', [(k, k=1, size(vectors%nrg))], 'position in the structural vectors')
+      call file%make_scale('structure/position')
+      call write_vector(file, 'nrg', vectors%nrg, 'links in the order of the chains')
+      call write_vector(file, 'nws', vectors%nws, 'coordinate that leads to the link; 0 where a chain begins')
+      call write_vector(file, 'rdw', vectors%rdw, '1 where the coordinate is independent or a chain begins')
+      call write_vector(file, 'nrw', vectors%nrw, 'closed chains that are complete')
+    end associate
+  end subroutine write_structure
+
+  subroutine write_vector(file, name, values, long_name)
+    type(hdf5_file_type), intent(inout) :: file
+    character(len=*), intent(in) :: name, long_name
+    integer, intent(in) :: values(:)
+
+    call file%put('structure/'//name, values, long_name)
+    call file%attach_scales('structure/'//name, ['/structure/position'])
+  end subroutine write_vector
+
+  !> The coincidence matrix, unless it is huge or cannot say it all: two pairs may join the same two links.
+  subroutine write_matrix(file, n_links, links)
+    type(hdf5_file_type), intent(inout) :: file
+    integer, intent(in) :: n_links
+    integer, intent(in) :: links(:, :)
+    integer, allocatable :: c(:, :)
+    integer :: k
+
+    if (n_links > largest_matrix) return
+    allocate (c(n_links, n_links), source=0)
+    do k = 1, size(links, 2)
+      if (c(links(1, k), links(2, k)) /= 0) return
+      c(links(1, k), links(2, k)) = k
+      c(links(2, k), links(1, k)) = k
+    end do
+    call file%put('structure/link', [(k, k=1, n_links)], 'number of the link; 1 is the frame')
+    call file%make_scale('structure/link')
+    call file%put('structure/other_link', [(k, k=1, n_links)], 'number of the link that it meets')
+    call file%make_scale('structure/other_link')
+    call file%put('structure/c', c, 'coincidence matrix: the coordinate of the pair that joins two links, or 0')
+    call file%attach_scales('structure/c', ['/structure/link      ', '/structure/other_link'])
+  end subroutine write_matrix
+end module mech9_hdf5_record

@@ -1,0 +1,100 @@
+!> What is going to be written, held against what is read and against itself, before anything is lost.
+module mech9_overwriting
+  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_text, only: string_type
+  use mech9_same_file, only: file_place_type, find_place, find_open_place, same_place, is_fifo
+  use mech9_settings, only: output_settings_type
+  use mech9_command_line, only: command_line_type
+  use mech9_written_files, only: written_file_type, list_written_files, standard_output_path
+  implicit none
+  private
+  public :: refuse_overwriting
+
+  integer, parameter :: standard_output = 1     !< its descriptor
+
+contains
+
+  !> Fails with exit_usage where a file of the input, or another result, would be written over.
+  subroutine refuse_overwriting(options, inputs, err, output)
+    type(command_line_type), intent(in) :: options
+    type(string_type), intent(in) :: inputs(:)                     !< paths of the files that are read
+    type(error_type), allocatable, intent(out) :: err
+    type(output_settings_type), intent(in), optional :: output     !< what the data file says, once it is understood
+    type(written_file_type), allocatable :: files(:)
+    type(file_place_type), allocatable :: places(:)
+    integer :: i
+
+    call list_written_files(options, files, output)
+    allocate (places(size(files)))
+    do i = 1, size(files)
+      if (files(i)%path == standard_output_path) then
+        call find_open_place(standard_output, places(i))
+      else
+        call find_place(files(i)%path, places(i))
+      end if
+      call refuse_input(files(i), places(i), inputs, err)
+      if (allocated(err)) return
+      call refuse_output(files(:i), places(:i), err)
+      if (allocated(err)) return
+    end do
+  end subroutine refuse_overwriting
+
+  !> Whether a file is one of those that are read. One that is not there loses nothing.
+  subroutine refuse_input(file, place, inputs, err)
+    type(written_file_type), intent(in) :: file
+    type(file_place_type), intent(in) :: place
+    type(string_type), intent(in) :: inputs(:)
+    type(error_type), allocatable, intent(out) :: err
+    type(file_place_type) :: input
+    integer :: i
+
+    do i = 1, size(inputs)
+      call find_place(inputs(i)%text, input)
+      if (.not. (input%exists .and. same_place(place, input))) cycle
+      call raise(err, exit_usage, words_for(file)//" would overwrite '"//inputs(i)%text// &
+                 "', which is read; give it another name")
+      return
+    end do
+  end subroutine refuse_input
+
+  !> Whether the last file of a list is one of those before it.
+  subroutine refuse_output(files, places, err)
+    type(written_file_type), intent(in) :: files(:)
+    type(file_place_type), intent(in) :: places(:)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i, last
+
+    last = size(files)
+    do i = 1, last - 1
+      if (.not. same_place(places(i), places(last)) .or. follow_each_other(files(i), files(last), places(i))) cycle
+      if (files(i)%path == files(last)%path) then
+        call raise(err, exit_usage, files(i)%what//' and '//files(last)%what//" cannot both be '"//files(i)%path//"'")
+      else
+        call raise(err, exit_usage, words_for(files(i))//' and '//words_for(files(last))// &
+                   ' are one file; give one of them another name')
+      end if
+      return
+    end do
+  end subroutine refuse_output
+
+  !> Whether two results in one place stand there one behind the other: on standard output itself, or in a pipe, which
+  !> loses nothing, where one of them goes through standard output. Two arguments: a list of them, put together for the
+  !> call, would leak (gfortran 12).
+  pure logical function follow_each_other(first, second, place)
+    type(written_file_type), intent(in) :: first, second   !< the results
+    type(file_place_type), intent(in) :: place             !< where both stand
+    logical :: on_standard_output(2)
+
+    on_standard_output = [first%path == standard_output_path, second%path == standard_output_path]
+    follow_each_other = all(on_standard_output) .or. (is_fifo(place) .and. any(on_standard_output))
+  end function follow_each_other
+
+  !> A file in a message.
+  pure function words_for(file) result(words)
+    type(written_file_type), intent(in) :: file
+    character(len=:), allocatable :: words
+
+    words = file%what//" '"//file%path//"'"
+    if (file%path == standard_output_path) words = file%what//' on standard output'
+  end function words_for
+end module mech9_overwriting

@@ -1,0 +1,171 @@
+!> Pictures of the mechanism itself that a run is asked for: a sketch, a moving picture.
+module mech9_picture_requests
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_usage, exit_data
+  use mech9_path, only: ending_of
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_film, only: film_type, new_film
+  use mech9_view, only: view_type, read_view
+  use mech9_skeleton, only: skeleton_type, make_skeleton
+  use mech9_slide_places, only: place_slides
+  use mech9_view_choice, only: choose_view
+  use mech9_projection, only: projection_type, fit_projection
+  use mech9_scene, only: scene_type
+  use mech9_scene_making, only: make_scene
+  use mech9_svg_picture, only: save_sketch
+  use mech9_html_film, only: save_html_film
+  use mech9_svg_film, only: save_svg_film
+  use mech9_gif_film, only: save_gif_film
+  use mech9_command_line, only: command_line_type
+  use mech9_written_files, only: result_paths_type, find_result_paths
+  implicit none
+  private
+  public :: picture_requests_type, read_picture_requests
+
+  !> What is asked for. A path that is empty asks for nothing.
+  type :: picture_requests_type
+    character(len=:), allocatable :: sketch
+    character(len=:), allocatable :: animation
+    type(view_type), allocatable :: view      !< unless the best one is to be found
+    logical :: with_masses = .false.          !< bodies count in this program
+  contains
+    procedure :: any_wanted
+    procedure :: save => save_pictures
+    procedure :: save_start
+    procedure :: print_words
+  end type picture_requests_type
+
+  character(len=*), parameter :: moving_kinds(*) = [character(len=4) :: 'html', 'svg', 'gif']
+
+contains
+
+  !> What the options ask for, and the data file where they do not. Errors are those of a view or of the name of a
+  !> file that cannot be meant.
+  subroutine read_picture_requests(options, mechanism, program_name, requests, err)
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: program_name
+    type(picture_requests_type), intent(out) :: requests
+    type(error_type), allocatable, intent(out) :: err
+    type(result_paths_type) :: paths
+
+    call find_result_paths(options, mechanism%output, paths)
+    requests%sketch = paths%sketch
+    requests%animation = paths%animation
+    requests%with_masses = program_name == 'mech9d'
+    if (requests%sketch /= '' .and. kind_of(requests%sketch) /= 'svg') then
+      call raise(err, merge(exit_usage, exit_data, options%has('sketch')), "'"//requests%sketch// &
+                 "' is no name of a sketch; it must end in .svg")
+      return
+    end if
+    if (requests%animation /= '' .and. all(moving_kinds /= kind_of(requests%animation))) then
+      call raise(err, merge(exit_usage, exit_data, options%has('animate')), "'"//requests%animation// &
+                 "' is no name of a moving picture; it must end in .html, .svg or .gif")
+      return
+    end if
+    if (options%has('view')) then
+      allocate (requests%view)
+      call read_view(options%argument('view'), exit_usage, requests%view, err)
+    else if (mechanism%output%view /= '') then
+      allocate (requests%view)
+      call read_view(mechanism%output%view, exit_data, requests%view, err)
+    end if
+  end subroutine read_picture_requests
+
+  !> Whether any picture is asked for.
+  pure logical function any_wanted(self)
+    class(picture_requests_type), intent(in) :: self
+
+    any_wanted = self%sketch /= '' .or. self%animation /= ''
+  end function any_wanted
+
+  !> Make the sketch of an assembled position, without a run. Errors are exit_file.
+  subroutine save_start(self, mechanism, plan, start, err)
+    class(picture_requests_type), intent(in) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    type(error_type), allocatable, intent(out) :: err
+    type(picture_requests_type) :: sketch_only
+    type(film_type) :: film
+
+    film = new_film(mechanism, 1)
+    call film%take(mechanism, plan, start, [start%t])
+    sketch_only = self
+    sketch_only%animation = ''
+    call sketch_only%save(mechanism, film, err)
+  end subroutine save_start
+
+  !> Make the pictures of a film; of none where it has no frame. Errors are exit_file.
+  subroutine save_pictures(self, mechanism, film, err)
+    class(picture_requests_type), intent(in) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(error_type), allocatable, intent(out) :: err
+    type(skeleton_type) :: skeleton
+    type(view_type) :: view
+    logical :: planar
+
+    if (film%n_frames == 0) return
+    call make_skeleton(mechanism, film, skeleton)
+    call place_slides(mechanism, film, skeleton)
+    call choose_view(mechanism, film, skeleton, view, planar)
+    if (allocated(self%view)) then
+      ! still along the normal of the plane?
+      planar = planar .and. abs(dot_product(self%view%toward, view%toward)) > 1.0_wp - 1.0e-6_wp
+      view = self%view
+    end if
+    if (self%sketch /= '') call save_one(self, mechanism, film, skeleton, view, planar, self%sketch, .false., err)
+    if (self%animation /= '' .and. .not. allocated(err)) &
+      call save_one(self, mechanism, film, skeleton, view, planar, self%animation, .true., err)
+  end subroutine save_pictures
+
+  !> Say which pictures were made.
+  subroutine print_words(self, unit)
+    class(picture_requests_type), intent(in) :: self
+    integer, intent(in) :: unit
+
+    if (self%sketch /= '') write (unit, '(2a)') 'sketch: ', self%sketch
+    if (self%animation /= '') write (unit, '(2a)') 'animation: ', self%animation
+  end subroutine print_words
+
+  !> One picture. A page can be turned, unless the mechanism is planar: it has room for that.
+  subroutine save_one(self, mechanism, film, skeleton, view, planar, path, moving, err)
+    class(picture_requests_type), intent(in) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    type(film_type), intent(in) :: film
+    type(skeleton_type), intent(in) :: skeleton
+    type(view_type), intent(in) :: view
+    logical, intent(in) :: planar
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: moving
+    type(error_type), allocatable, intent(out) :: err
+    type(projection_type) :: projection
+    type(scene_type) :: scene
+    logical :: page
+
+    page = moving .and. kind_of(path) == 'html'
+    call fit_projection(mechanism, film, skeleton, view, page .and. .not. planar, projection)
+    call make_scene(mechanism, film, skeleton, projection, planar, self%with_masses, scene)
+    if (.not. moving) then
+      call save_sketch(path, mechanism%title, scene, film, projection, 1, err)
+    else if (page) then
+      call save_html_film(path, mechanism%title, scene, film, projection, planar, err)
+    else if (kind_of(path) == 'gif') then
+      call save_gif_film(path, mechanism%title, scene, film, projection, err)
+    else
+      call save_svg_film(path, mechanism%title, scene, film, projection, err)
+    end if
+  end subroutine save_one
+
+  !> What kind of picture a file's name means: its ending in lower case; htm counts as html.
+  pure function kind_of(path) result(kind)
+    character(len=*), intent(in) :: path
+    character(len=len(ending_of(path)) + 1) :: kind
+
+    kind = ending_of(path)
+    if (kind == 'htm') kind = 'html'
+  end function kind_of
+end module mech9_picture_requests

@@ -1,0 +1,118 @@
+!> A line on a terminal that tells how far a run is and how long it will take.
+module mech9_progress
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_clock, only: pacer_type, seconds
+  use mech9_system, only: is_terminal, standard_error
+  implicit none
+  private
+  public :: progress_type, progress_line
+
+  !> Letters of the line; the last column of an 80-column terminal stays free, where some wrap.
+  integer, parameter :: line_width = 79
+  !> How long a run must last to be spoken of, and how often it is spoken of then [s].
+  real(wp), parameter :: first_line_after = 1.0_wp, line_every = 0.25_wp
+
+  !> The progress of one run.
+  type :: progress_type
+    private
+    character(len=:), allocatable :: label
+    real(wp) :: started = 0.0_wp       !< [s]
+    logical :: active = .false.        !< someone looks at it
+    logical :: shown = .false.         !< a line stands on the terminal
+    type(pacer_type) :: pacer
+  contains
+    procedure :: start
+    procedure :: update
+    procedure :: finish
+  end type progress_type
+
+contains
+
+  !> Begin. Nothing will be shown if standard error is no terminal or the user wants no talk.
+  subroutine start(self, label, quiet)
+    class(progress_type), intent(inout) :: self
+    character(len=*), intent(in) :: label   !< what runs
+    logical, intent(in) :: quiet
+
+    self%label = label
+    self%shown = .false.
+    self%active = .false.
+    if (.not. quiet) self%active = is_terminal(standard_error)
+    if (.not. self%active) return
+    self%started = seconds()
+    call self%pacer%start(line_every)
+  end subroutine start
+
+  !> Tell how much is done; cheap enough for each position.
+  subroutine update(self, fraction)
+    class(progress_type), intent(inout) :: self
+    real(wp), intent(in) :: fraction   !< 0 to 1
+    real(wp) :: elapsed
+    integer :: status
+
+    if (.not. self%active) return
+    if (.not. self%pacer%due()) return
+    elapsed = seconds() - self%started
+    if (elapsed < first_line_after) return
+    ! back at its beginning, lest the terminal's echo of Ctrl-C flow over into the next line
+    write (error_unit, '(3a)', advance='no', iostat=status) achar(13), &
+      progress_line(self%label, fraction, elapsed), achar(13)
+    flush (error_unit, iostat=status)
+    self%shown = .true.
+  end subroutine update
+
+  !> Take the line away; to be called before anything else is said on the terminal.
+  subroutine finish(self)
+    class(progress_type), intent(inout) :: self
+    integer :: status
+
+    if (self%shown) then
+      write (error_unit, '(3a)', advance='no', iostat=status) achar(13), repeat(' ', line_width), achar(13)
+      flush (error_unit, iostat=status)
+    end if
+    self%shown = .false.
+    self%active = .false.
+  end subroutine finish
+
+  !> The line: label, share done, a bar, and the time left if the run goes on as it went so far.
+  pure function progress_line(label, fraction, elapsed) result(line)
+    character(len=*), intent(in) :: label
+    real(wp), intent(in) :: fraction    !< 0 to 1; less or more is taken as that
+    real(wp), intent(in) :: elapsed     !< since the start [s]
+    character(len=line_width) :: line
+    integer, parameter :: bar_width = 24
+    character(len=:), allocatable :: left
+    real(wp) :: share
+    integer :: filled
+
+    share = max(0.0_wp, min(1.0_wp, fraction))
+    filled = nint(bar_width*share)
+    left = ''
+    if (share > 1.0e-6_wp) left = time_text(elapsed*((1.0_wp - share)/share))//' left'
+    write (line, '(a,i4,6a)') label(:min(len(label), 24)), int(100.0_wp*share), ' % [', &
+      repeat('#', filled), repeat('.', bar_width - filled), ']  ', left, ' '
+  end function progress_line
+
+  !> A time as `4 s`, `1:05` (minutes) or `2:01:05` (hours).
+  pure function time_text(time) result(text)
+    real(wp), intent(in) :: time   !< [s]
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+    integer :: whole, hours, minutes
+
+    ! a hundred days is as good as for ever, and fits an integer
+    whole = int(min(time, 8640000.0_wp))
+    hours = whole/3600
+    minutes = mod(whole, 3600)/60
+    if (hours > 0) then
+      write (buffer, '(i0,2(a,i2.2))') hours, ':', minutes, ':', mod(whole, 60)
+    else if (minutes > 0) then
+      write (buffer, '(i0,a,i2.2)') minutes, ':', mod(whole, 60)
+    else
+      buffer = to_text(whole)//' s'
+    end if
+    text = trim(buffer)
+  end function time_text
+end module mech9_progress

@@ -1,0 +1,240 @@
+!> All that a run writes its rows to, opened in one place from the options and the data file.
+module mech9_results
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_columns, only: columns_type
+  use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
+  use mech9_table, only: table_type
+  use mech9_plot, only: plot_type, picture_of_plot
+  use mech9_hdf5_sink, only: hdf5_sink_type
+  use mech9_facts, only: facts_type
+  use mech9_xdmf, only: new_xdmf
+  use mech9_command_line, only: command_line_type
+  use mech9_written_files, only: result_paths_type, find_result_paths
+  use mech9_hdf5_record, only: write_provenance, write_structure
+  use mech9_version, only: version
+  implicit none
+  private
+  public :: results_type
+
+  !> The open results of one run.
+  type :: results_type
+    character(len=:), allocatable :: table_path     !< '-' is standard output; empty: no table
+    character(len=:), allocatable :: hdf5_path      !< empty: no such file
+    type(sink_slot_type), allocatable :: sinks(:)
+    integer, private :: n_columns = 0               !< without those of poses
+  contains
+    procedure :: open => open_results
+    procedure :: write_rows
+    procedure :: flush => flush_results
+    procedure :: close => close_results
+    procedure :: print_words
+    procedure :: hdf5
+    procedure :: write_facts
+    procedure, private :: open_plots, open_table, open_hdf5
+  end type results_type
+
+contains
+
+  !> Open everything that is asked for. After an error nothing is open.
+  subroutine open_results(self, options, mechanism, data_text, program_name, columns, err)
+    class(results_type), intent(out) :: self
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: data_text        !< of the data file
+    character(len=*), intent(in) :: program_name
+    type(columns_type), intent(in) :: columns        !< of the rows to come
+    type(error_type), allocatable, intent(out) :: err
+    type(result_paths_type) :: paths
+    type(error_type), allocatable :: at_close
+    type(sink_slot_type), allocatable :: plots(:)
+    integer :: i
+
+    allocate (self%sinks(0))
+    self%n_columns = columns%count
+    call find_result_paths(options, mechanism%output, paths)
+    self%table_path = paths%table
+    self%hdf5_path = paths%hdf5
+    ! a wrong name in a plot is found before a file is touched
+    call self%open_plots(options, mechanism, columns, plots, err)
+    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(mechanism, program_name, columns, err)
+    if (.not. allocated(err) .and. self%hdf5_path /= '') &
+      call self%open_hdf5(options, mechanism, data_text, program_name, columns, err)
+    if (allocated(err)) then
+      call self%close(at_close)
+      return
+    end if
+    do i = 1, size(plots)
+      call append_sink(self%sinks, plots(i)%sink)
+    end do
+  end subroutine open_results
+
+  !> The plots that are asked for.
+  subroutine open_plots(self, options, mechanism, columns, plots, err)
+    class(results_type), intent(in) :: self
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    type(columns_type), intent(in) :: columns
+    type(sink_slot_type), allocatable, intent(out) :: plots(:)
+    type(error_type), allocatable, intent(out) :: err
+    type(string_type), allocatable :: requests(:)
+    type(plot_type), allocatable :: plot
+    character(len=:), allocatable :: picture
+    class(result_sink_type), allocatable :: sink
+    integer :: i
+
+    allocate (plots(0))
+    call options%arguments('plot', requests)
+    do i = 1, size(requests)
+      call picture_of_plot(requests(i)%text, self%table_path, options%file, i, picture)
+      allocate (plot)
+      call plot%open(requests(i)%text, mechanism%title, columns%names(:columns%count), &
+                     columns%units(:columns%count), mechanism%time%intervals + 1, picture, self%table_path, err)
+      if (allocated(err)) then
+        if (leaves_out(mechanism)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
+        return
+      end if
+      call move_alloc(plot, sink)
+      call append_sink(plots, sink)
+    end do
+  end subroutine open_plots
+
+  !> Whether the results have fewer columns than they could have.
+  pure logical function leaves_out(mechanism)
+    type(mechanism_type), intent(in) :: mechanism
+
+    associate (output => mechanism%output)
+      leaves_out = output%derivatives < 2 .or. .not. (output%energies .and. all(output%recorded(size(mechanism%pairs))))
+    end associate
+  end function leaves_out
+
+  subroutine open_table(self, mechanism, program_name, columns, err)
+    class(results_type), intent(inout) :: self
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: program_name
+    type(columns_type), intent(in) :: columns
+    type(error_type), allocatable, intent(out) :: err
+    type(table_type), allocatable :: table
+    class(result_sink_type), allocatable :: sink
+
+    allocate (table)
+    call table%open(self%table_path, mechanism%title, program_name//' '//version, &
+                    columns%names(:columns%count), columns%units(:columns%count), err)
+    if (allocated(err)) return
+    call move_alloc(table, sink)
+    call append_sink(self%sinks, sink)
+  end subroutine open_table
+
+  subroutine open_hdf5(self, options, mechanism, data_text, program_name, columns, err)
+    class(results_type), intent(inout) :: self
+    type(command_line_type), intent(in) :: options
+    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: data_text, program_name
+    type(columns_type), intent(in) :: columns
+    type(error_type), allocatable, intent(out) :: err
+    type(hdf5_sink_type), allocatable :: file
+    class(result_sink_type), allocatable :: sink
+
+    allocate (file)
+    call file%open(self%hdf5_path, mechanism, columns, err)
+    if (allocated(err)) return
+    call write_provenance(file%file, program_name, options, mechanism, data_text)
+    call write_structure(file%file, mechanism)
+    call file%tell(err)
+    call move_alloc(file, sink)
+    call append_sink(self%sinks, sink)
+    if (columns%poses%n_links == 0) return
+    allocate (sink, source=new_xdmf(self%hdf5_path, mechanism, columns%poses))
+    call append_sink(self%sinks, sink)
+  end subroutine open_hdf5
+
+  !> Rows to everyone; the first error ends it.
+  subroutine write_rows(self, rows, err)
+    class(results_type), intent(inout) :: self
+    real(wp), intent(in) :: rows(:, :)      !< (columns, rows), those of poses at the end
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i
+
+    do i = 1, size(self%sinks)
+      associate (sink => self%sinks(i)%sink)
+        call sink%write_rows(rows(:merge(size(rows, 1), self%n_columns, sink%takes_poses), :), err)
+      end associate
+      if (allocated(err)) return
+    end do
+  end subroutine write_rows
+
+  !> Let no row wait any longer, in none of them; the first error is told.
+  subroutine flush_results(self, err)
+    class(results_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: one
+    integer :: i
+
+    do i = 1, size(self%sinks)
+      call self%sinks(i)%sink%flush(one)
+      if (.not. allocated(err)) call move_alloc(one, err)
+    end do
+  end subroutine flush_results
+
+  !> Close all of them, whatever happens; the first error is told.
+  subroutine close_results(self, err)
+    class(results_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable :: one
+    integer :: i
+
+    do i = 1, size(self%sinks)
+      call self%sinks(i)%sink%close(one)
+      if (.not. allocated(err)) call move_alloc(one, err)
+    end do
+  end subroutine close_results
+
+  !> The HDF5 file among the results, for what it holds besides rows; null where there is none.
+  function hdf5(self)
+    class(results_type), intent(in), target :: self
+    type(hdf5_sink_type), pointer :: hdf5
+    integer :: i
+
+    hdf5 => null()
+    do i = 1, size(self%sinks)
+      select type (sink => self%sinks(i)%sink)
+      type is (hdf5_sink_type)
+        hdf5 => sink
+      end select
+    end do
+  end function hdf5
+
+  !> What is to be told of the run, where there is a place for it: before the run, and again after it. Failures are
+  !> those of the files, told with the next rows or when they are closed.
+  subroutine write_facts(self, facts, exit_code)
+    class(results_type), intent(in), target :: self
+    type(facts_type), intent(in) :: facts
+    integer, intent(in), optional :: exit_code   !< that the run is going to answer; before it: not given
+    type(hdf5_sink_type), pointer :: hdf5
+    integer :: code
+
+    hdf5 => self%hdf5()
+    if (.not. associated(hdf5)) return
+    call facts%to_hdf5(hdf5%file, 'diagnostics', again=present(exit_code))
+    code = -1
+    if (present(exit_code)) code = exit_code
+    call hdf5%file%put('diagnostics/exit_code', code, 'what the program answered to the shell; -1: the run did not end')
+  end subroutine write_facts
+
+  !> What the user is told about what was written, once all is closed; to be `quiet`, about what was not.
+  subroutine print_words(self, unit, quiet)
+    class(results_type), intent(in) :: self
+    integer, intent(in) :: unit
+    logical, intent(in) :: quiet
+    character(len=:), allocatable :: words
+    integer :: i
+
+    do i = 1, size(self%sinks)
+      words = ''
+      if (self%sinks(i)%sink%is_lacking .or. .not. quiet) words = self%sinks(i)%sink%words()
+      if (words /= '') write (unit, '(a)') words
+    end do
+  end subroutine print_words
+end module mech9_results

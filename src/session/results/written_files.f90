@@ -1,0 +1,164 @@
+!> Everything that a run or an answer is going to write, also what is made beside it: one list, known before anything is opened.
+module mech9_written_files
+  use mech9_text, only: string_type
+  use mech9_settings, only: output_settings_type
+  use mech9_replacement, only: path_of_part
+  use mech9_plot, only: picture_of_plot, script_of_plot
+  use mech9_structure_graph, only: text_of_graph
+  use mech9_xdmf, only: xdmf_path
+  use mech9_command_line, only: command_line_type
+  implicit none
+  private
+  public :: result_paths_type, written_file_type, find_result_paths, list_written_files, standard_output_path
+
+  !> The name that stands for standard output.
+  character, parameter :: standard_output_path = '-'
+
+  !> Where the results of a run go; an empty path means: nowhere.
+  type :: result_paths_type
+    character(len=:), allocatable :: table        !< '-' is standard output
+    character(len=:), allocatable :: hdf5
+    character(len=:), allocatable :: sketch
+    character(len=:), allocatable :: animation
+  end type result_paths_type
+
+  !> A file that is going to be written.
+  type :: written_file_type
+    character(len=:), allocatable :: what         !< in words of the command line or of the data file
+    character(len=:), allocatable :: path         !< '-' is standard output
+  end type written_file_type
+
+contains
+
+  !> Where the results of a run go: the command line comes before the data file. Where nothing is asked for, the table
+  !> goes to standard output.
+  pure subroutine find_result_paths(options, output, paths)
+    type(command_line_type), intent(in) :: options
+    type(output_settings_type), intent(in) :: output     !< what the data file says
+    type(result_paths_type), intent(out) :: paths
+
+    call choose(options, 'table', output%table, paths%table)
+    call choose(options, 'hdf5', output%hdf5, paths%hdf5)
+    call choose(options, 'sketch', output%sketch, paths%sketch)
+    call choose(options, 'animate', output%animation, paths%animation)
+    if (options%has('no-write')) then
+      paths%table = ''
+      paths%hdf5 = ''
+    else if (paths%table == '' .and. paths%hdf5 == '' .and. &
+             .not. (options%has('plot') .or. options%has('sketch') .or. options%has('animate'))) then
+      paths%table = standard_output_path
+    end if
+  end subroutine find_result_paths
+
+  pure subroutine choose(options, option, in_data_file, path)
+    type(command_line_type), intent(in) :: options
+    character(len=*), intent(in) :: option                !< without the dashes
+    character(len=*), intent(in) :: in_data_file          !< the path there; empty: none
+    character(len=:), allocatable, intent(out) :: path
+
+    path = in_data_file
+    if (options%has(option)) path = options%argument(option)
+  end subroutine choose
+
+  !> The list. Without `output` the data file is not understood, and nothing but a report is written.
+  pure subroutine list_written_files(options, files, output)
+    type(command_line_type), intent(in) :: options
+    type(written_file_type), allocatable, intent(out) :: files(:)
+    type(output_settings_type), intent(in), optional :: output   !< what the data file says
+
+    allocate (files(0))
+    if (present(output) .and. options%answer() == '') then
+      call list_results(options, output, files)
+    else if (present(output)) then
+      call list_answers(options, files)
+    end if
+    if (options%has('report')) call append(files, '--report', options%argument('report'))
+  end subroutine list_written_files
+
+  !> What a run writes.
+  pure subroutine list_results(options, output, files)
+    type(command_line_type), intent(in) :: options
+    type(output_settings_type), intent(in) :: output
+    type(written_file_type), allocatable, intent(inout) :: files(:)
+    type(result_paths_type) :: paths
+
+    call find_result_paths(options, output, paths)
+    if (paths%table == standard_output_path) then
+      call append(files, 'the table', paths%table)
+    else
+      call append(files, name_of(options, 'table', 'table'), paths%table)
+    end if
+    call append(files, name_of(options, 'hdf5', 'hdf5'), paths%hdf5)
+    if (paths%hdf5 /= '') call append(files, 'the beginning of the HDF5 file', path_of_part(paths%hdf5))
+    if (paths%hdf5 /= '' .and. output%poses) &
+      call append(files, 'the description for ParaView beside the HDF5 file', xdmf_path(paths%hdf5))
+    call list_plots(options, paths%table, files)
+    call append(files, name_of(options, 'sketch', 'sketch'), paths%sketch)
+    call append(files, name_of(options, 'animate', 'animation'), paths%animation)
+  end subroutine list_results
+
+  !> Plots, each with its script.
+  pure subroutine list_plots(options, table, files)
+    type(command_line_type), intent(in) :: options
+    character(len=*), intent(in) :: table                 !< file of the table
+    type(written_file_type), allocatable, intent(inout) :: files(:)
+    type(string_type), allocatable :: requests(:)
+    character(len=:), allocatable :: picture
+    integer :: i
+
+    call options%arguments('plot', requests)
+    do i = 1, size(requests)
+      call picture_of_plot(requests(i)%text, table, options%file, i, picture)
+      call append(files, '--plot', picture)
+      if (picture /= standard_output_path) call append(files, 'the script of --plot', script_of_plot(picture))
+    end do
+  end subroutine list_plots
+
+  !> What is written where there is no run.
+  pure subroutine list_answers(options, files)
+    type(command_line_type), intent(in) :: options
+    type(written_file_type), allocatable, intent(inout) :: files(:)
+    character(len=*), parameter :: printed(*) = [character(len=9) :: 'structure', 'check', 'plan', 'branches', 'range']
+    character(len=:), allocatable :: graph
+    integer :: i
+
+    do i = 1, size(printed)
+      if (options%has(trim(printed(i)))) call append(files, '--'//trim(printed(i)), standard_output_path)
+    end do
+    if (options%has('structure')) return
+    call append(files, '--sketch', options%argument('sketch'))
+    if (.not. options%has('graph')) return
+    graph = options%argument('graph')
+    call append(files, '--graph', graph)
+    if (text_of_graph(graph) /= graph) call append(files, 'the text of --graph', text_of_graph(graph))
+  end subroutine list_answers
+
+  !> One file more; none where the path is empty.
+  pure subroutine append(files, what, path)
+    type(written_file_type), allocatable, intent(inout) :: files(:)
+    character(len=*), intent(in) :: what, path
+    type(written_file_type), allocatable :: longer(:)
+    integer :: i
+
+    if (path == '') return
+    allocate (longer(size(files) + 1))
+    do i = 1, size(files)
+      call move_alloc(files(i)%what, longer(i)%what)
+      call move_alloc(files(i)%path, longer(i)%path)
+    end do
+    longer(size(longer))%what = what
+    longer(size(longer))%path = path
+    call move_alloc(longer, files)
+  end subroutine append
+
+  !> How results are called in a message: by their option, or by their name in the data file.
+  pure function name_of(options, option, in_data_file) result(name)
+    type(command_line_type), intent(in) :: options
+    character(len=*), intent(in) :: option                !< without the dashes
+    character(len=*), intent(in) :: in_data_file          !< the name in &output
+    character(len=:), allocatable :: name
+
+    name = '&output '//in_data_file
+    if (options%has(option)) name = '--'//option
+  end function name_of
+end module mech9_written_files

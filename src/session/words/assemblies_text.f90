@@ -1,0 +1,42 @@
+!> The assemblies of a mechanism in words, for --branches.
+module mech9_assemblies_text
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_assemblies, only: assembly_list_type, find_assemblies
+  implicit none
+  private
+  public :: print_assemblies
+
+contains
+
+  !> Find the assemblies for the independent coordinates of the start and print each as groups &initial, so that
+  !> the groups of one, put into the data file, make it the start.
+  subroutine print_assemblies(unit, mechanism, plan, start, n_starts)
+    integer, intent(in) :: unit
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start      !< assembled
+    integer, intent(in) :: n_starts
+    type(assembly_list_type) :: list
+    character(len=24) :: number
+    character(len=:), allocatable :: words
+    integer :: i, k
+
+    call find_assemblies(plan, start, n_starts, list)
+    write (unit, '(a)') '! '//to_text(size(list%found))//' assemblies found from '//to_text(list%starts)// &
+      ' starts, of which '//to_text(list%closed)//' could be closed'
+    do i = 1, size(list%found)
+      words = ''
+      if (i == 1) words = '; that of the data file'
+      write (unit, '(a)') '! assembly '//to_text(i)//', from '//to_text(list%found(i))//' starts'//words
+      do k = 1, plan%n_coordinates
+        if (.not. plan%steps(plan%step_of(k))%dependent) cycle
+        write (number, '(es24.16)') list%q(k, i)/unit_of(mechanism, k)
+        write (unit, '(a)') '&initial coordinate='//to_text(k)//', position='//trim(adjustl(number))//' /'
+      end do
+    end do
+  end subroutine print_assemblies
+end module mech9_assemblies_text

@@ -1,0 +1,101 @@
+!> Notes of --check on data that are allowed and often mistaken: angles in the other unit, bodies and links without effect.
+module mech9_check_notes
+  use mech9_kinds, only: wp, pi, radians_per_degree
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text, some_of
+  use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of
+  use mech9_link_dimensions, only: link_dimension_type, link_dimensions
+  implicit none
+  private
+  public :: print_notes
+
+  !> Numbers that a list shows at most.
+  integer, parameter :: longest_list = 24
+  !> Rates of so many rad/s and more that are whole multiples of the second number look like degrees.
+  real(wp), parameter :: fast = 45.0_wp, whole = 15.0_wp
+  !> Angles in degrees that are so near to a few quarters of a turn in radians look like radians: pi is often rounded to 3.14.
+  real(wp), parameter :: rounded_pi = 1.0e-3_wp
+  integer, parameter :: most_quarters = 8
+
+contains
+
+  !> A line for each note.
+  subroutine print_notes(unit, mechanism, with_masses)
+    integer, intent(in) :: unit
+    type(mechanism_type), intent(in) :: mechanism
+    logical, intent(in) :: with_masses       !< bodies and initial velocities count in this program, else drives
+    type(error_type), allocatable :: err
+    real(wp) :: q, dq, ddq
+    integer :: i, k
+
+    if (with_masses) then
+      do k = 1, size(mechanism%pairs)
+        if (mechanism%structure%independent(k)) &
+          call note_angle(unit, mechanism, k, 'the start', mechanism%initial_position(k), mechanism%initial_velocity(k))
+      end do
+      call note_bodies(unit, mechanism)
+    else
+      do i = 1, size(mechanism%drives)
+        k = mechanism%drives(i)%drive%coordinate
+        call mechanism%drives(i)%drive%evaluate(mechanism%time%start, q, dq, ddq, err)
+        if (.not. allocated(err)) call note_angle(unit, mechanism, k, 'the drive', q, dq)
+      end do
+    end if
+  end subroutine print_notes
+
+  !> Angles and their rates that seem to be in the other unit.
+  subroutine note_angle(unit, mechanism, k, what, q, dq)
+    integer, intent(in) :: unit
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: k                 !< the coordinate
+    character(len=*), intent(in) :: what     !< 'the drive' or 'the start'
+    real(wp), intent(in) :: q, dq            !< its value and rate at the start [rad, rad/s]
+    character(len=:), allocatable :: begin
+    real(wp) :: quarters
+
+    if (.not. mechanism%pairs(k)%pair%angular .or. mechanism%pairs(k)%pair%user_calls() > 0) return
+    begin = 'note: '//what//' of coordinate '//to_text(k)//' has '
+    if (abs(unit_of(mechanism, k) - 1.0_wp) <= 0.0_wp) then
+      if (abs(q) > 2.0_wp*pi) then
+        write (unit, '(a)') begin//'the angle '//to_text(q)//' rad, more than a turn; where degrees are meant, give '// &
+          '&mechanism angle_unit=''deg'''
+      else if (abs(dq) >= fast .and. abs(dq - whole*anint(dq/whole)) <= 0.0_wp) then
+        write (unit, '(a)') begin//'the rate '//to_text(dq)//' rad/s, '//to_text(abs(dq)/(2.0_wp*pi), 3)// &
+          ' turns a second; where degrees are meant, give &mechanism angle_unit=''deg'''
+      end if
+      return
+    end if
+    quarters = dq/radians_per_degree/(0.5_wp*pi)
+    if (nint(min(abs(quarters), 100.0_wp)) < 1 .or. abs(quarters) > most_quarters + 0.5_wp) return
+    if (abs(quarters - anint(quarters)) <= rounded_pi*abs(quarters)) write (unit, '(a)') begin//'the rate '// &
+      to_text(dq/radians_per_degree)//' degrees a second; where radians are meant, leave out angle_unit=''deg'''
+  end subroutine note_angle
+
+  !> Bodies of the frame, and links that were left without mass.
+  subroutine note_bodies(unit, mechanism)
+    integer, intent(in) :: unit
+    type(mechanism_type), intent(in) :: mechanism
+    type(link_dimension_type), allocatable :: dimensions(:)
+    logical :: massless(mechanism%structure%n_links)
+    integer :: i
+
+    massless = .true.
+    do i = 1, size(mechanism%bodies)
+      if (mechanism%bodies(i)%has_inertia()) massless(mechanism%bodies(i)%link) = .false.
+    end do
+    if (.not. massless(1)) write (unit, '(a)') 'note: link 1 is the frame, which does not move: its &body has no effect'
+    massless(1) = .false.
+    if (count(massless) == mechanism%structure%n_links - 1) return
+    ! links between axes that meet are parts of a ball or universal joint
+    call link_dimensions(mechanism, dimensions)
+    do i = 1, size(dimensions)
+      associate (d => dimensions(i))
+        if (d%has_distance .and. d%has_points .and. .not. d%between_points > 0.0_wp) massless(d%link) = .false.
+      end associate
+    end do
+    if (any(massless)) write (unit, '(a)') 'note: '//trim(merge('links', 'link ', count(massless) > 1))//' '// &
+      some_of(pack([(i, i=1, size(massless))], massless), longest_list)//trim(merge(' have', ' has ', count(massless) > 1))// &
+      ' no mass, while others have; give a &body where that is not meant'
+  end subroutine note_bodies
+end module mech9_check_notes

@@ -1,0 +1,165 @@
+!> The plan in words, for --plan and --verbose: what is computed, and what is left out and why.
+module mech9_plan_text
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_screw, only: split_space
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type, block_type, closure_type
+  use mech9_requested, only: requested_type, needed_blocks
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_structure_text, only: print_marked
+  implicit none
+  private
+  public :: print_plan
+
+  !> Digits of directions.
+  integer, parameter :: digits_shown = 6
+
+contains
+
+  !> The blocks in order, each with its chains, unknowns, equations and rank, and what is left out.
+  subroutine print_plan(unit, mechanism, plan, requested)
+    integer, intent(in) :: unit
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan          !< of the whole mechanism
+    type(requested_type), intent(in) :: requested        !< what the run asks for
+    logical :: needed(size(plan%blocks))
+    integer :: b, i
+
+    call print_arithmetic(unit, plan)
+    needed = needed_blocks(plan, requested)
+    do b = 1, size(plan%blocks)
+      call print_block(unit, plan, plan%blocks(b), b, needed(b))
+    end do
+    if (requested%derivatives == 1) write (unit, '(a)') 'accelerations left out: none are recorded'
+    if (requested%derivatives == 0) write (unit, '(a)') &
+      'accelerations left out: none are recorded, and rates only serve to keep to the branch'
+    do i = 1, plan%n_coordinates
+      if (mechanism%pairs(i)%pair%user_calls() > 1) write (unit, '(a)') 'pair '//to_text(i)// &
+        ': the user procedure in plain values is called '//to_text(mechanism%pairs(i)%pair%user_calls())// &
+        ' times a position or more, for its derivatives'
+    end do
+    if (size(mechanism%bodies) > 0) call print_dynamics_plan(unit, mechanism, plan)
+  end subroutine print_plan
+
+  !> One block: its links, equations and chains.
+  subroutine print_block(unit, plan, block, number, is_needed)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    type(block_type), intent(in) :: block
+    integer, intent(in) :: number
+    logical, intent(in) :: is_needed
+    integer :: c, i
+
+    write (unit, '(a)') 'block '//to_text(number)//': links '// &
+      to_text(pack(plan%steps(block%first_step:block%last_step)%link, &
+                   [(.not. any(plan%closures(block%first_closure:block%last_closure)%closing == i), &
+                     i=block%first_step, block%last_step)]))
+    if (.not. is_needed) write (unit, '(a)') '  left out: no result or load depends on it'
+    if (size(block%unknowns) > 0) then
+      write (unit, '(a)') '  solved for: '//to_text([(block%coordinates(i), i=1, size(block%unknowns))])//' from '// &
+        to_text(block%equations)//' equations of rank '//to_text(size(block%unknowns))
+      if (block%is_constant) write (unit, '(a)') '  its Jacobian is constant, since nothing turns: factorized once'
+    else
+      write (unit, '(a)') '  nothing to solve: an open chain'
+    end if
+    do c = block%first_closure, block%last_closure
+      associate (closure => plan%closures(c))
+        write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes on link '//to_text(plan%steps(closure%closing)%link)// &
+          ' through coordinate '//to_text(plan%steps(closure%closing)%coordinate)//'; its motions span '// &
+          to_text(closure%rank)//' dimensions'
+        call print_basis(unit, plan, closure)
+      end associate
+    end do
+  end subroutine print_block
+
+  !> "turning about (0, 0, 1), sliding along (1, 0, 0), (0, 1, 0) of link 1"; nothing where there are all six.
+  subroutine print_basis(unit, plan, closure)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    type(closure_type), intent(in) :: closure
+    character(len=:), allocatable :: turning, sliding
+    real(wp) :: turns(3, 3), slides(3, 3), to_link(3, 3)
+    integer :: n_turns, n_slides, link
+    logical :: screws
+
+    link = 1
+    if (closure%base > 0) link = plan%steps(closure%base)%link
+    ! only the first frame of a link keeps its place in the link
+    if (closure%rank == 6 .or. plan%frame_of(link) /= closure%base) return
+    to_link = transpose(plan%link_in_frame(link)%r)
+    call split_space(closure%rows(:, :closure%rank), turns, n_turns, slides, n_slides, screws)
+    turning = ''
+    if (n_turns > 0) turning = trim(merge('screwing', 'turning ', screws))//' about '// &
+                               directions_in_words(matmul(to_link, turns(:, :n_turns)))
+    sliding = ''
+    if (n_slides > 0) sliding = 'sliding along '//directions_in_words(matmul(to_link, slides(:, :n_slides)))
+    if (n_turns > 0 .and. n_slides > 0) turning = turning//', '
+    write (unit, '(4x,a)') turning//sliding//' of link '//to_text(link)
+  end subroutine print_basis
+
+  !> "(1, 0, 0), (0, 1, 0)", or "all directions".
+  pure function directions_in_words(directions) result(words)
+    real(wp), intent(in) :: directions(:, :)    !< (3,n)
+    character(len=:), allocatable :: words
+    integer :: i
+
+    words = ''
+    do i = 1, size(directions, 2)
+      if (i > 1) words = words//', '
+      words = words//direction_in_words(directions(:, i))
+    end do
+    if (size(directions, 2) == 3) words = 'all directions'
+  end function directions_in_words
+
+  !> "(0, 0, 1)"; round-off is shown as zero.
+  pure function direction_in_words(direction) result(words)
+    real(wp), intent(in) :: direction(3)
+    character(len=:), allocatable :: words
+    real(wp) :: clean(3)
+
+    clean = merge(0.0_wp, direction, abs(direction) < 10.0_wp**(-digits_shown))
+    words = '('//to_text(clean(1), digits_shown)//', '//to_text(clean(2), digits_shown)//', '// &
+            to_text(clean(3), digits_shown)//')'
+  end function direction_in_words
+
+  !> Planar or spatial, and why.
+  subroutine print_arithmetic(unit, plan)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+
+    if (plan%planar%used) then
+      write (unit, '(a)') 'planar arithmetic: all pairs turn about or slide across the direction '// &
+        direction_in_words(plan%planar%axes(:, 3))
+    else if (allocated(plan%planar%why_not)) then
+      write (unit, '(a)') 'spatial arithmetic: '//plan%planar%why_not
+    end if
+  end subroutine print_arithmetic
+
+  !> What Lagrange's equations leave out.
+  subroutine print_dynamics_plan(unit, mechanism, plan)
+    integer, intent(in) :: unit
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(dynamics_plan_type) :: dynamics
+    logical :: has_mass(plan%n_links), idle(plan%n_links), without_effect(size(mechanism%loads))
+    integer :: i
+
+    call make_dynamics_plan(mechanism, plan, dynamics)
+    if (dynamics%open_chains) write (unit, '(a)') &
+      'accelerations by articulated bodies: no chain is closed, coefficients of motion are found at the start only'
+    has_mass = .false.
+    do i = 1, size(dynamics%bodies)
+      has_mass(dynamics%bodies(i)%link) = .true.
+    end do
+    ! link 1 does not move
+    has_mass(1) = .true.
+    idle = .not. dynamics%carries(plan%frame_of)
+    idle(1) = .false.
+    call print_marked(unit, .not. has_mass, 'without mass, no terms of inertia: links ')
+    call print_marked(unit, idle, 'no mass, load or later chain depends on their motion, left out: links ')
+    without_effect = .true.
+    without_effect(dynamics%acting) = .false.
+    call print_marked(unit, without_effect, 'zero, or on link 1 alone, left out: loads ')
+  end subroutine print_dynamics_plan
+end module mech9_plan_text

@@ -1,0 +1,97 @@
+!> The ranges of the independent coordinates in words, for --range.
+module mech9_range_text
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of, unit_name
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_motion_range, only: motion_range_type, end_type, find_range, ends_at_limit, ends_round, ends_otherwise
+  use mech9_driven_motion, only: words_of_block
+  implicit none
+  private
+  public :: print_ranges
+
+  !> Digits of a limit: it is good to some 1e-12.
+  integer, parameter :: digits = 13
+  integer, parameter :: width = 22
+
+contains
+
+  !> A line for each independent coordinate: start, lower and upper end, unit, and what limits it.
+  subroutine print_ranges(unit, mechanism, plan, start)
+    integer, intent(in) :: unit
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start      !< assembled
+    type(motion_range_type) :: range
+    character(len=:), allocatable :: name
+    real(wp) :: factor
+    integer :: i, k
+
+    write (unit, '(a)') '# how far each independent coordinate can go from the start, the others held there'
+    write (unit, '(a)') column('#', 6)//column('start', width)//column('lower', width)//column('upper', width)// &
+      'unit  limited by'
+    do i = 1, size(plan%independent)
+      k = plan%independent(i)
+      call find_range(mechanism, plan, start, k, range)
+      factor = 1.0_wp/unit_of(mechanism, k)
+      name = trim(unit_name(mechanism, k))
+      write (unit, '(a)') column('q'//to_text(k), 6)//column(to_text(factor*range%start, digits), width)// &
+        column(value_of(range%lower, factor), width)//column(value_of(range%upper, factor), width)// &
+        column(name, 6)//reasons(plan, range, factor, name)
+    end do
+  end subroutine print_ranges
+
+  pure function column(text, width) result(padded)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: width
+    character(len=max(width, len(text) + 1)) :: padded
+
+    padded = text
+  end function column
+
+  !> The value of an end; a dash where there is none.
+  pure function value_of(found, factor) result(text)
+    type(end_type), intent(in) :: found
+    real(wp), intent(in) :: factor
+    character(len=:), allocatable :: text
+
+    text = '-'
+    if (found%kind == ends_at_limit .or. found%kind == ends_otherwise) text = to_text(factor*found%value, digits)
+  end function value_of
+
+  !> What limits a coordinate on both sides.
+  pure function reasons(plan, range, factor, unit) result(text)
+    type(plan_type), intent(in) :: plan
+    type(motion_range_type), intent(in) :: range
+    real(wp), intent(in) :: factor
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: text, lower, upper
+
+    lower = reason(plan, range%lower, factor, unit)
+    upper = reason(plan, range%upper, factor, unit)
+    text = upper
+    if (lower /= upper) text = 'below: '//lower//'; above: '//upper
+  end function reasons
+
+  pure function reason(plan, found, factor, unit) result(text)
+    type(plan_type), intent(in) :: plan
+    type(end_type), intent(in) :: found
+    real(wp), intent(in) :: factor
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: text
+
+    select case (found%kind)
+    case (ends_at_limit)
+      text = words_of_block(plan, plan%blocks(found%block))
+    case (ends_round)
+      text = 'full turn'
+      if (found%turns > 1) text = 'full turns: it repeats after '//to_text(found%turns)
+    case (ends_otherwise)
+      text = found%reason
+    case default
+      text = 'no limit up to '//to_text(factor*found%value)//' '//unit
+    end select
+  end function reason
+end module mech9_range_text

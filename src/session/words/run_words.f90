@@ -1,0 +1,160 @@
+!> Words and JSON that the reports of all runs share.
+module mech9_run_words
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_error, only: error_type, place_type
+  use mech9_json, only: json_type
+  use mech9_source, only: span_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_version, only: version, revision, compiler
+  implicit none
+  private
+  public :: duration, each, begin_report, add_structure, save_short_report
+
+contains
+
+  !> ", 1.2 us each".
+  pure function each(total, count) result(text)
+    real(wp), intent(in) :: total
+    integer, intent(in) :: count
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (count > 1) text = ', '//duration(total/count)//' each'
+  end function each
+
+  !> A time span in a readable unit.
+  pure function duration(seconds) result(text)
+    real(wp), intent(in) :: seconds
+    character(len=:), allocatable :: text
+
+    if (seconds < 1.0e-3_wp) then
+      text = to_text(1.0e6_wp*seconds, 3)//' us'
+    else if (seconds < 1.0_wp) then
+      text = to_text(1.0e3_wp*seconds, 3)//' ms'
+    else
+      text = to_text(seconds, 4)//' s'
+    end if
+  end function duration
+
+  !> What a report begins with: which program this was, what it ran and what came of it.
+  subroutine begin_report(json, program_name, mechanism, diagnostics, table_path)
+    type(json_type), intent(inout) :: json
+    character(len=*), intent(in) :: program_name
+    type(mechanism_type), intent(in) :: mechanism
+    type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
+    character(len=*), intent(in) :: table_path          !< '-' is standard output; empty: no table
+
+    call json%begin_object()
+    call add_outcome(json, program_name, mechanism, diagnostics%code())
+    call json%add('table', table_path)
+    call json%begin_array('errors')
+    call add_errors(json, diagnostics)
+    call json%end_array()
+  end subroutine begin_report
+
+  !> The report where nothing was run: an answer was asked for, or something is wrong.
+  subroutine save_short_report(path, program_name, mechanism, exit_code, choice, diagnostics, err)
+    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: program_name
+    type(mechanism_type), intent(in) :: mechanism       !< as far as it was read
+    integer, intent(in) :: exit_code                    !< that the program is going to answer
+    type(diagnostics_type), intent(in) :: choice, diagnostics   !< what it is going to say
+    type(error_type), allocatable, intent(out) :: err
+    type(json_type) :: json
+
+    call json%begin_object()
+    call add_outcome(json, program_name, mechanism, exit_code)
+    call json%begin_array('errors')
+    call add_errors(json, choice)
+    call add_errors(json, diagnostics)
+    call json%end_array()
+    call json%end_object()
+    call json%save(path, err)
+  end subroutine save_short_report
+
+  !> Which program this was, and how it ends.
+  subroutine add_outcome(json, program_name, mechanism, exit_code)
+    type(json_type), intent(inout) :: json
+    character(len=*), intent(in) :: program_name
+    type(mechanism_type), intent(in) :: mechanism
+    integer, intent(in) :: exit_code
+
+    call json%add('program', program_name)
+    call json%add('version', version)
+    call json%add('revision', revision)
+    call json%add('compiler', compiler())
+    if (allocated(mechanism%title)) call json%add('title', mechanism%title)
+    call json%add('exit_code', exit_code)
+  end subroutine add_outcome
+
+  !> What is wrong: each message, with its place where it has one.
+  subroutine add_errors(json, diagnostics)
+    type(json_type), intent(inout) :: json
+    type(diagnostics_type), intent(in) :: diagnostics
+    character(len=:), allocatable :: message
+    type(span_type) :: span
+    type(place_type) :: place
+    integer :: i
+
+    do i = 1, diagnostics%known()
+      call diagnostics%get(i, message, span)
+      call json%begin_object()
+      call json%add('message', message)
+      if (span%source > 0) then
+        associate (source => diagnostics%sources(span%source))
+          call json%add('file', source%name)
+          if (source%is_file .and. span%first > 0) then
+            place = source%place(span%first)
+            call json%add('line', place%line)
+            call json%add('column', place%column)
+          end if
+        end associate
+      end if
+      call json%end_object()
+    end do
+  end subroutine add_errors
+
+  !> The structural vectors and the blocks.
+  subroutine add_structure(json, mechanism, plan)
+    type(json_type), intent(inout) :: json
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    integer :: b, i
+
+    call json%add('links', plan%n_links)
+    call json%add('coordinates', plan%n_coordinates)
+    call add_integers(json, 'independent', plan%independent)
+    call add_integers(json, 'nrg', mechanism%vectors%nrg)
+    call add_integers(json, 'nws', mechanism%vectors%nws)
+    call add_integers(json, 'rdw', mechanism%vectors%rdw)
+    call add_integers(json, 'nrw', mechanism%vectors%nrw)
+    call json%begin_array('blocks')
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b))
+        call json%begin_object()
+        call add_integers(json, 'unknowns', &
+                          [(block%coordinates(i), i=1, size(block%unknowns))])
+        call json%add('equations', block%equations)
+        call json%add('chains', block%last_closure - block%first_closure + 1)
+        call json%end_object()
+      end associate
+    end do
+    call json%end_array()
+  end subroutine add_structure
+
+  subroutine add_integers(json, name, numbers)
+    type(json_type), intent(inout) :: json
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: numbers(:)
+    integer :: i
+
+    call json%begin_array(name)
+    do i = 1, size(numbers)
+      call json%add(numbers(i))
+    end do
+    call json%end_array()
+  end subroutine add_integers
+end module mech9_run_words

@@ -1,0 +1,164 @@
+!> Structure and mobility in words, for --structure, --check and --plan.
+module mech9_structure_text
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text, some_of
+  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_plan, only: plan_type
+  use mech9_mobility_report, only: mobility_report_type
+  use mech9_planning, only: chain_names
+  implicit none
+  private
+  public :: print_structure, print_names_of_vectors, print_mobility, print_mobility_report, print_marked
+
+  !> Lines of one sort that are printed at most.
+  integer, parameter :: most_lines = 40
+  !> Numbers that a list shows at most.
+  integer, parameter :: longest_list = 24
+  !> Rates below this, against a rate of one, are none.
+  real(wp), parameter :: least_share = 1.0e-9_wp
+
+contains
+
+  !> The structural vectors, a line each: "nrg = 1 2 3 ...".
+  subroutine print_structure(unit, vectors)
+    integer, intent(in) :: unit
+    type(structural_vectors_type), intent(in) :: vectors
+
+    write (unit, '(2a)') 'nrg = ', to_text(vectors%nrg, ' ')
+    write (unit, '(2a)') 'nws = ', to_text(vectors%nws, ' ')
+    write (unit, '(2a)') 'rdw = ', to_text(vectors%rdw, ' ')
+    write (unit, '(2a)') 'nrw = ', to_text(vectors%nrw, ' ')
+  end subroutine print_structure
+
+  !> What the structural vectors are, a line each.
+  subroutine print_names_of_vectors(unit)
+    integer, intent(in) :: unit
+
+    write (unit, '(a)') 'The structural vectors, an element for each place in the order of computation:'
+    write (unit, '(a)') '  nrg  number of the link that is reached; a chain that closes ends on a link that was reached before'
+    write (unit, '(a)') '  nws  number of the coordinate of the pair that leads there; 0 where a chain starts'
+    write (unit, '(a)') '  rdw  kind of that coordinate: 1 independent (and where a chain starts), 0 dependent'
+    write (unit, '(a)') '  nrw  number of closed chains so far; it grows by one at the link on which a chain closes'
+  end subroutine print_names_of_vectors
+
+  !> Counts, mobility and redundancy.
+  subroutine print_mobility(unit, plan)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    integer :: b, unknowns, equations
+
+    unknowns = 0
+    equations = 0
+    do b = 1, size(plan%blocks)
+      unknowns = unknowns + size(plan%blocks(b)%unknowns)
+      equations = equations + plan%blocks(b)%equations
+    end do
+    call print_counts(unit, plan)
+    write (unit, '(a)') 'mobility '//to_text(plan%n_coordinates - unknowns)//' = '// &
+      counted(plan%n_coordinates, 'coordinate')//' - rank '//to_text(unknowns)
+    if (equations > unknowns) write (unit, '(a)') 'redundant equations: '//to_text(equations - unknowns)
+  end subroutine print_mobility
+
+  subroutine print_counts(unit, plan)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+
+    write (unit, '(a)') to_text(plan%n_links)//' links, '//counted(plan%n_coordinates, 'coordinate')//', '// &
+      counted(size(plan%closures), 'closed chain')
+    write (unit, '(a)') 'independent: '//to_text(plan%independent)
+  end subroutine print_counts
+
+  !> "1 coordinate", "2 coordinates".
+  pure function counted(number, noun) result(words)
+    integer, intent(in) :: number
+    character(len=*), intent(in) :: noun
+    character(len=:), allocatable :: words
+
+    words = trim(to_text(number)//' '//noun//merge(' ', 's', number == 1))
+  end function counted
+
+  !> Counts, ranks, redundant equations, and what each coordinate can be.
+  subroutine print_mobility_report(unit, plan, report)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    type(mobility_report_type), intent(in) :: report
+    integer :: i, c
+
+    call print_counts(unit, plan)
+    write (unit, '(a)') 'mobility by the count: '//to_text(report%by_count)//' = '//counted(plan%n_coordinates, 'coordinate')// &
+      ' - '//to_text(plan%n_coordinates - report%by_count)//' dimensions of the chains'' motions'
+    write (unit, '(a)') 'mobility by the rank: '//to_text(report%by_rank)//' = '// &
+      counted(plan%n_coordinates, 'coordinate')//' - rank '//to_text(plan%n_coordinates - report%by_rank)
+    if (.not. report%general) write (unit, '(a)') 'the ranks are those of the start: no other closed position was found near it'
+    call print_ranks(unit, plan, report)
+    do c = 1, size(plan%closures)
+      if (report%redundant(c) > 0) write (unit, '(a)') 'closed chain '//to_text(plan%closures(c)%chain)//': '// &
+        to_text(report%redundant(c))//' of its '//to_text(plan%closures(c)%rank)//' equations redundant'
+    end do
+    do i = 1, size(plan%independent)
+      if (i <= most_lines) call print_alternatives(unit, plan, report, i)
+    end do
+    call print_marked(unit, .not. report%moves, 'cannot move, hence not be independent: ', &
+                      '; the links that these pairs join are as one')
+    call print_marked(unit, report%dimensions == 0, 'on no closed chain: ')
+    do i = 1, size(report%idle)
+      write (unit, '(a)') 'idle: coordinates '//some_of(report%idle(i)%coordinates, longest_list)//' can move while links '// &
+        to_text(report%idle(i)%ends(1))//' and '//to_text(report%idle(i)%ends(2))//' stand still'
+    end do
+  end subroutine print_mobility_report
+
+  !> Equations and rank of each block; of many blocks only those that are singular at the start.
+  subroutine print_ranks(unit, plan, report)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    type(mobility_report_type), intent(in) :: report
+    integer :: b, left_out
+
+    left_out = 0
+    do b = 1, size(plan%blocks)
+      if (plan%blocks(b)%equations == 0) cycle
+      if (b > most_lines .and. report%at_start(b) == report%ranks(b)) then
+        left_out = left_out + 1
+        cycle
+      end if
+      write (unit, '(a)', advance='no') 'block '//to_text(b)//': '//chain_names(plan%blocks(b))//', '// &
+        to_text(plan%blocks(b)%equations)//' equations, rank '//to_text(report%ranks(b))
+      if (report%at_start(b) < report%ranks(b)) write (unit, '(a)', advance='no') &
+        '; at the start only '//to_text(report%at_start(b))//': a singular position'
+      write (unit, '(a)') ''
+    end do
+    if (left_out > 0) write (unit, '(a)') 'and '//to_text(left_out)//' blocks more'
+  end subroutine print_ranks
+
+  !> Coordinates that could be independent instead of one that is.
+  subroutine print_alternatives(unit, plan, report, i)
+    integer, intent(in) :: unit
+    type(plan_type), intent(in) :: plan
+    type(mobility_report_type), intent(in) :: report
+    integer, intent(in) :: i                  !< its place among the independent ones
+    integer :: k
+    integer, allocatable :: others(:)
+
+    others = pack([(k, k=1, plan%n_coordinates)], abs(report%shares(:, i)) > least_share)
+    others = pack(others, others /= plan%independent(i))
+    if (size(others) > 0) then
+      write (unit, '(a)') 'instead of '//to_text(plan%independent(i))//' could be independent: '//some_of(others, longest_list)
+    else
+      write (unit, '(a)') 'independent in any case: '//to_text(plan%independent(i))
+    end if
+  end subroutine print_alternatives
+
+  !> Words and the numbers that are marked; nothing where none is.
+  subroutine print_marked(unit, mask, words, more)
+    integer, intent(in) :: unit
+    logical, intent(in) :: mask(:)
+    character(len=*), intent(in) :: words
+    character(len=*), intent(in), optional :: more    !< words after the numbers
+    integer :: k
+
+    if (.not. any(mask)) return
+    write (unit, '(2a)', advance='no') words, some_of(pack([(k, k=1, size(mask))], mask), longest_list)
+    if (present(more)) write (unit, '(a)', advance='no') more
+    write (unit, '(a)') ''
+  end subroutine print_marked
+end module mech9_structure_text

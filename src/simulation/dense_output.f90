@@ -1,0 +1,242 @@
+!> The motion between the ends of steps.
+!>
+!> Positions, rates and accelerations at the nearest points that are known, ends of steps and points inserted into the last
+!> one, give a polynomial. Without the farthest of these points it is a worse one; where both agree within the
+!> tolerance the better one is far inside it. Independent coordinates are taken from there, the chains are closed by Newton's
+!> method, and accelerations are worked out anew: every position is one of closed chains that satisfies (19).
+module mech9_dense_output
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_hermite, only: hermite_type, build_hermite
+  use mech9_motion_system, only: motion_system_type
+  implicit none
+  private
+  public :: dense_output_type
+
+  !> Ends of steps that are kept, and points of a polynomial.
+  integer, parameter :: most = 4
+  !> Steepest slope between two neighbouring triple zeros, times their distance, against the height: 3.4.
+  real(wp), parameter :: steepness = 4.0_wp
+  !> Points inserted into a step.
+  integer, parameter :: most_inserted = 3
+
+  !> A settled point: the end of a step, or inserted into one.
+  type :: step_point_type
+    real(wp) :: t = 0.0_wp                            !< [s]
+    real(wp), allocatable :: y(:)                     !< settled
+    integer, allocatable :: signs(:)                  !< of the blocks' Jacobians
+    logical :: is_known = .false.                     !< the following were worked out
+    real(wp), allocatable :: q(:), dq(:), ddq(:)      !< (M)
+  end type step_point_type
+
+  !> The last ends of steps in the same independent coordinates, and what was inserted into the last one after them.
+  type :: dense_output_type
+    private
+    type(step_point_type) :: points(most + most_inserted)
+    integer :: last = 0                               !< place of the end of the last step
+    integer :: count = 0                              !< ends
+    integer :: inserted = 0
+    integer :: chosen(most) = 0                       !< the points through which `way` leads, the nearest first
+    type(hermite_type) :: way                         !< of all coordinates
+  contains
+    procedure :: begin
+    procedure :: add
+    procedure :: insert
+    procedure :: count_inserted
+    procedure :: start_of_step
+    procedure :: crosses
+    procedure :: agrees
+    procedure :: find
+  end type dense_output_type
+
+contains
+
+  !> Nothing is known yet.
+  pure subroutine begin(self)
+    class(dense_output_type), intent(inout) :: self
+
+    self%count = 0
+    self%inserted = 0
+    self%chosen = 0
+  end subroutine begin
+
+  !> The end of a step, or the start of the first one; the system must have been evaluated there last.
+  subroutine add(self, system, t, y)
+    class(dense_output_type), intent(inout) :: self
+    type(motion_system_type), intent(inout) :: system
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)                      !< settled
+
+    self%last = mod(self%last, most) + 1
+    self%count = min(self%count + 1, most)
+    self%inserted = 0
+    self%chosen = 0
+    associate (here => self%points(self%last))
+      here%t = t
+      here%y = y
+      here%is_known = .false.
+      if (.not. allocated(here%signs)) allocate (here%signs(size(system%work%blocks)))
+      if (size(here%signs) /= size(system%work%blocks)) then
+        deallocate (here%signs)
+        allocate (here%signs(size(system%work%blocks)))
+      end if
+      call system%signs(here%signs)
+    end associate
+  end subroutine add
+
+  !> A settled point within the last step; nothing happens where there are enough.
+  pure subroutine insert(self, t, y)
+    class(dense_output_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+
+    if (self%inserted == most_inserted) return
+    self%inserted = self%inserted + 1
+    self%chosen = 0
+    associate (here => self%points(most + self%inserted))
+      here%t = t
+      here%y = y
+      here%is_known = .false.
+    end associate
+  end subroutine insert
+
+  !> Such points of the last step.
+  pure integer function count_inserted(self)
+    class(dense_output_type), intent(in) :: self
+
+    count_inserted = self%inserted
+  end function count_inserted
+
+  !> Where the last step began.
+  pure subroutine start_of_step(self, t, y)
+    class(dense_output_type), intent(in) :: self     !< with two ends at least
+    real(wp), intent(out) :: t
+    real(wp), intent(out) :: y(:)
+    integer :: before
+
+    before = place(self, 2)
+    t = self%points(before)%t
+    y = self%points(before)%y
+  end subroutine start_of_step
+
+  !> Place of the i-th end, counted from the last one.
+  pure integer function place(self, i)
+    class(dense_output_type), intent(in) :: self
+    integer, intent(in) :: i
+
+    place = modulo(self%last - i, most) + 1
+  end function place
+
+  !> Whether a singular position of the independent coordinates lies within the last step: signs are not the same at
+  !> its ends.
+  pure logical function crosses(self)
+    class(dense_output_type), intent(in) :: self
+
+    crosses = any(self%points(place(self, 1))%signs /= self%points(place(self, 2))%signs)
+  end function crosses
+
+  !> Whether the blocks' Jacobians of the system's state have the signs that they have at the end of the last step.
+  logical function agrees(self, system)
+    class(dense_output_type), intent(in) :: self
+    type(motion_system_type), intent(inout) :: system
+    integer :: signs(size(system%work%blocks))
+
+    call system%signs(signs)
+    agrees = all(signs == self%points(self%last)%signs)
+  end function agrees
+
+  !> The vector at time t within the last step. `found` is false where it is not certain to be as accurate as the
+  !> ends of the step. Leaves the system in another state. Fails as evaluations do.
+  subroutine find(self, system, t, y, found, err)
+    class(dense_output_type), intent(inout) :: self
+    type(motion_system_type), intent(inout) :: system
+    real(wp), intent(in) :: t
+    real(wp), intent(out) :: y(:)
+    logical, intent(out) :: found
+    type(error_type), allocatable, intent(out) :: err
+    real(wp), dimension(system%plan%n_coordinates) :: q, dq, ddq, worse_q, worse_dq
+    real(wp) :: change, change_of_rate, per_length
+    integer :: i, k, m
+
+    y = 0.0_wp
+    found = .false.
+    if (self%count < 2) return
+    call build(self, system, t, err)
+    if (allocated(err)) return
+    call self%way%evaluate(t, worse_q, worse_dq, ddq, points=size(self%way%x)/3 - 1)
+    call self%way%evaluate(t, q, dq, ddq)
+    per_length = steepness/abs(self%points(self%chosen(1))%t - self%points(self%chosen(2))%t)
+    m = system%plan%n_coordinates
+    y(:m) = q
+    found = .true.
+    associate (solver => system%mechanism%solver)
+      do i = 1, size(system%plan%independent)
+        k = system%plan%independent(i)
+        y(m + i) = dq(k)
+        ! a difference may vanish here by chance: then its derivative does not, or the other way about
+        change = abs(q(k) - worse_q(k))
+        change_of_rate = abs(dq(k) - worse_dq(k))
+        found = found .and. change + change_of_rate/per_length <= solver%relative_tolerance*abs(q(k)) &
+                + solver%absolute_tolerance &
+                .and. change_of_rate + change*per_length <= solver%relative_tolerance*abs(dq(k)) &
+                + solver%absolute_tolerance
+      end do
+    end associate
+  end subroutine find
+
+  !> The polynomial through the points next to time t, if it is not there already.
+  subroutine build(self, system, t, err)
+    class(dense_output_type), intent(inout) :: self
+    type(motion_system_type), intent(inout) :: system
+    real(wp), intent(in) :: t
+    type(error_type), allocatable, intent(out) :: err
+    real(wp), dimension(system%plan%n_coordinates, most) :: q, dq, ddq
+    real(wp) :: times(most)
+    integer :: chosen(most), i, n
+
+    chosen = points_next_to(self, t)
+    if (all(chosen == self%chosen)) return
+    n = count(chosen > 0)
+    do i = 1, n
+      associate (point => self%points(chosen(i)))
+        if (.not. point%is_known) then
+          call system%move_to(point%t, point%y, err)
+          if (allocated(err)) return
+          point%q = system%state%q
+          point%dq = system%state%dq
+          point%ddq = system%state%ddq
+          point%is_known = .true.
+        end if
+        times(i) = point%t
+        q(:, i) = point%q
+        dq(:, i) = point%dq
+        ddq(:, i) = point%ddq
+      end associate
+    end do
+    call build_hermite(times(:n), q(:, :n), dq(:, :n), ddq(:, :n), self%way)
+    self%chosen = chosen
+  end subroutine build
+
+  !> Places of the points next to time t, the nearest first; 0 where there are no more.
+  pure function points_next_to(self, t) result(chosen)
+    class(dense_output_type), intent(in) :: self
+    real(wp), intent(in) :: t
+    integer :: chosen(most), i, j
+    logical :: is_left(size(self%points))
+
+    is_left = .false.
+    do i = 1, self%count
+      is_left(place(self, i)) = .true.
+    end do
+    is_left(most + 1:most + self%inserted) = .true.
+    chosen = 0
+    do i = 1, min(most, count(is_left))
+      do j = 1, size(is_left)
+        if (.not. is_left(j)) cycle
+        if (chosen(i) == 0) chosen(i) = j
+        if (abs(self%points(j)%t - t) < abs(self%points(chosen(i))%t - t)) chosen(i) = j
+      end do
+      is_left(chosen(i)) = .false.
+    end do
+  end function points_next_to
+end module mech9_dense_output

@@ -1,0 +1,265 @@
+!> The motion as differential equations for an integrator.
+!>
+!> The vector that is integrated holds all coordinates and the rates of the independent ones. An
+!> evaluation takes the positions as they are, and the chains are closed after each accepted step:
+!> half the cost of closing them in every evaluation, at the same error (docs/performance.md).
+module mech9_motion_system
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type, acceleration_known
+  use mech9_block_solver, only: newton_outcome_type, close_block
+  use mech9_planning, only: chain_names
+  use mech9_ode_system, only: ode_system_type
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_expectation, only: expectation_type
+  use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
+  use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
+  use mech9_generalized_forces, only: show_state
+  use mech9_frame_motion, only: place_all
+  implicit none
+  private
+  public :: motion_system_type, set_motion_system
+
+  !> Largest change of a coordinate, in its unit, by which closing may move what the integrator found:
+  !> its error is far below; more, and the chains might close on another branch.
+  real(wp), parameter :: trusted_correction = 0.02_wp
+  !> The same between two steps, where the position is known as well as at their ends.
+  real(wp), parameter :: trusted_between = 1.0e-3_wp
+
+  type, extends(ode_system_type) :: motion_system_type
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(state_type) :: state                        !< of the last evaluation, or as settled
+    integer(long) :: iterations = 0                  !< of Newton's method, all blocks
+    !> Trials with a worse conditioned block are refused: a step must not cross a singular position unseen.
+    real(wp) :: refuse_below = 0.0_wp
+    logical, private :: just_settled = .false.
+  contains
+    procedure :: size_of_vector
+    procedure :: vector
+    procedure :: rate
+    procedure :: settle
+    procedure :: close_near
+    procedure :: move_to
+    procedure :: resume
+    procedure :: present
+    procedure :: conditioning
+    procedure :: signs
+  end type motion_system_type
+
+contains
+
+  !> The system from an assembled start with the independent rates in `start`; its motion there is worked out,
+  !> and work%coefficients are those of the start.
+  subroutine set_motion_system(mechanism, plan, start, system, err)
+    type(mechanism_type), intent(in) :: mechanism
+    type(plan_type), intent(in) :: plan
+    type(state_type), intent(in) :: start
+    class(motion_system_type), intent(inout) :: system
+    type(error_type), allocatable, intent(out) :: err
+
+    system%settles = .true.
+    system%mechanism = mechanism
+    system%plan = plan
+    call make_dynamics_plan(mechanism, plan, system%dynamics)
+    system%work = new_lagrange_work(plan, system%dynamics)
+    system%state = start
+    ! reports show the coefficients of the start; articulated bodies do without
+    if (system%dynamics%open_chains) call find_equations(mechanism, plan, system%dynamics, system%state, system%work, err)
+    if (allocated(err)) return
+    call system%present(err)
+  end subroutine set_motion_system
+
+  !> Length of the vector that is integrated.
+  pure integer function size_of_vector(self)
+    class(motion_system_type), intent(in) :: self
+
+    size_of_vector = self%plan%n_coordinates + size(self%plan%independent)
+  end function size_of_vector
+
+  !> The vector of the present state.
+  pure function vector(self) result(y)
+    class(motion_system_type), intent(in) :: self
+    real(wp) :: y(self%plan%n_coordinates + size(self%plan%independent))
+
+    y(:self%plan%n_coordinates) = self%state%q
+    y(self%plan%n_coordinates + 1:) = self%state%dq(self%plan%independent)
+  end function vector
+
+  !> Derivatives of the vector. A trial state in a singular position fails with exit_singular.
+  subroutine rate(self, t, y, ydot, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    real(wp), intent(out) :: ydot(:)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: i, m
+
+    call take(self, t, y)
+    call place_all(self%plan, self%state, err)
+    if (allocated(err)) return
+    call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    if (allocated(err)) return
+    if (self%conditioning() < self%refuse_below) then
+      call raise(err, exit_singular, 'the step comes too near to a singular position of its independent coordinates')
+      return
+    end if
+    if (self%just_settled) call remember(self)
+    m = self%plan%n_coordinates
+    do i = 1, m
+      ydot(i) = self%state%dq(i)
+    end do
+    do i = 1, size(self%work%accelerations)
+      ydot(m + i) = self%work%accelerations(i)
+    end do
+  end subroutine rate
+
+  !> Keep what the first evaluation after an accepted step found there.
+  pure subroutine remember(self)
+    class(motion_system_type), intent(inout) :: self
+
+    self%just_settled = .false.
+    ! nothing to expect where all coordinates are independent
+    if (size(self%plan%closures) == 0) return
+    call self%work%expectation%remember(self%state%t, self%work%jacobian%b, self%state%ddq)
+  end subroutine remember
+
+  !> Positions and independent rates of a vector into the state.
+  pure subroutine take(self, t, y)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t, y(:)
+    integer :: i, m
+
+    self%state%t = t
+    m = self%plan%n_coordinates
+    do i = 1, m
+      self%state%q(i) = y(i)
+    end do
+    do i = 1, size(self%plan%independent)
+      self%state%dq(self%plan%independent(i)) = y(m + i)
+    end do
+  end subroutine take
+
+  !> After an accepted step: close the chains, and put the closed positions back into the vector.
+  subroutine settle(self, t, y, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(inout) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+    integer :: failed, i
+
+    call take(self, t, y)
+    call close_chains(self, trusted_correction, failed, err)
+    if (allocated(err)) return
+    if (failed > 0) then
+      call raise(err, exit_singular, chain_names(self%plan%blocks(failed))//' cannot be closed near the position at t = '// &
+                 to_text(t, 10)//' s')
+      return
+    end if
+    do i = 1, self%plan%n_coordinates
+      y(i) = self%state%q(i)
+    end do
+    self%just_settled = .true.
+  end subroutine settle
+
+  !> Close the chains of the present state. `failed` is the block that does not close, or only by a change of
+  !> more than the trusted one; 0 where all do.
+  subroutine close_chains(self, trusted, failed, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: trusted              !< change of a coordinate, in its unit
+    integer, intent(out) :: failed
+    type(error_type), allocatable, intent(out) :: err
+    type(newton_outcome_type) :: outcome
+    integer :: b
+
+    failed = 0
+    do b = 1, size(self%plan%blocks)
+      call close_block(self%plan, self%plan%blocks(b), self%state, self%work%blocks(b), outcome, err)
+      if (allocated(err)) return
+      self%iterations = self%iterations + outcome%iterations
+      failed = b
+      if (.not. outcome%converged .or. outcome%correction > trusted) return
+    end do
+    failed = 0
+  end subroutine close_chains
+
+  !> A state between two settled ones, and all its velocities and accelerations: y is where the integrator takes it to
+  !> be, and the chains are closed there. `ok` is false where they are not certain to close on the same branch.
+  subroutine close_near(self, t, y, ok, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    logical, intent(out) :: ok
+    type(error_type), allocatable, intent(out) :: err
+    integer :: failed
+
+    ok = .false.
+    call take(self, t, y)
+    call close_chains(self, trusted_between, failed, err)
+    if (allocated(err) .or. failed > 0) return
+    call self%present(err)
+    ok = .not. allocated(err)
+  end subroutine close_near
+
+  !> A settled state, and all its velocities and accelerations.
+  subroutine move_to(self, t, y, err)
+    class(motion_system_type), intent(inout) :: self
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)                 !< as settled
+    type(error_type), allocatable, intent(out) :: err
+
+    call take(self, t, y)
+    call place_all(self%plan, self%state, err)
+    if (.not. allocated(err)) call self%present(err)
+  end subroutine move_to
+
+  !> Go on with what was expected before steps that led aside.
+  pure subroutine resume(self, expectation)
+    class(motion_system_type), intent(inout) :: self
+    type(expectation_type), intent(in) :: expectation
+
+    self%work%expectation = expectation
+    self%just_settled = .false.
+  end subroutine resume
+
+  !> With all frames in place: all velocities and accelerations of the state, and the state as
+  !> loads see it in work%view, for results.
+  subroutine present(self, err)
+    class(motion_system_type), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: err
+
+    call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    if (allocated(err)) return
+    call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
+    call show_state(self%plan, self%dynamics, self%state, self%work%view)
+    self%state%known = acceleration_known
+  end subroutine present
+
+  !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.
+  pure real(wp) function conditioning(self)
+    class(motion_system_type), intent(in) :: self
+    integer :: b
+
+    conditioning = 1.0_wp
+    do b = 1, size(self%work%blocks)
+      conditioning = min(conditioning, self%work%blocks(b)%equations%conditioning())
+    end do
+  end function conditioning
+
+  !> Of the determinants of the blocks' Jacobians at the last evaluation; those of a branch change in singular positions
+  !> only.
+  subroutine signs(self, found)
+    class(motion_system_type), intent(inout) :: self
+    integer, intent(out) :: found(:)             !< (blocks)
+    integer :: b
+
+    do b = 1, size(self%work%blocks)
+      found(b) = self%work%blocks(b)%equations%determinant_sign()
+    end do
+  end subroutine signs
+end module mech9_motion_system

@@ -1,0 +1,84 @@
+!> Steps aside from the integration of a motion: from the start of its last step to a time within it, while it stays where it
+!> is.
+module mech9_side_steps
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_expectation, only: expectation_type
+  use mech9_motion_system, only: motion_system_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type
+  implicit none
+  private
+  public :: side_steps_type, begin_integration
+
+  type :: side_steps_type
+    private
+    type(integrator_type) :: integrator
+    logical :: begun = .false.
+    real(wp), public :: t = 0.0_wp                    !< where they led [s]
+    real(wp), allocatable, public :: y(:)             !< there
+  contains
+    procedure :: reach
+    procedure :: statistics
+    procedure :: close => close_side_steps
+  end type side_steps_type
+
+contains
+
+  !> An integrator of the system from (t, y), with the method and the limits that its data file asks for.
+  subroutine begin_integration(integrator, system, t, y, err)
+    type(integrator_type), intent(inout) :: integrator
+    type(motion_system_type), intent(inout), target :: system    !< must outlive the integrator
+    real(wp), intent(in) :: t
+    real(wp), intent(in) :: y(:)
+    type(error_type), allocatable, intent(out) :: err
+    real(wp) :: absolute(size(y))
+
+    associate (solver => system%mechanism%solver)
+      absolute = solver%absolute_tolerance
+      call integrator%create(system, solver%method, solver%relative_tolerance, absolute, t, y, err)
+      if (.not. allocated(err)) call integrator%limit(err, maximum_steps=solver%maximum_steps)
+    end associate
+  end subroutine begin_integration
+
+  !> To time t, from (from, y), or from where earlier steps led if that lies between. Fails as the integration does.
+  subroutine reach(self, system, from, y, t, err)
+    class(side_steps_type), intent(inout) :: self
+    type(motion_system_type), intent(inout), target :: system    !< the same at each call, until closed
+    real(wp), intent(in) :: from
+    real(wp), intent(in) :: y(:)
+    real(wp), intent(in) :: t
+    type(error_type), allocatable, intent(out) :: err
+    type(expectation_type) :: expectation
+    logical :: goes_on
+
+    expectation = system%work%expectation
+    goes_on = self%begun .and. (self%t - from)*(t - self%t) >= 0.0_wp
+    if (.not. self%begun) call begin_integration(self%integrator, system, from, y, err)
+    self%begun = .true.
+    if (.not. (goes_on .or. allocated(err))) then
+      call self%integrator%restart(from, y, err, first_step=t - from)
+      self%t = from
+      self%y = y
+    end if
+    do while (.not. allocated(err) .and. abs(t - self%t) > 0.0_wp)
+      call self%integrator%step(t, self%t, self%y, err)
+    end do
+    call system%resume(expectation)
+  end subroutine reach
+
+  !> What they took.
+  function statistics(self)
+    class(side_steps_type), intent(inout) :: self
+    type(integration_statistics_type) :: statistics
+
+    statistics = self%integrator%statistics()
+  end function statistics
+
+  !> Give back what they hold.
+  subroutine close_side_steps(self)
+    class(side_steps_type), intent(inout) :: self
+
+    call self%integrator%destroy()
+    self%begun = .false.
+  end subroutine close_side_steps
+end module mech9_side_steps

@@ -1,0 +1,233 @@
+!> The motion between the ends of steps: where the polynomial is as good as the ends, where it is not, and what tells
+!> another branch. Closed form: a slide on a spring swings as q = cos t.
+program test_dense_output
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_singular
+  use mech9_mechanism, only: mechanism_type
+  use mech9_coordinate_load, only: coordinate_load_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_expectation, only: expectation_type
+  use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_dense_output, only: dense_output_type
+  use mech9_sample_mechanisms, only: new_mechanism, add_prismatic, frame, four_bar
+  use mech9_loaded_mechanisms, only: without_loads, add_body, add_load
+  use mech9_testing, only: tester_type
+  implicit none
+  real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
+  real(wp), parameter :: inertia(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+  type(tester_type) :: test
+
+  call swinging()
+  call branches()
+  call trust()
+  call expectations()
+  call test%finish()
+
+contains
+
+  !> One slide of 1 kg on a spring of 1 N/m.
+  subroutine swing(system)
+    type(motion_system_type), intent(inout) :: system
+    type(mechanism_type) :: mechanism
+    type(coordinate_load_type) :: load
+
+    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], mechanism)
+    call add_prismatic(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call without_loads(mechanism)
+    call add_body(mechanism, 2, 1.0_wp, origin, inertia)
+    load%coordinate = 1
+    load%stiffness = 1.0_wp
+    call add_load(mechanism, load)
+    mechanism%initial_position = 1.0_wp
+    call begin(mechanism, 0.0_wp, system)
+  end subroutine swing
+
+  !> A crank-rocker with a heavy crank, assembled at the guess.
+  subroutine rocker(guess, system)
+    real(wp), intent(in) :: guess(4)
+    type(motion_system_type), intent(inout) :: system
+    type(mechanism_type) :: mechanism
+
+    call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, guess, mechanism)
+    call without_loads(mechanism)
+    call add_body(mechanism, 2, 1.0_wp, origin, inertia)
+    call begin(mechanism, 2.0_wp, system)
+  end subroutine rocker
+
+  !> The system of a mechanism at its start.
+  subroutine begin(mechanism, rate, system)
+    type(mechanism_type), intent(in) :: mechanism
+    real(wp), intent(in) :: rate
+    type(motion_system_type), intent(inout) :: system
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, 'a plan')
+    if (allocated(err)) return
+    state%t = 0.0_wp
+    state%dq(plan%independent) = rate
+    call set_motion_system(mechanism, plan, state, system, err)
+    call test%no_error(err, 'a system')
+  end subroutine begin
+
+  !> The end of a step of the swing at time t.
+  subroutine add_end(system, dense_output, t)
+    type(motion_system_type), intent(inout) :: system
+    type(dense_output_type), intent(inout) :: dense_output
+    real(wp), intent(in) :: t
+    type(error_type), allocatable :: err
+    real(wp) :: y(2)
+
+    y = [cos(t), -sin(t)]
+    call system%move_to(t, y, err)
+    call test%no_error(err, 'an end of a step')
+    call dense_output%add(system, t, y)
+  end subroutine add_end
+
+  !> Compare what is found at time t with the closed form.
+  subroutine check_swing(system, dense_output, t, expected, why)
+    type(motion_system_type), intent(inout) :: system
+    type(dense_output_type), intent(inout) :: dense_output
+    real(wp), intent(in) :: t
+    logical, intent(in) :: expected            !< it is found
+    character(len=*), intent(in) :: why
+    type(error_type), allocatable :: err
+    real(wp) :: y(2)
+    logical :: found
+
+    call dense_output%find(system, t, y, found, err)
+    call test%no_error(err, why)
+    call test%is_true(found .eqv. expected, why//': whether it is found')
+    ! the tolerance that is allowed for the worse of two polynomials
+    if (found) call test%near(maxval(abs(y - [cos(t), -sin(t)])), 0.0_wp, &
+                              system%mechanism%solver%relative_tolerance + system%mechanism%solver%absolute_tolerance, why)
+  end subroutine check_swing
+
+  !> Steps one after the other, a new beginning, and points inside a long step.
+  subroutine swinging()
+    type(motion_system_type) :: system
+    type(dense_output_type) :: dense_output
+    real(wp) :: t, y(2)
+    integer :: i
+
+    call swing(system)
+    call dense_output%begin()
+    call add_end(system, dense_output, 0.0_wp)
+    call check_swing(system, dense_output, 0.0_wp, .false., 'one end alone')
+    do i = 1, 9
+      call add_end(system, dense_output, 0.1_wp*i)
+      ! looked into at times only: what was known for earlier steps is not that of this one
+      if (mod(i, 4) == 0) call check_swing(system, dense_output, 0.1_wp*i - 0.03_wp, .true., 'a short step')
+    end do
+    call dense_output%start_of_step(t, y)
+    call test%near(t, 0.8_wp, 1.0e-15_wp, 'where the step began')
+    call test%near(y(1), cos(0.8_wp), 1.0e-15_wp, 'and where that is')
+    call dense_output%begin()
+    call add_end(system, dense_output, 0.9_wp)
+    call check_swing(system, dense_output, 0.9_wp, .false., 'a new beginning knows no steps before it')
+    ! in 1.8 s a polynomial through its ends is right to some thousandths only
+    call add_end(system, dense_output, 2.7_wp)
+    call check_swing(system, dense_output, 1.5_wp, .false., 'a long step')
+    do i = 1, 3
+      t = 0.9_wp + 0.45_wp*i
+      call dense_output%insert(t, [cos(t), -sin(t)])
+      call test%is_true(dense_output%count_inserted() == i, 'points within it are counted')
+    end do
+    call check_swing(system, dense_output, 1.5_wp, .true., 'a long step with points within it')
+    call dense_output%insert(2.0_wp, [9.0_wp, 9.0_wp])
+    call test%is_true(dense_output%count_inserted() == 3, 'no more than there is room for')
+    call add_end(system, dense_output, 2.8_wp)
+    call test%is_true(dense_output%count_inserted() == 0, 'the next step has none')
+    call check_swing(system, dense_output, 2.75_wp, .true., 'a short step after a long one')
+    do i = 1, 3
+      t = 2.8_wp + 0.1_wp*i
+      call add_end(system, dense_output, t)
+    end do
+    call add_end(system, dense_output, 4.9_wp)
+    do i = 1, 3
+      t = 3.1_wp + 0.45_wp*i
+      call dense_output%insert(t, [cos(t), -sin(t)])
+    end do
+    call check_swing(system, dense_output, 3.9_wp, .true., 'points within another step')
+  end subroutine swinging
+
+  !> Both branches of a crank-rocker have the same crank angles and Jacobians of opposite sign.
+  subroutine branches()
+    type(motion_system_type) :: upper, lower
+    type(dense_output_type) :: dense_output
+    type(error_type), allocatable :: err
+
+    call rocker([0.3_wp, 1.0_wp, 0.8_wp, 2.0_wp], upper)
+    call rocker([0.3_wp, -1.6_wp, -0.8_wp, -2.4_wp], lower)
+    call test%is_true(abs(upper%state%q(4) - lower%state%q(4)) > 0.5_wp, 'two branches')
+    call dense_output%begin()
+    call dense_output%add(upper, 0.0_wp, upper%vector())
+    call dense_output%add(upper, 0.1_wp, upper%vector())
+    call test%is_true(.not. dense_output%crosses(), 'a step on one branch')
+    call test%is_true(dense_output%agrees(upper), 'a state on it')
+    call test%is_true(.not. dense_output%agrees(lower), 'a state on the other')
+    call upper%move_to(0.2_wp, lower%vector(), err)
+    call test%no_error(err, 'the other branch')
+    call dense_output%add(upper, 0.2_wp, upper%vector())
+    call test%is_true(dense_output%crosses(), 'a step from branch to branch')
+  end subroutine branches
+
+  !> How far closing may move what an integrator or a polynomial found, and where a state is too near to a
+  !> singular one.
+  subroutine trust()
+    type(motion_system_type) :: system
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: closed(:), y(:), ydot(:)
+    logical :: ok
+
+    call rocker([0.3_wp, 1.0_wp, 0.8_wp, 2.0_wp], system)
+    closed = system%vector()
+    allocate (y, source=closed)
+    allocate (ydot(size(y)))
+    ! both limits are a few times the error of any step that is worth its name
+    y(2:4) = closed(2:4) + 1.0e-6_wp*[1.0_wp, -2.0_wp, 1.0_wp]
+    call system%close_near(0.0_wp, y, ok, err)
+    call test%no_error(err, 'a small error inside a step')
+    call test%is_true(ok, 'a small error inside a step is closed')
+    call test%near(maxval(abs(system%state%q - closed(:4))), 0.0_wp, 1.0e-13_wp, 'where it was')
+    y(2:4) = closed(2:4) + 5.0e-3_wp*[1.0_wp, -2.0_wp, 1.0_wp]
+    call system%close_near(0.0_wp, y, ok, err)
+    call test%is_true(.not. ok, 'a large one is not trusted')
+    call system%settle(0.0_wp, y, err)
+    call test%no_error(err, 'the same at the end of a step')
+    call test%near(maxval(abs(y(:4) - closed(:4))), 0.0_wp, 1.0e-13_wp, 'is closed')
+    y(2:4) = closed(2:4) + 0.1_wp*[1.0_wp, -2.0_wp, 1.0_wp]
+    call system%settle(0.0_wp, y, err)
+    call test%has_error(err, exit_singular, 'a larger one is not')
+    call system%rate(0.0_wp, closed, ydot, err)
+    call test%no_error(err, 'a state that is not refused')
+    system%refuse_below = 2.0_wp
+    call system%rate(0.0_wp, closed, ydot, err)
+    call test%has_error(err, exit_singular, 'no conditioning is that good')
+  end subroutine trust
+
+  !> Straight lines through what was found at two times; at one time the value there.
+  subroutine expectations()
+    type(expectation_type) :: expectation
+    real(wp) :: b(2), ddq(1)
+
+    b = [7.0_wp, 8.0_wp]
+    ddq = 9.0_wp
+    call expectation%continue_to(1.0_wp, b, ddq)
+    call test%near(sum(b) + sum(ddq), 24.0_wp, 1.0e-15_wp, 'nothing known, nothing changed')
+    call expectation%remember(1.0_wp, [1.0_wp, 2.0_wp], [3.0_wp])
+    call expectation%continue_to(5.0_wp, b, ddq)
+    call test%near(maxval(abs([b - [1.0_wp, 2.0_wp], ddq - 3.0_wp])), 0.0_wp, 1.0e-15_wp, 'one time')
+    call expectation%remember(3.0_wp, [2.0_wp, 0.0_wp], [7.0_wp])
+    call expectation%remember(3.0_wp, [5.0_wp, 5.0_wp], [5.0_wp])
+    call expectation%continue_to(4.0_wp, b, ddq)
+    call test%near(maxval(abs([b - [2.5_wp, -1.0_wp], ddq - 9.0_wp])), 0.0_wp, 1.0e-14_wp, 'beyond two times')
+    call expectation%remember(4.0_wp, [2.0_wp, 0.0_wp], [8.0_wp])
+    call expectation%continue_to(6.0_wp, b, ddq)
+    call test%near(maxval(abs([b - [2.0_wp, 0.0_wp], ddq - 10.0_wp])), 0.0_wp, 1.0e-14_wp, 'beyond the last two of three')
+  end subroutine expectations
+end program test_dense_output
