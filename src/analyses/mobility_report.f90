@@ -44,8 +44,8 @@ contains
 
   !> Judge a mechanism whose plan is made.
   subroutine report_mobility(mechanism, plan, start, report)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start          !< assembled
     type(mobility_report_type), intent(out) :: report
     type(generic_position_type) :: generic
@@ -73,8 +73,8 @@ contains
 
   !> Rank of each block, and the closures to which redundant equations belong.
   subroutine find_ranks(plan, state, ranks, redundant)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(out) :: ranks(:)
     integer, intent(inout), optional :: redundant(:)
     type(block_work_type) :: work
@@ -93,9 +93,9 @@ contains
 
   !> The equations of each closure of a block that follow from the closures before it.
   subroutine find_redundant(plan, block, state, column_of, redundant)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: column_of(:)
     integer, intent(inout) :: redundant(:)
     type(least_squares_type) :: equations
@@ -118,8 +118,8 @@ contains
 
   !> Rates of all coordinates for a rate of one of each independent coordinate alone.
   subroutine find_shares(plan, state, report)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(mobility_report_type), intent(inout) :: report
     type(state_type) :: moving
     type(block_work_type), allocatable :: work(:)
@@ -147,9 +147,9 @@ contains
 
   !> Idle freedoms of all series of pairs, that is, runs of pairs through links that have no others.
   subroutine find_idle(mechanism, plan, state, dimensions, idle)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: dimensions(:)          !< (M) of the motions of the loops that each coordinate is on
     type(idle_type), allocatable, intent(out) :: idle(:)
     integer, dimension(plan%n_coordinates) :: series
@@ -194,8 +194,8 @@ contains
   !> its loop is idle only if it ends at links with other pairs: else it is how the loop moves. A run that comes back to
   !> its first link is a whole loop, overconstrained and moving as it should.
   subroutine search_series(plan, state, series, links, dimension, idle)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: series(:), links(0:), dimension
     type(idle_type), allocatable, intent(inout) :: idle(:)
     type(idle_type) :: run
@@ -231,8 +231,8 @@ contains
 
   !> Number of independent screws of some coordinates.
   integer function rank_of_series(plan, state, coordinates) result(rank)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: coordinates(:)
     real(wp) :: screws(6, size(coordinates)), basis(6, 6), v(3), place(3), first_place(3)
     integer :: i

@@ -43,8 +43,8 @@ contains
 
   !> Follow one independent coordinate both ways from an assembled start.
   subroutine find_range(mechanism, plan, start, coordinate, range)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
     integer, intent(in) :: coordinate
     type(motion_range_type), intent(out) :: range
@@ -61,8 +61,8 @@ contains
 
   !> Follow a coordinate one way, at one unit a second.
   subroutine sweep(mechanism, plan, start, coordinate, direction, found)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
     integer, intent(in) :: coordinate
     real(wp), intent(in) :: direction
@@ -103,7 +103,7 @@ contains
 
   !> Drives that hold all independent coordinates but one.
   subroutine drive_one(plan, start, coordinate, direction, swept)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
     integer, intent(in) :: coordinate
     real(wp), intent(in) :: direction
@@ -124,7 +124,7 @@ contains
 
   !> Whether all other coordinates are again what they were, whole turns of revolute pairs aside.
   pure logical function has_come_round(plan, start, state, coordinate)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start, state
     integer, intent(in) :: coordinate
     real(wp) :: change

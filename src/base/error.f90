@@ -39,7 +39,7 @@ contains
 
   !> Make a failure.
   pure subroutine raise(err, code, message, place)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer, intent(in) :: code               !< one of the exit_ codes
     character(len=*), intent(in) :: message   !< what went wrong and what to do
     type(place_type), intent(in), optional :: place
@@ -53,7 +53,7 @@ contains
   !> Say where a failure happened; does nothing when all is well.
   !> A place in the data file is kept if the failure has one already.
   pure subroutine add_place(err, text, place)
-    type(error_type), allocatable, intent(inout) :: err
+    type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
     character(len=*), intent(in), optional :: text   !< put before the message, as "text: message"
     type(place_type), intent(in), optional :: place
 

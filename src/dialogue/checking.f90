@@ -92,8 +92,8 @@ contains
   !> Positions of all coordinates, and what the geometry says of the mobility.
   subroutine tell_start(conversation, mechanism, plan, start)
     class(conversation_type), intent(in) :: conversation
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
     type(mobility_report_type) :: report
     character(len=:), allocatable :: text

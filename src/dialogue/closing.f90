@@ -185,7 +185,7 @@ contains
   subroutine write_data_file(conversation, path, err)
     class(conversation_type), intent(in) :: conversation
     character(len=*), intent(in) :: path
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(draft_type) :: draft
 
     draft = conversation%interview%draft

@@ -47,7 +47,7 @@ contains
 
   !> Say something, a paragraph two columns in.
   subroutine say(self, text)
-    class(conversation_type), intent(in) :: self
+    class(conversation_type), intent(in) :: self   !< the conversation
     character(len=*), intent(in) :: text
 
     call print_paragraph(error_unit, text, 2)
@@ -56,7 +56,7 @@ contains
   !> Ask, and hear an answer without blanks around it. `list` is answered here; `quit`, and an input that
   !> ends, end the conversation: the line is of no use then.
   subroutine listen(self, prompt, words, line)
-    class(conversation_type), intent(inout) :: self
+    class(conversation_type), intent(inout) :: self   !< the conversation
     character(len=*), intent(in) :: prompt
     type(string_type), intent(in) :: words(:)
     character(len=:), allocatable, intent(out) :: line
@@ -92,7 +92,7 @@ contains
 
   !> Keep what was typed so far. Where that fails it is told once.
   subroutine keep(self)
-    class(conversation_type), intent(inout) :: self
+    class(conversation_type), intent(inout) :: self   !< the conversation
     type(error_type), allocatable :: err
 
     if (self%cannot_keep) return
@@ -119,7 +119,7 @@ contains
 
   !> Settle the names of files.
   subroutine name_files(self)
-    class(conversation_type), intent(inout) :: self
+    class(conversation_type), intent(inout) :: self   !< the conversation
 
     if (self%stem == '') self%stem = stem_of_title(self%interview%draft%value('mechanism', 1, 'title'))
     if (self%data_path == '') self%data_path = self%stem//'.nml'

@@ -26,12 +26,12 @@ contains
   !> Move block b: frames must be in place, the rates of the independent coordinates known, earlier blocks done.
   !> Fails with exit_singular in a singular position.
   subroutine move_block(plan, dynamics, b, state, work, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
     integer, intent(in) :: b
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: conditioning
 
     associate (block => plan%blocks(b))
@@ -70,7 +70,7 @@ contains
 
   !> The Jacobian of a block in planar arithmetic, factorized.
   subroutine factorize_in_plane(plan, flat, motion, equations)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(planar_block_type), intent(in) :: flat
     type(planar_motion_type), intent(in) :: motion
     type(least_squares_type), intent(inout) :: equations
@@ -83,11 +83,11 @@ contains
   !> In planar arithmetic, where nothing is lost in noise: each frame is moved once, then once more with the
   !> accelerations of the dependent coordinates.
   subroutine move_in_plane(plan, dynamics, block, flat, state, jacobian, sides, work)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
     type(planar_block_type), intent(in) :: flat
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(jacobian_type), intent(inout) :: jacobian
     real(wp), intent(inout), contiguous :: sides(:, :)   !< scratch
     type(block_work_type), intent(inout) :: work
@@ -127,10 +127,10 @@ contains
 
   !> In general: from what is expected, which stays where the equations say no more than noise.
   subroutine move_as_expected(plan, dynamics, b, state, work)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
     integer, intent(in) :: b
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
 
     associate (block => plan%blocks(b))
@@ -143,9 +143,9 @@ contains
 
   !> Rates of the dependent coordinates of a block, B times those of the independent ones.
   pure subroutine find_rates(plan, dynamics, block, b, dq)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in) :: b(:)              !< (entries)
     real(wp), intent(inout) :: dq(:)          !< (M)
     real(wp) :: rate
@@ -163,10 +163,10 @@ contains
 
   !> Accelerations that rates alone give a block, from what is expected; see find_jacobian.
   subroutine find_bias(plan, block, expected, state, work)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in) :: expected(:)       !< (M)
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     real(wp) :: scale
     integer :: i, k

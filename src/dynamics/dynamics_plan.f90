@@ -49,8 +49,8 @@ contains
 
   !> Make it; `plan` must have its blocks.
   subroutine make_dynamics_plan(mechanism, plan, dynamics)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(out) :: dynamics
     integer :: i
 
@@ -77,8 +77,8 @@ contains
 
   !> Bodies with mass, moved into the frames of their links.
   subroutine find_bodies(mechanism, plan, dynamics)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(inout) :: dynamics
     integer :: i, n
 
@@ -104,7 +104,7 @@ contains
 
   !> Open chains as articulated bodies.
   subroutine lay_out_open_chains(plan, dynamics)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(inout) :: dynamics
     integer :: i
 
@@ -119,7 +119,7 @@ contains
 
   !> The columns of all frames, block by block.
   subroutine find_columns(plan, dynamics)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(inout) :: dynamics
     integer :: b, s, m, last
 
@@ -146,7 +146,7 @@ contains
 
   !> What the loops of each block hold.
   subroutine list_planar_blocks(plan, dynamics)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(inout) :: dynamics
     integer :: b
 
@@ -169,8 +169,8 @@ contains
   end subroutine resize
 
   subroutine add_closed_block(plan, block, dynamics)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     type(dynamics_plan_type), intent(inout) :: dynamics
     integer, allocatable :: columns(:)
     integer :: s, c
@@ -193,7 +193,7 @@ contains
   end subroutine add_closed_block
 
   subroutine add_frame(plan, s, columns, dynamics)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: s
     integer, intent(in) :: columns(:)
     type(dynamics_plan_type), intent(inout) :: dynamics
@@ -241,7 +241,7 @@ contains
 
   !> The independent coordinate of a step itself, or none.
   pure function own_column(plan, dynamics, s) result(columns)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
     integer, intent(in) :: s
     integer, allocatable :: columns(:)
@@ -280,7 +280,7 @@ contains
   !> Frames on which a mass, a load or a closed chain of a later block depends. Inside its own block a closed
   !> chain needs no more than the first pass that finds its dependent rates.
   subroutine find_carriers(plan, dynamics)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(inout) :: dynamics
     integer :: b, i, s, c
 

@@ -39,9 +39,9 @@ contains
 
   !> Of gravity, zero where all centres are in the origin of link 1, and of the springs [J].
   pure real(wp) function potential_energy(mechanism, plan, state, view) result(energy)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(motion_view_type), intent(in) :: view      !< of the same state
     real(wp) :: r(3, 3), p(3), omega(3), v(3)
     integer :: i

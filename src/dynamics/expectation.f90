@@ -26,7 +26,7 @@ contains
 
   !> Keep what was found at time t.
   pure subroutine remember(self, t, b, ddq)
-    class(expectation_type), intent(inout) :: self
+    class(expectation_type), intent(inout) :: self   !< the expectation
     real(wp), intent(in) :: t                  !< [s]
     real(wp), intent(in) :: b(:), ddq(:)
 
@@ -46,7 +46,7 @@ contains
 
   !> What is expected at time t, by a straight line through what is kept. Left as it is where nothing is.
   pure subroutine continue_to(self, t, b, ddq)
-    class(expectation_type), intent(in) :: self
+    class(expectation_type), intent(in) :: self   !< the expectation
     real(wp), intent(in) :: t                  !< [s]
     real(wp), intent(inout) :: b(:), ddq(:)
     real(wp) :: part

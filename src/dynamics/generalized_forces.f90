@@ -20,12 +20,12 @@ contains
 
   !> What the loads exert, on links and on coordinates.
   subroutine collect_loads(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(call_fault_type), target :: fault
     integer :: i
 
@@ -42,9 +42,9 @@ contains
 
   !> Q_p (25) of what the loads exert.
   pure subroutine collect_forces(plan, dynamics, state, work)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
     integer :: i, e, p, s
 
@@ -63,9 +63,9 @@ contains
   end subroutine collect_forces
 
   pure subroutine add_forces_on_link(plan, dynamics, state, link, work)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: link
     type(lagrange_work_type), intent(inout) :: work
     real(wp) :: torque(3)
@@ -90,8 +90,8 @@ contains
 
   !> Torque of the loads on a link about the origin of its frame.
   pure function torque_on_frame(plan, state, link, work) result(torque)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: link
     type(lagrange_work_type), intent(in) :: work
     real(wp) :: torque(3), arm(3)
@@ -102,9 +102,9 @@ contains
 
   !> The state as loads see it: the links' own systems in that of link 1.
   pure subroutine show_state(plan, dynamics, state, view)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(motion_view_type), intent(inout) :: view
     integer :: i, k
 

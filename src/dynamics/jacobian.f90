@@ -30,7 +30,7 @@ contains
 
   !> Room for the entries that the dynamics plan lists, all zero but what independent coordinates are to themselves.
   pure function new_jacobian(plan, dynamics) result(jacobian)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
     type(jacobian_type) :: jacobian
     integer :: s, e
@@ -53,10 +53,10 @@ contains
   !> Jacobian factorized, earlier blocks done. Where a dependent coordinate is determined no better than
   !> by noise, near a position where branches meet, it keeps to `expected`: the tangent is continued.
   subroutine find_jacobian(plan, dynamics, block, state, expected, work, jacobian)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: expected(:)       !< (entries) B as it was found before, continued
     type(block_work_type), intent(inout) :: work
     type(jacobian_type), intent(inout) :: jacobian
@@ -79,10 +79,10 @@ contains
 
   !> Outward recursion of the entries over the steps of a block.
   pure subroutine spread_jacobian(plan, dynamics, block, state, all_frames, jacobian)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     logical, intent(in) :: all_frames        !< also those that carry nothing
     type(jacobian_type), intent(inout) :: jacobian
     real(wp) :: arm(3)
@@ -111,10 +111,10 @@ contains
   !> Rates of the block's dependent coordinates for one independent coordinate, number `offset` + 1
   !> of the block's, from what is expected: J_d (change of b_d) = -(what opens the closures).
   subroutine eliminate(plan, dynamics, block, state, offset, work, jacobian)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: offset
     type(block_work_type), intent(inout) :: work
     type(jacobian_type), intent(inout) :: jacobian
@@ -140,9 +140,9 @@ contains
 
   !> By what an entry of a closing frame opens its closure.
   pure subroutine closing_column(plan, c, state, jacobian, e, t, column)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: c
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(jacobian_type), intent(in) :: jacobian
     integer, intent(in) :: e, t              !< entry of the closing frame and the same of its target; 0 for none
     real(wp), intent(out), contiguous :: column(:)

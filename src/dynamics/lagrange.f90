@@ -36,12 +36,12 @@ contains
   !> in `state` are then those that rates alone give. Fails with exit_singular in a singular position of
   !> a block, with exit_data where a coordinate has no inertia, and where a load fails.
   subroutine find_motion(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: n, failed_at
     logical :: found
 
@@ -72,12 +72,12 @@ contains
   !> Coefficients of motion, velocity terms and generalized forces, and the rates of the dependent coordinates;
   !> see find_motion.
   subroutine find_equations(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: b
 
     do b = 1, size(plan%independent)
@@ -96,13 +96,13 @@ contains
 
   !> The motion of open chains by articulated bodies. `found` is false where a coordinate has no inertia.
   subroutine move_open_chains(mechanism, plan, dynamics, state, work, found, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
     logical, intent(out) :: found
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, k, f
 
     found = .false.
@@ -136,7 +136,7 @@ contains
   !> a_pr (21) and the velocity terms of (19).
   subroutine collect_inertia(dynamics, state, work)
     type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
     integer :: i
 
@@ -158,7 +158,7 @@ contains
   pure subroutine add_body(dynamics, body, state, work)
     type(dynamics_plan_type), intent(in) :: dynamics
     type(frame_body_type), intent(in) :: body
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work
     real(wp) :: arm(3), force(3), torque(3), j_c(3), momentum(3), spin(3)
     integer :: f, e, d, p, r
@@ -202,10 +202,10 @@ contains
 
   !> After find_motion: the accelerations of all coordinates and frames, for results.
   pure subroutine complete_accelerations(plan, dynamics, work, state)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
     type(lagrange_work_type), intent(in) :: work
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     integer :: s, e
 
     if (dynamics%open_chains) then

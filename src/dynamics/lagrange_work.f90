@@ -41,7 +41,7 @@ contains
 
   !> Scratch for a mechanism with this plan.
   function new_lagrange_work(plan, dynamics) result(work)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics
     type(lagrange_work_type) :: work
     integer :: b, n

@@ -36,7 +36,7 @@ contains
 
   !> What the loops of block b hold. The columns of its frames and of those before must be known.
   pure subroutine list_loops(plan, b, first, column, place_of, flat)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: b
     integer, intent(in) :: first(0:)                      !< as in the dynamics plan, likewise the next
     integer, intent(in) :: column(:), place_of(:)
@@ -75,7 +75,7 @@ contains
 
   !> A part for each column of a frame of an earlier block.
   pure subroutine list_columns(plan, frame, sign, first, column, columns, part, parts)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: frame
     real(wp), intent(in) :: sign
     integer, intent(in) :: first(0:), column(:)

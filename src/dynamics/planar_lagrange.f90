@@ -27,7 +27,7 @@ contains
 
   !> The part of a body that counts in the plane.
   pure function planar_body(plan, body) result(flat)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(body_type), intent(in) :: body
     type(planar_body_type) :: flat
     real(wp) :: centre(3), inertia(3, 3)

@@ -21,11 +21,11 @@ contains
 
   !> All groups &body: masses, centres and inertia tensors, checked.
   pure subroutine read_bodies(document, structure, pairs, bodies, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(structure_type), intent(in) :: structure            !< without links where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)             !< (M); those in whose groups is an error are missing
     type(body_type), allocatable, intent(out) :: bodies(:)
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(turning_search_type) :: search
     integer, allocatable :: numbers(:)
     real(wp) :: j(6)
@@ -56,11 +56,11 @@ contains
   !> A tensor must be that of a body. A link that can turn about one direction only needs no more than the moment
   !> about that; the rest of its tensor may be zero.
   pure subroutine check_inertia(group, body, judged, search, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(body_type), intent(in) :: body
     logical, intent(in) :: judged                            !< whether it is known how the link can turn
     type(turning_search_type), intent(inout) :: search       !< of use where that is known
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: problem
     real(wp) :: direction(3)
     logical :: has_one, is_enough
@@ -155,7 +155,7 @@ contains
 
   !> The acceleration of gravity; zero where the file has none.
   pure function read_gravity(document) result(gravity)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     real(wp) :: gravity(3)
     integer, allocatable :: numbers(:)
 

@@ -22,8 +22,8 @@ contains
   !> Check all groups. Each group gets its row of the grammar, one plain item for each name, and the
   !> mark `sound` where nothing is wrong with it.
   pure subroutine check_document(document, diagnostics)
-    type(document_type), intent(inout) :: document
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(document_type), intent(inout) :: document   !< the data file as groups and items
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i, found
 
     do i = 1, size(document%groups)
@@ -45,8 +45,8 @@ contains
   end subroutine check_document
 
   pure subroutine report_unknown_group(group, diagnostics)
-    type(group_type), intent(in) :: group
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(group_type), intent(in) :: group   !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: hint
 
     if (group%name == '') return          ! told when it was read
@@ -57,7 +57,7 @@ contains
 
   !> A value that was reported when it was read.
   pure logical function has_bad_value(group)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     integer :: i
 
     has_bad_value = .true.
@@ -68,8 +68,8 @@ contains
   end function has_bad_value
 
   pure subroutine check_group(group, diagnostics)
-    type(group_type), intent(inout) :: group
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(group_type), intent(inout) :: group   !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=kind_length) :: kind
 
     call merge_group(group, diagnostics)
@@ -80,8 +80,8 @@ contains
 
   !> Make one item of each name. The coincidence matrix keeps its rows and columns apart.
   pure subroutine merge_group(group, diagnostics)
-    type(group_type), intent(inout) :: group
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(group_type), intent(inout) :: group   !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(item_type), allocatable :: merged(:)
     type(item_type) :: one
     integer :: firsts(size(group%items)), i, j, count, names
@@ -109,7 +109,7 @@ contains
   end subroutine merge_group
 
   pure logical function is_matrix(group, item)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(item_type), intent(in) :: item
 
     is_matrix = group%name == 'structure' .and. item%name == 'c'
@@ -117,7 +117,7 @@ contains
 
   !> The kind a group says it is; empty where it has none, or a wrong one.
   pure function kind_of(group) result(kind)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=kind_length) :: kind
     integer, allocatable :: rows(:)
     integer :: i
@@ -133,9 +133,9 @@ contains
   end function kind_of
 
   pure subroutine check_items(group, kind, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: kind
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: rows(:)
     integer :: i, row
 
@@ -156,9 +156,9 @@ contains
   end subroutine check_items
 
   pure subroutine report_unknown_name(group, item, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(item_type), intent(in) :: item
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: hint
     integer :: i
 
@@ -177,9 +177,9 @@ contains
 
   !> Report the names that must be given and are not.
   pure subroutine check_missing(group, kind, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: kind
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -193,7 +193,7 @@ contains
   end subroutine check_missing
 
   pure logical function is_given(group, name)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     integer :: i
 
@@ -206,9 +206,9 @@ contains
 
   !> Report groups that may stand once and stand twice, or whose key stands twice.
   pure subroutine check_repeated(document, row, diagnostics)
-    type(document_type), intent(inout) :: document
+    type(document_type), intent(inout) :: document   !< the data file as groups and items
     integer, intent(in) :: row
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: members(:), keys(:)
     integer :: i, j
 
@@ -236,10 +236,10 @@ contains
   !> A number that is equal for groups of the same key and for no others; negative and of its own
   !> where the key is missing or wrong.
   pure integer function key_number(group, number, members, row, document)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     integer, intent(in) :: number                 !< of the group among its fellows
     integer, intent(in) :: members(:), row
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(value_type) :: value, other
     integer :: j
 
@@ -259,7 +259,7 @@ contains
   end function key_number
 
   pure function key_value(group, key) result(value)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: key
     type(value_type) :: value
     integer :: i
@@ -272,7 +272,7 @@ contains
   pure subroutine report_repeated(group, first, key, diagnostics)
     type(group_type), intent(in) :: group, first
     character(len=*), intent(in) :: key
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: text
     type(value_type) :: value
     type(span_type) :: span

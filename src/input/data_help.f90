@@ -17,7 +17,7 @@ contains
   subroutine write_data_help(unit, subject, err)
     integer, intent(in) :: unit
     character(len=*), intent(in) :: subject         !< GROUP or GROUP.NAME, with or without &; empty: all groups
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: group, name
     integer, allocatable :: rows(:)
     integer :: row, dot, i

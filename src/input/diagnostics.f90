@@ -48,7 +48,7 @@ contains
 
   !> Note an error. Without a span (source 0) it stands without a place.
   pure subroutine add(self, span, message, code)
-    class(diagnostics_type), intent(inout) :: self
+    class(diagnostics_type), intent(inout) :: self   !< the diagnostics
     type(span_type), intent(in) :: span
     character(len=*), intent(in) :: message
     integer, intent(in), optional :: code     !< exit_data unless given
@@ -67,8 +67,8 @@ contains
 
   !> Note a failure that came from elsewhere; its place is one in the data file.
   pure subroutine add_error(self, err)
-    class(diagnostics_type), intent(inout) :: self
-    type(error_type), intent(in) :: err
+    class(diagnostics_type), intent(inout) :: self   !< the diagnostics
+    type(error_type), intent(in) :: err   !< the failure
     type(span_type) :: span
     integer :: byte
 
@@ -99,7 +99,7 @@ contains
 
   !> Make a text known that spans will point into.
   pure subroutine add_source(self, source, number)
-    class(diagnostics_type), intent(inout) :: self
+    class(diagnostics_type), intent(inout) :: self   !< the diagnostics
     type(source_type), intent(in) :: source
     integer, intent(out) :: number            !< for `source` of the spans
     type(source_type), allocatable :: grown(:)
@@ -113,14 +113,14 @@ contains
   end subroutine add_source
 
   pure logical function failed(self)
-    class(diagnostics_type), intent(in) :: self
+    class(diagnostics_type), intent(in) :: self   !< the diagnostics
 
     failed = self%count > 0
   end function failed
 
   !> The exit code that says it all: an unreadable file before wrong data before a wrong structure.
   pure integer function code(self)
-    class(diagnostics_type), intent(in) :: self
+    class(diagnostics_type), intent(in) :: self   !< the diagnostics
     integer, parameter :: order(3) = [exit_file, exit_data, exit_structure]
     integer :: i
 
@@ -135,7 +135,7 @@ contains
 
   !> Line and column of a span; line 0 for spans outside the data file.
   pure type(place_type) function place(self, span)
-    class(diagnostics_type), intent(in) :: self
+    class(diagnostics_type), intent(in) :: self   !< the diagnostics
     type(span_type), intent(in) :: span
 
     if (span%source == 1) place = self%sources(1)%place(span%first)
@@ -150,7 +150,7 @@ contains
   end function cut_length
 
   pure integer function length_of(self, span) result(length)
-    type(diagnostics_type), intent(in) :: self
+    type(diagnostics_type), intent(in) :: self   !< the diagnostics
     type(span_type), intent(in) :: span
 
     length = 0
@@ -160,7 +160,7 @@ contains
 
   !> A span as it is written, for messages: short and printable.
   pure function text_of(self, span) result(text)
-    class(diagnostics_type), intent(in) :: self
+    class(diagnostics_type), intent(in) :: self   !< the diagnostics
     type(span_type), intent(in) :: span
     character(len=length_of(self, span)) :: text
 
@@ -170,14 +170,14 @@ contains
 
   !> How many errors can be asked for.
   pure integer function known(self)
-    class(diagnostics_type), intent(in) :: self
+    class(diagnostics_type), intent(in) :: self   !< the diagnostics
 
     known = self%kept_count
   end function known
 
   !> Error number i in the order in which they were found: its message alone, and its place.
   pure subroutine get(self, i, message, span)
-    class(diagnostics_type), intent(in) :: self
+    class(diagnostics_type), intent(in) :: self   !< the diagnostics
     integer, intent(in) :: i                  !< 1 to known()
     character(len=:), allocatable, intent(out) :: message
     type(span_type), intent(out) :: span      !< source 0: no place
@@ -188,7 +188,7 @@ contains
 
   !> Error number i in the order of the places, as it is shown: message, line, carets.
   pure subroutine render(self, i, text)
-    class(diagnostics_type), intent(in) :: self
+    class(diagnostics_type), intent(in) :: self   !< the diagnostics
     integer, intent(in) :: i
     character(len=:), allocatable, intent(out) :: text
     type(diagnostic_type) :: this
@@ -215,7 +215,7 @@ contains
 
   !> Print the errors in the order of their places, at most twenty of them.
   subroutine report(self, unit)
-    class(diagnostics_type), intent(in) :: self
+    class(diagnostics_type), intent(in) :: self   !< the diagnostics
     integer, intent(in) :: unit
     character(len=:), allocatable :: text
     integer :: i
@@ -230,7 +230,7 @@ contains
 
   !> Positions of the kept errors by source, then by place; those without a place come last.
   pure function sorted(self) result(order)
-    type(diagnostics_type), intent(in) :: self
+    type(diagnostics_type), intent(in) :: self   !< the diagnostics
     integer, allocatable :: order(:)
     integer :: i, j, new
 

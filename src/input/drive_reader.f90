@@ -24,7 +24,7 @@ contains
 
   !> Make the drives of all sound groups.
   subroutine read_drives(document, structure, pairs, angle_unit, start, parameters, needed, drives, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(structure_type), intent(in) :: structure           !< without coordinates where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)
     real(wp), intent(in) :: angle_unit                      !< radians in one unit of angle of the file
@@ -32,7 +32,7 @@ contains
     real(wp), intent(in) :: parameters(:)                   !< for the user's procedures
     logical, intent(in) :: needed                           !< every independent coordinate must have one; else none may
     type(drive_slot_type), allocatable, intent(out) :: drives(:)
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i, n, k
 
@@ -73,9 +73,9 @@ contains
   end function unit_of_coordinate
 
   pure subroutine check_coordinate(group, structure, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(structure_type), intent(in) :: structure
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: k
 
     if (structure%n_coordinates == 0) return
@@ -92,9 +92,9 @@ contains
   !> Report the drives of independent coordinates where the motion follows from forces: to leave them out without a
   !> word would give another motion than the one that is asked for.
   pure subroutine refuse_all(document, structure, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(structure_type), intent(in) :: structure           !< without coordinates where it is not known
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i, k
 
@@ -111,9 +111,9 @@ contains
 
   !> Report independent coordinates without a drive.
   pure subroutine check_complete(document, structure, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(structure_type), intent(in) :: structure
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:), cq(:)
     type(span_type) :: span
     logical :: driven(structure%n_coordinates)
@@ -138,13 +138,13 @@ contains
 
   !> One drive, in rad, m and s; the slot stays empty where something was reported.
   subroutine read_drive(document, group, angle_unit, unit, start, parameters, slot, diagnostics)
-    type(document_type), intent(in) :: document
-    type(group_type), intent(in) :: group
+    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(group_type), intent(in) :: group   !< the group of the data file
     real(wp), intent(in) :: angle_unit
     real(wp), intent(in) :: unit                            !< of the coordinate
     real(wp), intent(in) :: start, parameters(:)
     type(drive_slot_type), intent(out) :: slot
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(polynomial_drive_type) :: polynomial
     type(procedure_drive_type) :: user_drive
     type(error_type), allocatable :: err
@@ -168,11 +168,11 @@ contains
   end subroutine read_drive
 
   subroutine read_table_drive(document, group, unit, slot, diagnostics)
-    type(document_type), intent(in) :: document
-    type(group_type), intent(in) :: group
+    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(group_type), intent(in) :: group   !< the group of the data file
     real(wp), intent(in) :: unit
     type(drive_slot_type), intent(inout) :: slot
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(table_drive_type) :: drive
     type(error_type), allocatable :: err
     real(wp), allocatable :: t(:), q(:)
@@ -192,7 +192,7 @@ contains
 
   !> The files that drives are read from, in a document that may be unchecked yet.
   pure subroutine files_of_drives(document, paths)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(string_type), allocatable, intent(out) :: paths(:)
     integer :: i, n
 

@@ -17,7 +17,7 @@ contains
   pure subroutine check_item(item, row, diagnostics)
     type(item_type), intent(in) :: item
     type(item_row_type), intent(in) :: row
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i, found
 
     found = diagnostics%count
@@ -50,7 +50,7 @@ contains
     integer, intent(in) :: number            !< of the value in its list
     character(len=*), intent(in) :: name
     type(item_row_type), intent(in) :: row
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: written
 
     if (value%kind == value_bad) return
@@ -94,7 +94,7 @@ contains
   pure subroutine check_count(item, row, diagnostics)
     type(item_type), intent(in) :: item
     type(item_row_type), intent(in) :: row
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: message
     integer :: n
 
@@ -128,7 +128,7 @@ contains
   !> All values are whole numbers in pairs joined by a comma without a blank: 1,5.
   pure logical function decimal_commas(item, diagnostics)
     type(item_type), intent(in) :: item
-    type(diagnostics_type), intent(in) :: diagnostics
+    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
     integer :: i
 
     decimal_commas = .false.
@@ -154,7 +154,7 @@ contains
     type(value_type), intent(in) :: value
     character(len=*), intent(in) :: name
     type(item_row_type), intent(in) :: row
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical :: inside
 
     select case (row%range)
@@ -177,7 +177,7 @@ contains
     type(value_type), intent(in) :: value
     character(len=*), intent(in) :: name
     type(item_row_type), intent(in) :: row
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: hint, word
 
     if (known_word(value%text, row)) return

@@ -19,7 +19,7 @@ contains
     type(item_type), intent(in) :: items(:)          !< of a group; at least one has the name
     character(len=*), intent(in) :: name
     type(item_type), intent(out) :: merged
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(value_type), allocatable :: values(:)
     logical, allocatable :: filled(:)
     integer :: i, first, number, count
@@ -66,7 +66,7 @@ contains
     type(span_type), intent(in) :: before            !< of the name where it stands before this
     integer, intent(in) :: number                    !< of the item among those of its name
     integer, intent(out) :: first
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
 
     first = 0
     select case (size(item%subscripts))
@@ -87,7 +87,7 @@ contains
 
   pure function line_of(span, diagnostics) result(text)
     type(span_type), intent(in) :: span
-    type(diagnostics_type), intent(in) :: diagnostics
+    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
     character(len=60) :: text
 
     text = ''
@@ -105,7 +105,7 @@ contains
     type(value_type), allocatable, intent(inout) :: values(:)   !< what the items before gave
     logical, allocatable, intent(inout) :: filled(:)            !< of the same size: a value was given there
     integer, intent(inout) :: count                             !< so many elements of these arrays are in use
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i, last
 
     last = first + size(new) - 1
@@ -154,7 +154,7 @@ contains
   pure subroutine expand_repeats(item, values, diagnostics)
     type(item_type), intent(in) :: item
     type(value_type), allocatable, intent(out) :: values(:)
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i, n, times
 
     n = 0

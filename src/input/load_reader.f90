@@ -20,13 +20,13 @@ contains
 
   !> All loads, in the order of the file. Links and coordinates that they name must be there.
   subroutine read_loads(document, n_links, pairs, angle_unit, parameters, loads, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     integer, intent(in) :: n_links                           !< 0 where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)             !< size 0 where they are not known
     real(wp), intent(in) :: angle_unit                       !< rad
     real(wp), intent(in) :: parameters(:)                    !< for a user's procedure
     type(load_slot_type), allocatable, intent(out) :: loads(:)
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i
 
@@ -53,7 +53,7 @@ contains
   end subroutine read_loads
 
   pure function force_load(group) result(load)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(force_load_type) :: load
 
     load%link = get_integer(group, 'link')
@@ -67,7 +67,7 @@ contains
   end function force_load
 
   pure function spring_load(group) result(load)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(spring_load_type) :: load
 
     load%links = get_integers(group, 'links')
@@ -80,7 +80,7 @@ contains
 
   !> Only the position of rest is an angle in the unit of the file; stiffness and damping are per rad.
   pure function coordinate_load(group, pairs, angle_unit) result(load)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(pair_slot_type), intent(in) :: pairs(:)
     real(wp), intent(in) :: angle_unit
     type(coordinate_load_type) :: load
@@ -96,9 +96,9 @@ contains
   end function coordinate_load
 
   pure subroutine check_coordinate(group, n_coordinates, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     integer, intent(in) :: n_coordinates
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
 
     if (n_coordinates > 0 .and. get_integer(group, 'coordinate') > n_coordinates) &
       call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '// &
@@ -106,9 +106,9 @@ contains
   end subroutine check_coordinate
 
   pure subroutine check_spring(group, n_links, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     integer, intent(in) :: n_links
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: links(2)
 
     links = get_integers(group, 'links')

@@ -17,7 +17,7 @@ contains
 
   !> Numbers of the sound groups of a name, in the order of the file.
   pure function groups_named(document, name) result(numbers)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     character(len=*), intent(in) :: name
     integer, allocatable :: numbers(:)
     integer :: i, n, pass
@@ -35,7 +35,7 @@ contains
 
   !> The first sound group of a name, or one that leaves everything to the defaults.
   pure function group_or_empty(document, name) result(group)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     character(len=*), intent(in) :: name
     type(group_type) :: group
     integer, allocatable :: numbers(:)
@@ -51,7 +51,7 @@ contains
 
   !> Whether the file has a group of this name, sound or not.
   pure logical function has_group(document, name)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     character(len=*), intent(in) :: name
     integer :: i
 
@@ -64,7 +64,7 @@ contains
 
   !> Whether something was wrong with a group of this name, so that what it means is unknown.
   pure logical function has_unsound(document, name)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     character(len=*), intent(in) :: name
     integer :: i
 
@@ -77,7 +77,7 @@ contains
 
   !> Number of an item in its group; 0 where the name is not given.
   pure integer function find_item(group, name) result(number)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
 
     do number = size(group%items), 1, -1
@@ -87,7 +87,7 @@ contains
 
   !> Whether the group gives this name.
   pure logical function has_name(group, name)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
 
     has_name = find_item(group, name) > 0
@@ -95,7 +95,7 @@ contains
 
   !> Place of a value; of the name where no value is asked for; of the group where it is not given.
   pure type(span_type) function span_of(group, name, value_number) result(span)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     integer, intent(in), optional :: value_number
     integer :: i
@@ -111,7 +111,7 @@ contains
 
   !> The numbers given under a name, or those of its default.
   pure function get_reals(group, name) result(numbers)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     real(wp), allocatable :: numbers(:)
     integer :: i
@@ -126,7 +126,7 @@ contains
 
   !> The first of them; for names that take one number.
   pure real(wp) function get_real(group, name)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     real(wp), allocatable :: numbers(:)
 
@@ -136,7 +136,7 @@ contains
 
   !> Whole numbers given under a name, or those of its default.
   pure function get_integers(group, name) result(numbers)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     integer, allocatable :: numbers(:)
 
@@ -145,7 +145,7 @@ contains
 
   !> The first of them.
   pure integer function get_integer(group, name)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
 
     get_integer = nint(get_real(group, name))
@@ -153,7 +153,7 @@ contains
 
   !> Whether a switch is on.
   pure logical function get_logical(group, name)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     integer :: i
 
@@ -167,7 +167,7 @@ contains
 
   !> Length of a text that is given, or of its default, which stands in quotes.
   pure integer function text_length(group, name) result(length)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     integer :: i, row
 
@@ -185,7 +185,7 @@ contains
 
   !> A text without blanks at its end; words of a list in lower case.
   pure function get_text(group, name) result(text)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     character(len=text_length(group, name)) :: text
     integer :: i, row
@@ -202,7 +202,7 @@ contains
 
   !> The numbers of the grammar's default; none where the default is a rule in parentheses.
   pure function default_numbers(group, name) result(numbers)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     real(wp), allocatable :: numbers(:)
     type(numeral_type) :: numeral
@@ -222,7 +222,7 @@ contains
 
   !> Row of a name, for the kind of its group where it has one.
   pure integer function row_of(group, name) result(row)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: kind
     integer :: i

@@ -22,11 +22,11 @@ contains
   !> Collect all items `c` of the group. Each element must be given once; elements never named are 0,
   !> unless rows or columns are given: then all must be. `ok` is false where something was reported.
   pure subroutine read_matrix(group, n_links, matrix, ok, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     integer, intent(in) :: n_links                 !< as given elsewhere; 0: taken from the matrix
     type(matrix_type), intent(out) :: matrix
     logical, intent(out) :: ok
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical :: in_rows
     integer :: i, n, found
 
@@ -51,7 +51,7 @@ contains
   end subroutine read_matrix
 
   pure type(span_type) function first_span(group)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     integer :: i
 
     do i = size(group%items), 1, -1
@@ -61,7 +61,7 @@ contains
 
   !> The number of links that rows, columns and elements speak of.
   pure integer function size_of_items(group) result(n)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     integer :: i, k
 
     n = 1
@@ -83,7 +83,7 @@ contains
   pure subroutine place_item(item, matrix, diagnostics)
     type(item_type), intent(in) :: item
     type(matrix_type), intent(inout) :: matrix
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: rows(2), columns(2), i, j, n, expected
 
     n = size(matrix%c, 1)
@@ -149,9 +149,9 @@ contains
   end function label
 
   pure subroutine check_complete(group, matrix, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(matrix_type), intent(in) :: matrix
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i, j
 
     do i = 1, size(matrix%c, 1)

@@ -26,12 +26,12 @@ contains
 
   !> All groups &initial: positions and velocities that are given, in rad and m.
   pure subroutine read_initial(document, structure, pairs, angle_unit, initial, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(structure_type), intent(in) :: structure            !< without coordinates where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)
     real(wp), intent(in) :: angle_unit                       !< radians in one unit of angle of the file
     type(initial_type), intent(out) :: initial
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
     real(wp) :: unit
     integer :: i, k
@@ -63,10 +63,10 @@ contains
 
   !> All groups &point: names, links and positions of the points to be traced.
   pure subroutine read_points(document, n_links, points, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     integer, intent(in) :: n_links                           !< 0 where it is not known
     type(point_type), allocatable, intent(out) :: points(:)
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i
 
@@ -86,9 +86,9 @@ contains
 
   !> Names of points become names of columns, such as P.x.
   pure subroutine check_name(group, name, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
 
     if (len(name) > 0 .and. len(name) <= longest_name .and. verify(name, name_letters) == 0) return
     call diagnostics%add(span_of(group, 'name', 1), '''name'' must be of letters (a to z), digits and _, at most '// &
@@ -97,11 +97,11 @@ contains
 
   !> Report the number of a link that is not there.
   pure subroutine check_link(group, name, position, n_links, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     integer, intent(in) :: position                          !< of the number in the list
     integer, intent(in) :: n_links                           !< 0 where it is not known
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     real(wp), allocatable :: numbers(:)
 
     if (n_links == 0) return

@@ -13,10 +13,10 @@ contains
 
   !> What is to be recorded and where; defaults where it is not said.
   pure subroutine read_output(document, n_coordinates, output, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     integer, intent(in) :: n_coordinates           !< 0 where the structure is not known
     type(output_settings_type), intent(out) :: output
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(group_type) :: group
 
     group = group_or_empty(document, 'output')
@@ -40,10 +40,10 @@ contains
 
   !> Each coordinate that is recorded exists, and is named once.
   pure subroutine check_coordinates(group, n_coordinates, coordinates, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     integer, intent(in) :: n_coordinates
     integer, intent(in) :: coordinates(:)
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i
 
     do i = 1, size(coordinates)

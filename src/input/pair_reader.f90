@@ -20,12 +20,12 @@ contains
   !> Make the pairs of all sound groups. Coordinates without one keep an empty slot: mechanisms with
   !> such holes are refused when the structure is read.
   subroutine read_pairs(document, n_coordinates, angle_unit, parameters, pairs, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     integer, intent(in) :: n_coordinates               !< 0 where it is not known
     real(wp), intent(in) :: angle_unit                 !< radians in one unit of angle of the file
     real(wp), intent(in) :: parameters(:)              !< for the user's procedures
     type(pair_slot_type), allocatable, intent(out) :: pairs(:)
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(pair_slot_type) :: slot
     integer, allocatable :: numbers(:)
     integer :: i, k
@@ -43,10 +43,10 @@ contains
 
   !> One pair; the slot stays empty where something was reported.
   subroutine read_pair(group, angle_unit, parameters, slot, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     real(wp), intent(in) :: angle_unit, parameters(:)
     type(pair_slot_type), intent(out) :: slot
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(screw_pair_type) :: screw
     type(procedure_pair_type) :: procedure_pair
     type(error_type), allocatable :: err
@@ -78,10 +78,10 @@ contains
 
   !> A pair in Denavit-Hartenberg form.
   pure subroutine read_dh(group, angle_unit, pair, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     real(wp), intent(in) :: angle_unit
     type(screw_pair_type), intent(out) :: pair
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=12), parameter :: others(6) = [character(len=12) :: 'point', 'axis', 'zero', 'moving_point', &
                                                  'moving_axis', 'moving_zero']
     real(wp) :: dh(4)
@@ -107,9 +107,9 @@ contains
 
   !> A pair between a frame in its reference link and one in its moving link.
   pure subroutine read_frames(group, pair, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(screw_pair_type), intent(out) :: pair
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(pose_type) :: reference, moving
     real(wp) :: axis(3), zero(3)
     integer :: found
@@ -143,7 +143,7 @@ contains
 
   !> Three numbers that are given, or others in their place.
   pure function real_or(group, name, otherwise) result(vector)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: otherwise(3)
     real(wp) :: vector(3)
@@ -154,11 +154,11 @@ contains
 
   !> The frame of an axis, with a report where its vectors do not serve.
   pure subroutine make_frame(group, prefix, point, axis, zero, frame, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: prefix            !< of the names: '' or 'moving_'
     real(wp), intent(in) :: point(3), axis(3), zero(3)
     type(pose_type), intent(out) :: frame
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical :: ok
 
     call pose_from_axis(point, axis, zero, frame, ok)

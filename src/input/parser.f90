@@ -16,8 +16,8 @@ contains
   !> Read a data file. What is wrong with it stands in the diagnostics.
   subroutine read_document(path, document, diagnostics)
     character(len=*), intent(in) :: path
-    type(document_type), intent(out) :: document
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(document_type), intent(out) :: document   !< the data file as groups and items
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_type) :: source
     type(error_type), allocatable :: err
 
@@ -28,8 +28,8 @@ contains
   !> The groups of a text. The first source made known to the diagnostics must be the data file.
   pure subroutine parse_document(source, document, diagnostics, failure)
     type(source_type), intent(in) :: source
-    type(document_type), intent(out) :: document
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(document_type), intent(out) :: document   !< the data file as groups and items
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable, intent(in), optional :: failure   !< of reading the source
     type(group_type) :: group
     integer :: number, at, count, found
@@ -63,7 +63,7 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at
     integer, intent(in) :: source
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: first, line_end
     logical :: told
 
@@ -105,8 +105,8 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at
     integer, intent(in) :: source
-    type(group_type), intent(out) :: group
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(group_type), intent(out) :: group   !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: first, count
     type(item_type) :: item
     logical :: ended
@@ -137,8 +137,8 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at
     integer, intent(in) :: source
-    type(group_type), intent(in) :: group
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(group_type), intent(in) :: group   !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: ended
     integer :: first
 
@@ -166,7 +166,7 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at
     integer, intent(in) :: source
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(span_type) :: span
     type(value_type) :: value
     integer :: first, found
@@ -200,7 +200,7 @@ contains
     integer, intent(inout) :: at                     !< on a name (see next_is_name)
     integer, intent(in) :: source
     type(item_type), intent(out) :: item
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: first
     logical :: ok
 
@@ -231,7 +231,7 @@ contains
     integer, intent(inout) :: at
     integer, intent(in) :: source
     type(value_type), allocatable, intent(out) :: values(:)
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(value_type) :: value
     logical :: after_comma
     integer :: count

@@ -28,10 +28,10 @@ contains
   !> The structure alone. The mechanism's geometry need not be given; whatever is given is checked
   !> against the grammar. Of use only where the diagnostics are without errors afterwards.
   pure subroutine read_structure_only(document, structure, vectors, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(structure_type), intent(out) :: structure
     type(structural_vectors_type), intent(out) :: vectors
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(document_type) :: checked
     logical :: known
 
@@ -44,10 +44,10 @@ contains
   !> The mechanism, in m, rad, kg, s. All errors are collected in the diagnostics, which may hold some from
   !> reading the document already; the mechanism is of use only where there are none.
   subroutine read_mechanism(document, needs_drives, mechanism, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     logical, intent(in) :: needs_drives             !< every independent coordinate must be driven, as in kinematics
-    type(mechanism_type), intent(out) :: mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(document_type) :: checked
     logical :: known
 
@@ -69,10 +69,10 @@ contains
 
   !> Everything whose numbers refer to the structure.
   subroutine read_parts(document, needs_drives, mechanism, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     logical, intent(in) :: needs_drives
-    type(mechanism_type), intent(inout) :: mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(initial_type) :: initial
 
     associate (m => mechanism, n_links => mechanism%structure%n_links, n_coordinates => mechanism%structure%n_coordinates)
@@ -95,9 +95,9 @@ contains
 
   !> A structure may be known without pairs, but a mechanism is more than that.
   pure subroutine check_pairs_given(document, mechanism, diagnostics)
-    type(document_type), intent(in) :: document
-    type(mechanism_type), intent(in) :: mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
 
     if (mechanism%structure%n_coordinates == 0 .or. has_group(document, 'pair')) return
@@ -108,9 +108,9 @@ contains
 
   !> What does not refer to the structure: title, units, time, how to compute.
   pure subroutine read_settings(document, mechanism, diagnostics)
-    type(document_type), intent(in) :: document
-    type(mechanism_type), intent(inout) :: mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(group_type) :: group
 
     group = group_or_empty(document, 'mechanism')
@@ -131,9 +131,9 @@ contains
   end subroutine read_settings
 
   pure subroutine read_time(group, time, diagnostics)
-    type(group_type), intent(in) :: group
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(time_grid_type), intent(out) :: time
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
 
     time%start = get_real(group, 'start')
     time%end = get_real(group, 'end')

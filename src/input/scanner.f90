@@ -152,7 +152,7 @@ contains
     integer, intent(inout) :: at
     integer, intent(in) :: source                 !< number of the text among the sources
     type(value_type), intent(out) :: value
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: first, star
 
     first = at
@@ -223,7 +223,7 @@ contains
   pure subroutine classify(word, value, diagnostics)
     character(len=*), intent(in) :: word
     type(value_type), intent(inout) :: value
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(numeral_type) :: numeral
 
     select case (lower(word))
@@ -256,7 +256,7 @@ contains
     integer, intent(inout) :: at
     integer, intent(in) :: source
     type(value_type), intent(inout) :: value
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: first
     logical :: closed
 

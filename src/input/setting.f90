@@ -18,9 +18,9 @@ contains
   !> where pair(3) is the third &pair. A group or a name that the file does not have is added. Texts
   !> need no quotes. What is wrong stands in the diagnostics, now or when the document is checked.
   pure subroutine apply_setting(document, setting, diagnostics)
-    type(document_type), intent(inout) :: document
+    type(document_type), intent(inout) :: document   !< the data file as groups and items
     character(len=*), intent(in) :: setting
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_type) :: source
     type(span_type) :: group_span
     type(item_type) :: item
@@ -44,7 +44,7 @@ contains
     integer, intent(in) :: source
     type(span_type), intent(out) :: span
     integer, intent(out) :: occurrence
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(subscript_type), allocatable :: subscripts(:)
     logical :: ok
 
@@ -77,7 +77,7 @@ contains
     integer, intent(in) :: source
     character(len=*), intent(in) :: group
     type(item_type), intent(out) :: item
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: at, equals
 
     at = start
@@ -120,12 +120,12 @@ contains
 
   !> The group a setting means; 0, with a report, where that is unclear.
   pure subroutine find_or_add_group(document, text, span, occurrence, number, diagnostics)
-    type(document_type), intent(inout) :: document
+    type(document_type), intent(inout) :: document   !< the data file as groups and items
     character(len=*), intent(in) :: text
     type(span_type), intent(in) :: span
     integer, intent(in) :: occurrence
     integer, intent(out) :: number
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: name
     type(group_type) :: group
     integer, allocatable :: same(:)
@@ -153,7 +153,7 @@ contains
 
   !> Put an item in the place of what the group said under its name; one with subscripts is added.
   pure subroutine replace_item(group, item)
-    type(group_type), intent(inout) :: group
+    type(group_type), intent(inout) :: group   !< the group of the data file
     type(item_type), intent(inout) :: item
     type(item_type), allocatable :: items(:)
     integer :: i, count

@@ -37,7 +37,7 @@ contains
   subroutine read_source(path, source, err)
     character(len=*), intent(in) :: path
     type(source_type), intent(out) :: source
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: text
 
     call read_bytes(path, text, err)
@@ -68,7 +68,7 @@ contains
   !> Say so where the bytes are not a text that could be a data file.
   pure subroutine refuse_no_text(text, err)
     character(len=*), intent(in) :: text
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: at
 
     if (len(text) == 0) then
@@ -87,7 +87,7 @@ contains
 
   !> Lines end with LF, CR LF or CR alone.
   pure subroutine find_lines(self)
-    type(source_type), intent(inout) :: self
+    type(source_type), intent(inout) :: self   !< the source
     integer :: i, n, pass
 
     do pass = 1, 2
@@ -115,7 +115,7 @@ contains
 
   !> Line of a byte, and its column counted in characters (a UTF-8 character counts once).
   pure type(place_type) function place(self, byte)
-    class(source_type), intent(in) :: self
+    class(source_type), intent(in) :: self   !< the source
     integer, intent(in) :: byte
     integer :: low, high, middle, i
 
@@ -143,7 +143,7 @@ contains
 
   !> First and last byte of a line, without its end; first > last where it is empty.
   pure subroutine line_bounds(self, line, first, last)
-    class(source_type), intent(in) :: self
+    class(source_type), intent(in) :: self   !< the source
     integer, intent(in) :: line
     integer, intent(out) :: first, last
 
@@ -158,7 +158,7 @@ contains
 
   !> The byte of a place; 0 where the text has no such place.
   pure integer function byte_at(self, position) result(byte)
-    class(source_type), intent(in) :: self
+    class(source_type), intent(in) :: self   !< the source
     type(place_type), intent(in) :: position
     integer :: first, last, column
 

@@ -38,7 +38,7 @@ contains
     type(structure_type), intent(out) :: structure
     type(structural_vectors_type), intent(out) :: vectors
     logical, intent(out) :: known
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_data_type) :: data
     integer :: found
     logical :: has_vectors
@@ -67,7 +67,7 @@ contains
   end subroutine read_structure
 
   pure subroutine gather(document, data)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(source_data_type), intent(out) :: data
     integer, allocatable :: numbers(:)
 
@@ -89,10 +89,10 @@ contains
   end subroutine gather
 
   pure subroutine from_matrix(document, data, structure, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(source_data_type), intent(inout) :: data
     type(structure_type), intent(inout) :: structure
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: m, n
     logical :: ok
@@ -112,11 +112,11 @@ contains
   end subroutine from_matrix
 
   pure subroutine from_pairs(document, data, structure, known, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(source_data_type), intent(inout) :: data
     type(structure_type), intent(inout) :: structure
     logical, intent(out) :: known
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: n
 
@@ -138,11 +138,11 @@ contains
   end subroutine from_pairs
 
   pure subroutine from_vectors(document, data, structure, vectors, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(source_data_type), intent(in) :: data
     type(structure_type), intent(inout) :: structure       !< of the first set, where there is one
     type(structural_vectors_type), intent(inout) :: vectors
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(structure_type) :: second
     type(finding_type), allocatable :: findings(:)
     integer, allocatable :: n, m      ! not allocated: not given
@@ -178,7 +178,7 @@ contains
   pure subroutine compare_sets(data, first, second, diagnostics)
     type(source_data_type), intent(in) :: data
     type(structure_type), intent(in) :: first, second
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: i
 
@@ -208,7 +208,7 @@ contains
     type(source_data_type), intent(in) :: data
     integer, intent(in) :: cq(:)
     type(structure_type), intent(in) :: second
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: k
     logical :: in_cq
 
@@ -230,10 +230,10 @@ contains
 
   !> Where the structure comes from elsewhere, the pairs must agree with it, one for each coordinate.
   pure subroutine compare_with_pairs(document, data, structure, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(source_data_type), intent(inout) :: data
     type(structure_type), intent(in) :: structure
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer, allocatable :: links(:, :)
     integer :: k
@@ -251,10 +251,10 @@ contains
 
   !> Links of the pairs by coordinate, with a report where a coordinate has no pair or is none.
   pure subroutine take_pairs(document, n_coordinates, data, diagnostics)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     integer, intent(in) :: n_coordinates
     type(source_data_type), intent(inout) :: data
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: missing(:)
     integer :: i, k, m
 
@@ -295,9 +295,9 @@ contains
   !> Report findings of the structure floor where the numbers stand.
   pure subroutine report(findings, document, data, diagnostics)
     type(finding_type), intent(in) :: findings(:)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(source_data_type), intent(in) :: data
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i
 
     do i = 1, size(findings)
@@ -307,7 +307,7 @@ contains
 
   pure type(span_type) function span_of_finding(finding, document, data) result(span)
     type(finding_type), intent(in) :: finding
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(source_data_type), intent(in) :: data
 
     span = data%structure%span

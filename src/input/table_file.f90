@@ -25,7 +25,7 @@ contains
     type(span_type), intent(in) :: asked_at               !< where the data file asks for it
     real(wp), allocatable, intent(out) :: t(:), q(:)      !< [s], [as in the file]
     logical, intent(out) :: ok
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_type) :: source
     type(error_type), allocatable :: err
     integer :: number, line, n, found
@@ -62,7 +62,7 @@ contains
     logical, intent(inout) :: may_be_names                 !< no line before it held anything
     real(wp), intent(inout) :: t(:), q(:)
     integer, intent(inout) :: n                            !< points so far
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(span_type) :: fields(2)
     type(numeral_type) :: numerals(2)
     integer :: first, last, count, i

@@ -20,7 +20,7 @@ contains
 
   !> Whether it resists any motion; a link may have inertia about its axis and no mass.
   pure logical function has_inertia(self)
-    class(body_type), intent(in) :: self
+    class(body_type), intent(in) :: self   !< the body
 
     has_inertia = self%mass > 0.0_wp .or. any(abs(self%inertia) > 0.0_wp)
   end function has_inertia

@@ -19,7 +19,7 @@ contains
 
   !> Keep this fault, unless another one came before it.
   pure subroutine note(self, procedure, counted, number, greatest)
-    class(call_fault_type), intent(inout) :: self
+    class(call_fault_type), intent(inout) :: self   !< the call fault
     character(len=*), intent(in) :: procedure   !< what was called
     character(len=*), intent(in) :: counted     !< 'link' or 'coordinate'
     integer, intent(in) :: number               !< that does not exist

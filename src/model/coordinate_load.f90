@@ -27,29 +27,29 @@ module mech9_coordinate_load
 contains
 
   pure logical function is_idle(self)
-    class(coordinate_load_type), intent(in) :: self
+    class(coordinate_load_type), intent(in) :: self   !< the coordinate load
 
     is_idle = .not. (abs(self%stiffness) > 0.0_wp .or. abs(self%damping) > 0.0_wp .or. abs(self%force) > 0.0_wp)
   end function is_idle
 
   !> It acts on a coordinate and asks for no link.
   pure subroutine mark_links(self, needed)
-    class(coordinate_load_type), intent(in) :: self
+    class(coordinate_load_type), intent(in) :: self   !< the coordinate load
     logical, intent(inout) :: needed(:)
   end subroutine mark_links
 
   pure subroutine mark_coordinates(self, needed)
-    class(coordinate_load_type), intent(in) :: self
+    class(coordinate_load_type), intent(in) :: self   !< the coordinate load
     logical, intent(inout) :: needed(:)
 
     needed(self%coordinate) = .true.
   end subroutine mark_coordinates
 
   subroutine apply(self, state, sum, err)
-    class(coordinate_load_type), intent(in) :: self
+    class(coordinate_load_type), intent(in) :: self   !< the coordinate load
     type(motion_view_type), intent(in) :: state
     type(force_sum_type), intent(inout) :: sum
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     associate (k => self%coordinate)
       call sum%add_generalized(k, self%force - self%stiffness*(state%q(k) - self%rest) - self%damping*state%dq(k))
@@ -57,7 +57,7 @@ contains
   end subroutine apply
 
   pure real(wp) function potential(self, state)
-    class(coordinate_load_type), intent(in) :: self
+    class(coordinate_load_type), intent(in) :: self   !< the coordinate load
     type(motion_view_type), intent(in) :: state
 
     potential = 0.5_wp*self%stiffness*(state%q(self%coordinate) - self%rest)**2

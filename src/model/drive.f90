@@ -23,10 +23,10 @@ module mech9_drive
     !> q(t) and its first two derivatives in time; fails where the drive has no value.
     subroutine evaluate_interface(self, t, q, dq, ddq, err)
       import :: drive_type, error_type, wp
-      class(drive_type), intent(in) :: self
+      class(drive_type), intent(in) :: self   !< the drive
       real(wp), intent(in) :: t                  !< time [s]
       real(wp), intent(out) :: q, dq, ddq        !< [rad or m], per s, per s^2
-      type(error_type), allocatable, intent(out) :: err
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine evaluate_interface
   end interface
 
@@ -36,7 +36,7 @@ contains
   !> whose formula is known bound it for certain; this one, for all others, looks at uneven times
   !> between and leaves room. Times at which the drive has no value do not count.
   function greatest_rate(self, t, h) result(rate)
-    class(drive_type), intent(in) :: self
+    class(drive_type), intent(in) :: self   !< the drive
     real(wp), intent(in) :: t, h      !< [s]; h may be negative
     real(wp) :: rate
     real(wp), parameter :: between(4) = [0.0_wp, 0.29_wp, 0.62_wp, 1.0_wp]

@@ -26,23 +26,23 @@ module mech9_force_load
 contains
 
   pure logical function is_idle(self)
-    class(force_load_type), intent(in) :: self
+    class(force_load_type), intent(in) :: self   !< the force load
 
     is_idle = self%link == 1 .or. .not. (any(abs(self%force) > 0.0_wp) .or. any(abs(self%torque) > 0.0_wp))
   end function is_idle
 
   pure subroutine mark_links(self, needed)
-    class(force_load_type), intent(in) :: self
+    class(force_load_type), intent(in) :: self   !< the force load
     logical, intent(inout) :: needed(:)
 
     needed(self%link) = .true.
   end subroutine mark_links
 
   subroutine apply(self, state, sum, err)
-    class(force_load_type), intent(in) :: self
+    class(force_load_type), intent(in) :: self   !< the force load
     type(motion_view_type), intent(in) :: state
     type(force_sum_type), intent(inout) :: sum
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%turns_with_link) then
       call sum%add_force(state, self%link, self%position, state%links(self%link)%fixed_components(self%force))
@@ -55,7 +55,7 @@ contains
 
   !> None is stated: the work of a given force counts as put in.
   pure real(wp) function potential(self, state)
-    class(force_load_type), intent(in) :: self
+    class(force_load_type), intent(in) :: self   !< the force load
     type(motion_view_type), intent(in) :: state
 
     potential = 0.0_wp

@@ -38,7 +38,7 @@ contains
 
   !> Nothing again.
   pure subroutine clear(self)
-    class(force_sum_type), intent(inout) :: self
+    class(force_sum_type), intent(inout) :: self   !< the force sum
 
     call make_zero(size(self%force), self%force)
     call make_zero(size(self%torque), self%torque)
@@ -60,7 +60,7 @@ contains
 
   !> A force at a point of a link. A number that no link has is noted in `fault`, and nothing is added.
   pure subroutine add_force(self, state, link, point, force)
-    class(force_sum_type), intent(inout) :: self
+    class(force_sum_type), intent(inout) :: self   !< the force sum
     type(motion_view_type), intent(in) :: state   !< in which the force acts
     integer, intent(in) :: link                   !< its number
     real(wp), intent(in) :: point(3)              !< in the link's system [m]
@@ -77,7 +77,7 @@ contains
 
   !> A torque on a link. A number that no link has is noted in `fault`, and nothing is added.
   pure subroutine add_torque(self, link, torque)
-    class(force_sum_type), intent(inout) :: self
+    class(force_sum_type), intent(inout) :: self   !< the force sum
     integer, intent(in) :: link           !< its number
     real(wp), intent(in) :: torque(3)     !< fixed axes [N m]
     logical :: exists
@@ -90,7 +90,7 @@ contains
   !> that of a prismatic one; it acts on the moving link and back on the reference link. A number that no
   !> coordinate has is noted in `fault`, and nothing is added.
   pure subroutine add_generalized(self, coordinate, value)
-    class(force_sum_type), intent(inout) :: self
+    class(force_sum_type), intent(inout) :: self   !< the force sum
     integer, intent(in) :: coordinate     !< its number
     real(wp), intent(in) :: value         !< [N m, N]
 
@@ -104,7 +104,7 @@ contains
 
   !> Whether a link exists. If not, the call is noted.
   pure subroutine has_link(self, link, procedure, exists)
-    class(force_sum_type), intent(inout) :: self
+    class(force_sum_type), intent(inout) :: self   !< the force sum
     integer, intent(in) :: link                  !< its number
     character(len=*), intent(in) :: procedure    !< that was given the number
     logical, intent(out) :: exists               !< there is a link of this number

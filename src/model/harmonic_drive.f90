@@ -20,10 +20,10 @@ module mech9_harmonic_drive
 contains
 
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(harmonic_drive_type), intent(in) :: self
+    class(harmonic_drive_type), intent(in) :: self   !< the harmonic drive
     real(wp), intent(in) :: t
     real(wp), intent(out) :: q, dq, ddq
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: angle, swing
 
     angle = self%angular_frequency*t + self%phase
@@ -35,7 +35,7 @@ contains
 
   !> That of the whole swing.
   function greatest_rate(self, t, h) result(rate)
-    class(harmonic_drive_type), intent(in) :: self
+    class(harmonic_drive_type), intent(in) :: self   !< the harmonic drive
     real(wp), intent(in) :: t, h
     real(wp) :: rate
 

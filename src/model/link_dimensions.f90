@@ -30,7 +30,7 @@ contains
 
   !> The dimensions of all links, in the order of links and coordinates.
   pure subroutine link_dimensions(mechanism, dimensions)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(link_dimension_type), allocatable, intent(out) :: dimensions(:)
     type(link_graph_type) :: graph
     type(pair_axes_type), allocatable :: axes(:)

@@ -55,7 +55,7 @@ contains
 
   !> Search the closed chains of a mechanism; `kind` is none_found where nothing is odd.
   pure subroutine find_oddity(mechanism, oddity)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(oddity_type), intent(out) :: oddity
     type(link_graph_type) :: graph
     type(pair_axes_type), allocatable :: axes(:)

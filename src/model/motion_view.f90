@@ -40,7 +40,7 @@ contains
 
   !> Where a point of the link is, in the system of link 1 [m].
   pure function point_position(self, point)
-    class(link_motion_type), intent(in) :: self
+    class(link_motion_type), intent(in) :: self   !< the link motion
     real(wp), intent(in) :: point(3)      !< in the link's system [m]
     real(wp) :: point_position(3)
 
@@ -49,7 +49,7 @@ contains
 
   !> Velocity of a point of the link, fixed axes [m/s].
   pure function point_velocity(self, point)
-    class(link_motion_type), intent(in) :: self
+    class(link_motion_type), intent(in) :: self   !< the link motion
     real(wp), intent(in) :: point(3)      !< in the link's system [m]
     real(wp) :: point_velocity(3)
 
@@ -58,7 +58,7 @@ contains
 
   !> A vector given in the axes of the link, in fixed axes.
   pure function fixed_components(self, vector)
-    class(link_motion_type), intent(in) :: self
+    class(link_motion_type), intent(in) :: self   !< the link motion
     real(wp), intent(in) :: vector(3)     !< in the link's axes, of any unit
     real(wp) :: fixed_components(3)
 
@@ -67,7 +67,7 @@ contains
 
   !> Where a point of a link is, in the system of link 1 [m]; zero where there is no such link, which is noted.
   function position(self, link, point)
-    class(motion_view_type), intent(in) :: self
+    class(motion_view_type), intent(in) :: self   !< the motion view
     integer, intent(in) :: link           !< its number
     real(wp), intent(in) :: point(3)      !< in the link's system [m]
     real(wp) :: position(3)
@@ -78,7 +78,7 @@ contains
 
   !> Velocity of a point of a link, fixed axes [m/s]; zero where there is no such link, which is noted.
   function velocity(self, link, point)
-    class(motion_view_type), intent(in) :: self
+    class(motion_view_type), intent(in) :: self   !< the motion view
     integer, intent(in) :: link           !< its number
     real(wp), intent(in) :: point(3)      !< in the link's system [m]
     real(wp) :: velocity(3)
@@ -89,7 +89,7 @@ contains
 
   !> A vector given in the axes of a link, in fixed axes; zero where there is no such link, which is noted.
   function turned(self, link, vector)
-    class(motion_view_type), intent(in) :: self
+    class(motion_view_type), intent(in) :: self   !< the motion view
     integer, intent(in) :: link           !< its number
     real(wp), intent(in) :: vector(3)     !< in the link's axes, of any unit
     real(wp) :: turned(3)
@@ -100,7 +100,7 @@ contains
 
   !> From now on, until `note_no_faults`, wrong numbers of links are noted in `fault`, which must live as long.
   subroutine note_faults_in(self, fault)
-    class(motion_view_type), intent(inout) :: self
+    class(motion_view_type), intent(inout) :: self   !< the motion view
     type(call_fault_type), intent(inout), target :: fault
 
     self%fault => fault
@@ -108,14 +108,14 @@ contains
 
   !> Wrong numbers of links are not noted any more.
   subroutine note_no_faults(self)
-    class(motion_view_type), intent(inout) :: self
+    class(motion_view_type), intent(inout) :: self   !< the motion view
 
     self%fault => null()
   end subroutine note_no_faults
 
   !> Whether a link exists. If not, the call is noted where faults are kept.
   logical function has_link(self, link, procedure)
-    class(motion_view_type), intent(in) :: self
+    class(motion_view_type), intent(in) :: self   !< the motion view
     integer, intent(in) :: link                  !< its number
     character(len=*), intent(in) :: procedure    !< that asks for it
 

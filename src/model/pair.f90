@@ -57,16 +57,16 @@ module mech9_pair
     !> Fails where the pair has no pose: collinear characteristic points, values that are not finite.
     subroutine evaluate_interface(self, q, motion, err)
       import :: pair_type, pair_motion_type, error_type, wp
-      class(pair_type), intent(in) :: self
+      class(pair_type), intent(in) :: self   !< the pair
       real(wp), intent(in) :: q
       type(pair_motion_type), intent(out) :: motion
-      type(error_type), allocatable, intent(out) :: err
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine evaluate_interface
 
     !> The factors of a pair with a fixed axis; `is_screw` is false for any other pair.
     pure subroutine as_screw_interface(self, factors, is_screw)
       import :: pair_type, screw_factors_type
-      class(pair_type), intent(in) :: self
+      class(pair_type), intent(in) :: self   !< the pair
       type(screw_factors_type), intent(out) :: factors
       logical, intent(out) :: is_screw
     end subroutine as_screw_interface
@@ -74,14 +74,14 @@ module mech9_pair
     !> The name of its kind as in the data file, for reports.
     pure function kind_name_interface(self) result(name)
       import :: pair_type, kind_name_length
-      class(pair_type), intent(in) :: self
+      class(pair_type), intent(in) :: self   !< the pair
       character(len=kind_name_length) :: name
     end function kind_name_interface
 
     !> How often one evaluation calls a user's procedure; 0 for built-in pairs.
     pure integer function calls_interface(self)
       import :: pair_type
-      class(pair_type), intent(in) :: self
+      class(pair_type), intent(in) :: self   !< the pair
     end function calls_interface
   end interface
 

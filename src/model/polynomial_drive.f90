@@ -23,10 +23,10 @@ contains
 
   !> By Horner's rule, for the value and its derivatives at once.
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(polynomial_drive_type), intent(in) :: self
+    class(polynomial_drive_type), intent(in) :: self   !< the polynomial drive
     real(wp), intent(in) :: t              !< [s]
     real(wp), intent(out) :: q, dq, ddq    !< [rad or m], per s, per s^2
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     q = 0.0_wp
@@ -48,7 +48,7 @@ contains
   !> for the rest by a bound of the next derivative over the whole interval, to which each coefficient adds its size.
   !> Never too small, exact for a constant rate, and close for small h. The work is linear in the number of coefficients.
   function greatest_rate(self, t, h) result(rate)
-    class(polynomial_drive_type), intent(in) :: self
+    class(polynomial_drive_type), intent(in) :: self   !< the polynomial drive
     real(wp), intent(in) :: t        !< [s]
     real(wp), intent(in) :: h        !< [s], may be negative
     real(wp) :: rate                 !< [rad/s or m/s]

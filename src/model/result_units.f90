@@ -10,7 +10,7 @@ contains
 
   !> One unit of coordinate k of the results, in rad or m.
   pure real(wp) function unit_of(mechanism, k)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: k
 
     unit_of = 1.0_wp
@@ -19,7 +19,7 @@ contains
 
   !> Its name; '1' where only the user's own pair knows it.
   pure character(len=3) function unit_name(mechanism, k)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: k
 
     if (mechanism%pairs(k)%pair%kind_name() == 'user') then

@@ -86,10 +86,10 @@ contains
   end function helical_pair_dh
 
   subroutine evaluate(self, q, motion, err)
-    class(screw_pair_type), intent(in) :: self
+    class(screw_pair_type), intent(in) :: self   !< the screw pair
     real(wp), intent(in) :: q
     type(pair_motion_type), intent(out) :: motion
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(pose_type) :: step
     real(wp) :: x, axis(3), arm(3)
 
@@ -106,7 +106,7 @@ contains
   end subroutine evaluate
 
   pure subroutine as_screw(self, factors, is_screw)
-    class(screw_pair_type), intent(in) :: self
+    class(screw_pair_type), intent(in) :: self   !< the screw pair
     type(screw_factors_type), intent(out) :: factors
     logical, intent(out) :: is_screw
 
@@ -115,7 +115,7 @@ contains
   end subroutine as_screw
 
   pure function kind_name(self) result(name)
-    class(screw_pair_type), intent(in) :: self
+    class(screw_pair_type), intent(in) :: self   !< the screw pair
     character(len=kind_name_length) :: name
 
     if (.not. self%angular) then
@@ -128,7 +128,7 @@ contains
   end function kind_name
 
   pure integer function user_calls(self)
-    class(screw_pair_type), intent(in) :: self
+    class(screw_pair_type), intent(in) :: self   !< the screw pair
 
     user_calls = 0
   end function user_calls

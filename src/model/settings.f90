@@ -43,7 +43,7 @@ contains
 
   !> Whether each of so many coordinates is recorded: all are, unless some are named.
   pure function recorded(self, n_coordinates)
-    class(output_settings_type), intent(in) :: self
+    class(output_settings_type), intent(in) :: self   !< the output settings
     integer, intent(in) :: n_coordinates
     logical :: recorded(n_coordinates)
 
@@ -56,7 +56,7 @@ contains
 
   !> Time of output i; the last one is exactly the end.
   pure real(wp) function time(self, i)
-    class(time_grid_type), intent(in) :: self
+    class(time_grid_type), intent(in) :: self   !< the time grid
     integer, intent(in) :: i
 
     if (i == self%intervals) then

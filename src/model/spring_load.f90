@@ -28,13 +28,13 @@ module mech9_spring_load
 contains
 
   pure logical function is_idle(self)
-    class(spring_load_type), intent(in) :: self
+    class(spring_load_type), intent(in) :: self   !< the spring load
 
     is_idle = .not. (abs(self%stiffness) > 0.0_wp .or. abs(self%damping) > 0.0_wp)
   end function is_idle
 
   pure subroutine mark_links(self, needed)
-    class(spring_load_type), intent(in) :: self
+    class(spring_load_type), intent(in) :: self   !< the spring load
     logical, intent(inout) :: needed(:)
 
     needed(self%links) = .true.
@@ -42,7 +42,7 @@ contains
 
   !> From the first end to the second.
   pure function span(self, state)
-    class(spring_load_type), intent(in) :: self
+    class(spring_load_type), intent(in) :: self   !< the spring load
     type(motion_view_type), intent(in) :: state
     real(wp) :: span(3)
 
@@ -51,10 +51,10 @@ contains
   end function span
 
   subroutine apply(self, state, sum, err)
-    class(spring_load_type), intent(in) :: self
+    class(spring_load_type), intent(in) :: self   !< the spring load
     type(motion_view_type), intent(in) :: state
     type(force_sum_type), intent(inout) :: sum
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: d(3), rate(3), pull(3), length
 
     d = self%span(state)
@@ -75,7 +75,7 @@ contains
   end subroutine apply
 
   pure real(wp) function potential(self, state)
-    class(spring_load_type), intent(in) :: self
+    class(spring_load_type), intent(in) :: self   !< the spring load
     type(motion_view_type), intent(in) :: state
 
     potential = 0.5_wp*self%stiffness*(norm2(self%span(state)) - self%free_length)**2

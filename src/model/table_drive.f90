@@ -19,10 +19,10 @@ module mech9_table_drive
 contains
 
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(table_drive_type), intent(in) :: self
+    class(table_drive_type), intent(in) :: self   !< the table drive
     real(wp), intent(in) :: t
     real(wp), intent(out) :: q, dq, ddq
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: slack
 
     associate (first => self%spline%x(1), last => self%spline%x(size(self%spline%x)))
@@ -39,7 +39,7 @@ contains
 
   !> That of the pieces of the curve between the two times.
   function greatest_rate(self, t, h) result(rate)
-    class(table_drive_type), intent(in) :: self
+    class(table_drive_type), intent(in) :: self   !< the table drive
     real(wp), intent(in) :: t, h
     real(wp) :: rate
 

@@ -40,7 +40,7 @@ contains
 
   !> Whether a link can turn about a direction only.
   pure subroutine turns_only_about(self, link, direction, slack, answer, barrier)
-    class(turning_search_type), intent(inout) :: self
+    class(turning_search_type), intent(inout) :: self   !< the turning search
     integer, intent(in) :: link
     real(wp), intent(in) :: direction(3)       !< of length 1, in the axes of the link
     real(wp), intent(in) :: slack              !< angle that counts as none [rad]

@@ -43,7 +43,7 @@ contains
 
   !> Values and first two derivatives at x.
   pure subroutine evaluate(self, x, y, dy, ddy, points)
-    class(hermite_type), intent(in) :: self
+    class(hermite_type), intent(in) :: self   !< the hermite
     real(wp), intent(in) :: x
     real(wp), intent(out) :: y(:), dy(:), ddy(:)
     integer, intent(in), optional :: points       !< of the polynomials through so many of the first points

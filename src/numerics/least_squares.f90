@@ -49,7 +49,7 @@ contains
 
   !> Make room for m equations in n unknowns.
   pure subroutine create(self, m, n)
-    class(least_squares_type), intent(inout) :: self
+    class(least_squares_type), intent(inout) :: self   !< the least squares
     integer, intent(in) :: m, n
 
     self%m = m
@@ -63,7 +63,7 @@ contains
 
   !> Factorize a matrix, or the one that stands in `a`.
   subroutine factorize(self, matrix)
-    class(least_squares_type), intent(inout) :: self
+    class(least_squares_type), intent(inout) :: self   !< the least squares
     real(wp), intent(in), contiguous, optional :: matrix(:, :)   !< (m,n)
 
     if (present(matrix)) call copy(self%m*self%n, matrix, self%a)
@@ -81,7 +81,7 @@ contains
 
   !> The QR factorization of the matrix that stands in `a`.
   subroutine find_factors(self)
-    class(least_squares_type), intent(inout) :: self
+    class(least_squares_type), intent(inout) :: self   !< the least squares
     integer :: info, j
 
     self%by_cofactors = .false.
@@ -103,7 +103,7 @@ contains
   !> x with |a x - b| least, and the length of what remains; columns at and beyond the numerical rank
   !> are not used.
   subroutine solve(self, b, x, remainder, tolerance, noise)
-    class(least_squares_type), intent(inout) :: self
+    class(least_squares_type), intent(inout) :: self   !< the least squares
     real(wp), intent(inout), contiguous :: b(:)  !< (m); overwritten
     real(wp), intent(out) :: x(:)                !< (n)
     real(wp), intent(out), optional :: remainder
@@ -154,7 +154,7 @@ contains
 
   !> R^-1 b in the first `rank` columns, without what is noise.
   pure subroutine substitute_above_noise(self, rank, noise, b)
-    class(least_squares_type), intent(in) :: self
+    class(least_squares_type), intent(in) :: self   !< the least squares
     integer, intent(in) :: rank
     real(wp), intent(in) :: noise
     real(wp), intent(inout) :: b(:)
@@ -173,7 +173,7 @@ contains
 
   !> Number of columns that are independent beyond round-off.
   pure integer function rank(self, tolerance)
-    class(least_squares_type), intent(in) :: self
+    class(least_squares_type), intent(in) :: self   !< the least squares
     real(wp), intent(in), optional :: tolerance   !< against the largest; round-off unless given
 
     rank = self%safe_rank
@@ -182,7 +182,7 @@ contains
 
   !> Number of pivots above this part of the largest.
   pure integer function rank_within(self, tolerance) result(rank)
-    class(least_squares_type), intent(in) :: self
+    class(least_squares_type), intent(in) :: self   !< the least squares
     real(wp), intent(in) :: tolerance
 
     do rank = 0, size(self%lengths) - 1
@@ -192,7 +192,7 @@ contains
 
   !> Length of the largest pivot: about the largest singular value; 0 where there is none.
   pure real(wp) function largest_pivot(self)
-    class(least_squares_type), intent(in) :: self
+    class(least_squares_type), intent(in) :: self   !< the least squares
 
     largest_pivot = 0.0_wp
     if (size(self%lengths) > 0) largest_pivot = self%lengths(1)
@@ -201,7 +201,7 @@ contains
   !> Length of the least pivot: about the least singular value, somewhat above it; 0 where there are fewer
   !> equations than unknowns, or none.
   pure real(wp) function least_pivot(self)
-    class(least_squares_type), intent(in) :: self
+    class(least_squares_type), intent(in) :: self   !< the least squares
 
     least_pivot = 0.0_wp
     if (self%n > 0 .and. self%m >= self%n) least_pivot = self%lengths(self%n)
@@ -210,7 +210,7 @@ contains
   !> Least against largest pivot: about the reciprocal condition number; 0 where columns depend on
   !> each other, 1 where there are none.
   pure real(wp) function conditioning(self)
-    class(least_squares_type), intent(in) :: self
+    class(least_squares_type), intent(in) :: self   !< the least squares
 
     conditioning = 1.0_wp
     if (self%n == 0) return
@@ -222,7 +222,7 @@ contains
   !> The least singular value, by inverse iteration with the factors; 0 where columns depend on each
   !> other, huge where there are none.
   function least_singular_value(self) result(least)
-    class(least_squares_type), intent(inout) :: self
+    class(least_squares_type), intent(inout) :: self   !< the least squares
     real(wp) :: least
     integer, parameter :: most_iterations = 200
     real(wp) :: before, length
@@ -285,7 +285,7 @@ contains
 
   !> Sign of the determinant of a square matrix; 1 for others.
   integer function determinant_sign(self) result(sign)
-    class(least_squares_type), intent(inout) :: self
+    class(least_squares_type), intent(inout) :: self   !< the least squares
     integer :: j, place, next
 
     sign = 1

@@ -27,7 +27,7 @@ contains
   subroutine build_spline(x, y, spline, err)
     real(wp), intent(in) :: x(:), y(:)
     type(spline_type), intent(out) :: spline
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: h(size(x) - 1), slope(size(x) - 1)
     real(wp) :: below(size(x) - 3), diagonal(size(x) - 2), above(size(x) - 3), right(size(x) - 2, 1)
     integer :: n, i, info
@@ -72,7 +72,7 @@ contains
 
   !> Value and first two derivatives at x; outside its points the end pieces are continued.
   pure subroutine evaluate(self, x, y, dy, ddy)
-    class(spline_type), intent(in) :: self
+    class(spline_type), intent(in) :: self   !< the spline
     real(wp), intent(in) :: x
     real(wp), intent(out) :: y, dy, ddy
     integer :: low, high
@@ -92,7 +92,7 @@ contains
 
   !> A bound of |dy/dx| for x between two values, from the slope and the bending of each piece there.
   pure real(wp) function steepest(self, from, to)
-    class(spline_type), intent(in) :: self
+    class(spline_type), intent(in) :: self   !< the spline
     real(wp), intent(in) :: from, to      !< from <= to
     integer :: i
     real(wp) :: h
@@ -107,7 +107,7 @@ contains
 
   !> Number of the piece in which x lies; the first or the last one for x outside.
   pure integer function piece(self, x) result(low)
-    class(spline_type), intent(in) :: self
+    class(spline_type), intent(in) :: self   !< the spline
     real(wp), intent(in) :: x
     integer :: high, middle
 

@@ -60,14 +60,14 @@ contains
   !> Begin at (t, y). The system must have the target attribute (or be a pointer's target), outlive the
   !> integrator, and not be used by others meanwhile. Fails for an unknown method or useless tolerances.
   subroutine create(self, system, method, relative_tolerance, absolute_tolerance, t, y, err)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     class(ode_system_type), intent(inout), target :: system
     character(len=*), intent(in) :: method              !< name, as in integration_methods; blank: the first one
     real(wp), intent(in) :: relative_tolerance          !< of each part of y, in a step
     real(wp), intent(in) :: absolute_tolerance(:)       !< of each part of y, in its unit
     real(wp), intent(in) :: t                           !< [s]
     real(wp), intent(in) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: index, outcome
 
     call self%destroy()
@@ -101,7 +101,7 @@ contains
   pure subroutine check_method(method, index, err)
     character(len=*), intent(in) :: method
     integer, intent(out) :: index
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: hint, names
     integer :: i
 
@@ -121,7 +121,7 @@ contains
   pure subroutine check_tolerances(relative, absolute, n, err)
     real(wp), intent(in) :: relative, absolute(:)
     integer, intent(in) :: n
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (n < 1 .or. size(absolute) /= n) then
       call raise(err, exit_internal, 'an integration needs one absolute tolerance for each of its variables')
@@ -136,11 +136,11 @@ contains
   !> ends exactly there. With `farthest` a step may go on beyond t_stop, to there at most. On failure t and y are
   !> those of the last accepted step.
   subroutine step(self, t_stop, t, y, err, farthest)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     real(wp), intent(in) :: t_stop                      !< may lie before the start [s]
     real(wp), intent(inout) :: t                        !< where it ends [s]
     real(wp), intent(inout) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), intent(in), optional :: farthest          !< in the same direction [s]
     real(wp) :: t_new, t_last
 
@@ -164,7 +164,7 @@ contains
 
   !> What the method takes for y at a time within the last step, if it can tell; see its stepper.
   subroutine interpolate(self, t, y, found)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     real(wp), intent(in) :: t                           !< [s]
     real(wp), intent(out) :: y(:)
     logical, intent(out) :: found
@@ -174,9 +174,9 @@ contains
 
   !> Count the steps to each stop. Fails when there were too many.
   subroutine count_steps(self, t_stop, err)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     real(wp), intent(in) :: t_stop
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (abs(t_stop - self%t_stop) > 0.0_wp) then
       self%t_stop = t_stop
@@ -191,10 +191,10 @@ contains
 
   !> One accepted step into `trial`. What the system refuses is tried again with less.
   subroutine take_step(self, t_stop, t_new, err)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     real(wp), intent(in) :: t_stop
     real(wp), intent(out) :: t_new
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: reach
     integer :: outcome, trials
 
@@ -218,7 +218,7 @@ contains
   !> The stop itself, or half the way where one step and a short rest would remain: the methods take
   !> many steps to recover from a very short one.
   real(wp) function next_stop(self, t_stop)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     real(wp), intent(in) :: t_stop
     real(wp) :: h, rest, half, enough
 
@@ -240,9 +240,9 @@ contains
 
   !> Go on from y, which differs from the result of the last step by no more than about the tolerance.
   subroutine correct(self, y, err)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     real(wp), intent(in) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: outcome
 
     self%y = y
@@ -253,10 +253,10 @@ contains
   !> Begin anew at (t, y), after an event that changed the motion; with a first step of the given length
   !> or of one to be found. Statistics go on.
   subroutine restart(self, t, y, err, first_step)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     real(wp), intent(in) :: t                           !< [s]
     real(wp), intent(in) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), intent(in), optional :: first_step        !< with its sign; 0: to be found [s]
     real(wp) :: h
     integer :: outcome
@@ -272,8 +272,8 @@ contains
 
   !> Set limits; those not named stay.
   subroutine limit(self, err, maximum_steps, largest_step, first_step)
-    class(integrator_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(integrator_type), intent(inout) :: self   !< the integrator
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer, intent(in), optional :: maximum_steps      !< to one stop; 1000000 unless set
     real(wp), intent(in), optional :: largest_step      !< 0: none [s]
     real(wp), intent(in), optional :: first_step        !< with its sign; before the first step only [s]
@@ -288,7 +288,7 @@ contains
 
   !> What the integration took so far.
   function statistics(self)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
     type(integration_statistics_type) :: statistics
     type(stepper_counts_type) :: counts
 
@@ -314,9 +314,9 @@ contains
 
   !> The failure of a step in plain words.
   subroutine explain(self, outcome, err)
-    class(integrator_type), intent(in) :: self
+    class(integrator_type), intent(in) :: self   !< the integrator
     integer, intent(in) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%box%has_cause()) then
       call explain_by_system(self, err)
@@ -341,8 +341,8 @@ contains
 
   !> The failure of the system, which keeps its code.
   subroutine explain_by_system(self, err)
-    class(integrator_type), intent(in) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(integrator_type), intent(in) :: self   !< the integrator
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     err = self%box%failure
     call add_place(err, trim(stands(self%t))//' at t = '//to_text(self%box%t_failed, 10)//' s')
@@ -350,8 +350,8 @@ contains
 
   !> The step has become shorter than time can be told apart.
   subroutine explain_full_stop(self, err)
-    class(integrator_type), intent(in) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(integrator_type), intent(in) :: self   !< the integrator
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%box%has_cause()) then
       call explain_by_system(self, err)
@@ -363,7 +363,7 @@ contains
 
   !> Give back what the integration holds. An integrator can then be created again.
   subroutine destroy(self)
-    class(integrator_type), intent(inout) :: self
+    class(integrator_type), intent(inout) :: self   !< the integrator
 
     if (allocated(self%stepper)) then
       call self%stepper%close()

@@ -26,11 +26,11 @@ module mech9_ode_system
     !> help. Any other failure ends it at once.
     subroutine rate_interface(self, t, y, ydot, err)
       import :: ode_system_type, wp, error_type
-      class(ode_system_type), intent(inout) :: self
+      class(ode_system_type), intent(inout) :: self   !< the ode system
       real(wp), intent(in) :: t        !< [s]
       real(wp), intent(in) :: y(:)
       real(wp), intent(out) :: ydot(:)
-      type(error_type), allocatable, intent(out) :: err
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine rate_interface
   end interface
 
@@ -39,20 +39,20 @@ contains
   !> After each accepted step: y may be put back to where it must lie, by a change not much larger than
   !> the tolerance. A failure makes the step again, smaller, by the rule of `rate`. (This one does nothing.)
   subroutine nothing_to_settle(self, t, y, err)
-    class(ode_system_type), intent(inout) :: self
+    class(ode_system_type), intent(inout) :: self   !< the ode system
     real(wp), intent(in) :: t           !< [s]
     real(wp), intent(inout) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
   end subroutine nothing_to_settle
 
   !> Derivatives of the rate: jac(i, j) = d ydot(i)/d y(j). Fails by the rule of `rate`. (This one always.)
   subroutine no_jacobian(self, t, y, ydot, jac, err)
-    class(ode_system_type), intent(inout) :: self
+    class(ode_system_type), intent(inout) :: self   !< the ode system
     real(wp), intent(in) :: t           !< [s]
     real(wp), intent(in) :: y(:)
     real(wp), intent(in) :: ydot(:)     !< the rate at (t, y)
     real(wp), intent(out) :: jac(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     jac = 0.0_wp
     call raise(err, exit_internal, 'a system of equations without Jacobian was asked for it')
@@ -60,7 +60,7 @@ contains
 
   !> Whether a smaller step may help against this failure.
   pure logical function is_recoverable(err)
-    type(error_type), intent(in) :: err
+    type(error_type), intent(in) :: err   !< the failure
 
     is_recoverable = err%code == exit_singular .or. err%code == exit_integrator
   end function is_recoverable

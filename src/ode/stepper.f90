@@ -42,7 +42,7 @@ module mech9_stepper
     !> mean nothing, and the method must be restarted.
     subroutine advance_interface(self, t_stop, t, y, outcome)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self
+      class(stepper_type), intent(inout) :: self   !< the stepper
       real(wp), intent(in) :: t_stop           !< [s]
       real(wp), intent(out) :: t               !< [s]
       real(wp), intent(out) :: y(:)
@@ -53,7 +53,7 @@ module mech9_stepper
     !> tell it as accurately as the ends of steps.
     subroutine interpolate_interface(self, t, y, found)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self
+      class(stepper_type), intent(inout) :: self   !< the stepper
       real(wp), intent(in) :: t                !< [s]
       real(wp), intent(out) :: y(:)
       logical, intent(out) :: found
@@ -62,7 +62,7 @@ module mech9_stepper
     !> Go on from y, changed a little, instead of what the last step gave.
     subroutine correct_interface(self, t, y, outcome)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self
+      class(stepper_type), intent(inout) :: self   !< the stepper
       real(wp), intent(in) :: t                !< of the last step [s]
       real(wp), intent(in) :: y(:)
       integer, intent(out) :: outcome
@@ -71,7 +71,7 @@ module mech9_stepper
     !> Begin anew at (t, y) with a step of the given length, or of one to be found if it is 0.
     subroutine restart_interface(self, t, y, first_step, outcome)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self
+      class(stepper_type), intent(inout) :: self   !< the stepper
       real(wp), intent(in) :: t                !< [s]
       real(wp), intent(in) :: y(:)
       real(wp), intent(in) :: first_step       !< with its sign [s]
@@ -81,7 +81,7 @@ module mech9_stepper
     !> Take no step longer than this; 0 for no limit.
     subroutine limit_interface(self, largest_step, outcome)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self
+      class(stepper_type), intent(inout) :: self   !< the stepper
       real(wp), intent(in) :: largest_step     !< [s]
       integer, intent(out) :: outcome
     end subroutine limit_interface
@@ -89,20 +89,20 @@ module mech9_stepper
     !> The step intended next, or the one last tried where a step has failed; with its sign [s].
     real(wp) function next_step_interface(self)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self
+      class(stepper_type), intent(inout) :: self   !< the stepper
     end function next_step_interface
 
     !> What was counted so far.
     subroutine counts_interface(self, counts)
       import :: stepper_type, stepper_counts_type
-      class(stepper_type), intent(inout) :: self
+      class(stepper_type), intent(inout) :: self   !< the stepper
       type(stepper_counts_type), intent(out) :: counts
     end subroutine counts_interface
 
     !> Give back what the method holds.
     subroutine close_interface(self)
       import :: stepper_type
-      class(stepper_type), intent(inout) :: self
+      class(stepper_type), intent(inout) :: self   !< the stepper
     end subroutine close_interface
   end interface
 end module mech9_stepper

@@ -90,7 +90,7 @@ contains
   end subroutine new_multistep
 
   subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
-    type(multistep_type), intent(inout) :: self
+    type(multistep_type), intent(inout) :: self   !< the multistep
     real(wp), intent(in) :: relative_tolerance, absolute_tolerance(:)
     integer(c_int), intent(out) :: flag
     type(N_Vector), pointer :: absolute
@@ -107,7 +107,7 @@ contains
 
   !> Adams' equations are solved by iterating them, those of backward differences by Newton's method.
   subroutine set_solver(self, method, flag)
-    type(multistep_type), intent(inout) :: self
+    type(multistep_type), intent(inout) :: self   !< the multistep
     type(integration_method_type), intent(in) :: method
     integer(c_int), intent(out) :: flag
     integer(index_kind) :: n
@@ -128,7 +128,7 @@ contains
   end subroutine set_solver
 
   subroutine set_habits(self, flag)
-    type(multistep_type), intent(inout) :: self
+    type(multistep_type), intent(inout) :: self   !< the multistep
     integer(c_int), intent(out) :: flag
 
     flag = FCVodeSetUserData(self%memory, c_loc(self%box))
@@ -141,7 +141,7 @@ contains
   !> that is what CVODE calls the prediction. A small change there is carried on without a restart;
   !> CVODE's own projection, which backward differences alone have, does the same.
   subroutine find_history(self, flag)
-    type(multistep_type), intent(inout) :: self
+    type(multistep_type), intent(inout) :: self   !< the multistep
     integer(c_int), intent(out) :: flag
     type(c_ptr), target :: found(4)
     type(c_ptr) :: at(4), context
@@ -161,7 +161,7 @@ contains
   end subroutine find_history
 
   subroutine advance(self, t_stop, t, y, outcome)
-    class(multistep_type), intent(inout) :: self
+    class(multistep_type), intent(inout) :: self   !< the multistep
     real(wp), intent(in) :: t_stop
     real(wp), intent(out) :: t
     real(wp), intent(out) :: y(:)
@@ -219,7 +219,7 @@ contains
 
   !> By the polynomial through the values that the method goes on from.
   subroutine interpolate(self, t, y, found)
-    class(multistep_type), intent(inout) :: self
+    class(multistep_type), intent(inout) :: self   !< the multistep
     real(wp), intent(in) :: t
     real(wp), intent(out) :: y(:)
     logical, intent(out) :: found
@@ -230,7 +230,7 @@ contains
 
   !> Keeps step and order.
   subroutine correct(self, t, y, outcome)
-    class(multistep_type), intent(inout) :: self
+    class(multistep_type), intent(inout) :: self   !< the multistep
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)
     integer, intent(out) :: outcome
@@ -245,7 +245,7 @@ contains
 
   !> Falls back to the first order, as all multistep methods must.
   subroutine restart(self, t, y, first_step, outcome)
-    class(multistep_type), intent(inout) :: self
+    class(multistep_type), intent(inout) :: self   !< the multistep
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)
     real(wp), intent(in) :: first_step
@@ -264,7 +264,7 @@ contains
   end subroutine restart
 
   subroutine limit(self, largest_step, outcome)
-    class(multistep_type), intent(inout) :: self
+    class(multistep_type), intent(inout) :: self   !< the multistep
     real(wp), intent(in) :: largest_step
     integer, intent(out) :: outcome
 
@@ -272,7 +272,7 @@ contains
   end subroutine limit
 
   real(wp) function next_step(self)
-    class(multistep_type), intent(inout) :: self
+    class(multistep_type), intent(inout) :: self   !< the multistep
     real(c_double) :: h(1)
     integer(c_int) :: flag
 
@@ -282,7 +282,7 @@ contains
   end function next_step
 
   subroutine count_so_far(self, counts)
-    class(multistep_type), intent(inout) :: self
+    class(multistep_type), intent(inout) :: self   !< the multistep
     type(stepper_counts_type), intent(out) :: counts
     integer(c_long) :: number(1)
     integer(c_int) :: order(1), flag
@@ -307,7 +307,7 @@ contains
   end subroutine count_so_far
 
   subroutine close_multistep(self)
-    class(multistep_type), intent(inout) :: self
+    class(multistep_type), intent(inout) :: self   !< the multistep
     integer(c_int) :: flag
 
     if (c_associated(self%memory)) call FCVodeFree(self%memory)

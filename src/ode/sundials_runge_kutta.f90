@@ -87,7 +87,7 @@ contains
   end subroutine new_runge_kutta
 
   subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
-    type(runge_kutta_type), intent(inout) :: self
+    type(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     real(wp), intent(in) :: relative_tolerance, absolute_tolerance(:)
     integer(c_int), intent(out) :: flag
     type(N_Vector), pointer :: absolute
@@ -104,7 +104,7 @@ contains
 
   !> Give SUNDIALS the coefficients. A method whose table is not known is refused.
   subroutine set_table(self, method, flag)
-    type(runge_kutta_type), intent(inout) :: self
+    type(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     type(integration_method_type), intent(in) :: method
     integer(c_int), intent(out) :: flag              !< ARK_SUCCESS when all is well
 
@@ -125,7 +125,7 @@ contains
   end subroutine set_table
 
   subroutine set_own_table(self, table, flag)
-    type(runge_kutta_type), intent(inout) :: self
+    type(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     type(butcher_table_type), intent(in) :: table
     integer(c_int), intent(out) :: flag
     real(c_double), target :: c(table%stages), b(table%stages), d(table%stages), a(table%stages**2)
@@ -144,7 +144,7 @@ contains
   end subroutine set_own_table
 
   subroutine set_habits(self, method, flag)
-    type(runge_kutta_type), intent(inout) :: self
+    type(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     type(integration_method_type), intent(in) :: method
     integer(c_int), intent(out) :: flag
     type(c_ptr) :: nothing
@@ -177,7 +177,7 @@ contains
   end function choose_step
 
   subroutine advance(self, t_stop, t, y, outcome)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     real(wp), intent(in) :: t_stop
     real(wp), intent(out) :: t
     real(wp), intent(out) :: y(:)
@@ -202,7 +202,7 @@ contains
   !> ERKStep accepts no stop against the direction of its last step. A first step back of half the rest at
   !> most, which can only be made smaller, needs none.
   subroutine turn_back(self, t_stop, flag)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     real(wp), intent(in) :: t_stop
     integer(c_int), intent(out) :: flag
     real(wp) :: half
@@ -235,7 +235,7 @@ contains
 
   !> Not at the order of the method.
   subroutine interpolate(self, t, y, found)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     real(wp), intent(in) :: t
     real(wp), intent(out) :: y(:)
     logical, intent(out) :: found
@@ -246,7 +246,7 @@ contains
 
   !> Takes one evaluation of the rate that would not be needed otherwise.
   subroutine correct(self, t, y, outcome)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)
     integer, intent(out) :: outcome
@@ -256,7 +256,7 @@ contains
   end subroutine correct
 
   subroutine restart(self, t, y, first_step, outcome)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)
     real(wp), intent(in) :: first_step
@@ -271,7 +271,7 @@ contains
   end subroutine restart
 
   subroutine limit(self, largest_step, outcome)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     real(wp), intent(in) :: largest_step
     integer, intent(out) :: outcome
 
@@ -279,7 +279,7 @@ contains
   end subroutine limit
 
   real(wp) function next_step(self)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     real(c_double) :: h(1)
     integer(c_int) :: flag
 
@@ -289,7 +289,7 @@ contains
   end function next_step
 
   subroutine count_so_far(self, counts)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
     type(stepper_counts_type), intent(out) :: counts
     integer(c_long) :: number(1)
     real(c_double) :: h(1)
@@ -305,7 +305,7 @@ contains
   end subroutine count_so_far
 
   subroutine close_runge_kutta(self)
-    class(runge_kutta_type), intent(inout) :: self
+    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
 
     if (c_associated(self%memory)) call FERKStepFree(self%memory)
     if (associated(self%vector)) call FN_VDestroy(self%vector)

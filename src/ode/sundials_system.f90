@@ -104,7 +104,7 @@ contains
 
   !> Let the system settle after a step, if it does.
   subroutine settle(self, t, y, settled)
-    class(system_box_type), intent(inout) :: self
+    class(system_box_type), intent(inout) :: self   !< the system box
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: y(:)
     logical, intent(out) :: settled
@@ -118,7 +118,7 @@ contains
   !> Whether a failure of the system explains why the integration cannot go on: one that nothing helps, or
   !> one so short ago that it is what the steps became short for.
   pure logical function has_cause(self)
-    class(system_box_type), intent(in) :: self
+    class(system_box_type), intent(in) :: self   !< the system box
     integer, parameter :: recent = 100   ! rate evaluations: those of some steps, and of a Jacobian
 
     has_cause = .false.
@@ -129,7 +129,7 @@ contains
   pure subroutine must_be_finite(numbers, what, err)
     real(wp), intent(in) :: numbers(:)
     character(len=*), intent(in) :: what
-    type(error_type), allocatable, intent(inout) :: err
+    type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
     integer :: i
 
     do i = 1, size(numbers)

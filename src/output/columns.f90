@@ -37,7 +37,7 @@ contains
 
   !> The columns that every run records.
   function kinematic_columns(mechanism) result(columns)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(columns_type) :: columns
     character(len=4), parameter :: orders(3) = ['q   ', 'dq  ', 'ddq ']
     character(len=5), parameter :: per_time(3) = ['     ', '/s   ', '/s^2 ']
@@ -72,7 +72,7 @@ contains
 
   !> One more column at the end.
   pure subroutine append(self, name, unit, long_name)
-    class(columns_type), intent(inout) :: self
+    class(columns_type), intent(inout) :: self   !< the columns
     character(len=*), intent(in) :: name, unit
     character(len=*), intent(in), optional :: long_name
 
@@ -100,16 +100,16 @@ contains
 
   !> Numbers in a row, poses included.
   pure integer function width(self)
-    class(columns_type), intent(in) :: self
+    class(columns_type), intent(in) :: self   !< the columns
 
     width = self%count + self%poses%width()
   end function width
 
   !> The columns of the poses in a row, if there are any.
   pure subroutine fill_poses(self, plan, state, row)
-    class(columns_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(columns_type), intent(in) :: self   !< the columns
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(inout) :: row(:)
 
     if (self%poses%n_links > 0) call self%poses%fill(plan, state, row(self%count + 1:))
@@ -117,10 +117,10 @@ contains
 
   !> The columns of the motion in the row of a state.
   pure subroutine fill(self, mechanism, plan, state, row)
-    class(columns_type), intent(in) :: self
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(columns_type), intent(in) :: self   !< the columns
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(inout) :: row(:)
     integer :: i, n, used
 

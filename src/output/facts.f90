@@ -35,7 +35,7 @@ module mech9_facts
 contains
 
   subroutine add_number(self, name, value, long_name, unit)
-    class(facts_type), intent(inout) :: self
+    class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name, long_name
     real(wp), intent(in) :: value
     character(len=*), intent(in) :: unit
@@ -45,7 +45,7 @@ contains
   end subroutine add_number
 
   subroutine add_count(self, name, value, long_name)
-    class(facts_type), intent(inout) :: self
+    class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name, long_name
     integer, intent(in) :: value
 
@@ -53,7 +53,7 @@ contains
   end subroutine add_count
 
   subroutine add_whole(self, name, value, long_name)
-    class(facts_type), intent(inout) :: self
+    class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name, long_name
     integer(long), intent(in) :: value
 
@@ -62,7 +62,7 @@ contains
   end subroutine add_whole
 
   subroutine add_text(self, name, value, long_name)
-    class(facts_type), intent(inout) :: self
+    class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name, value, long_name
 
     call self%next_item(name, long_name, '', a_text)
@@ -71,7 +71,7 @@ contains
 
   !> Room for one more. By hand: an array constructor of them would leak (gfortran 12).
   subroutine next_item(self, name, long_name, unit, kind)
-    class(facts_type), intent(inout) :: self
+    class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name, long_name, unit
     integer, intent(in) :: kind
     type(fact_type), allocatable :: grown(:)
@@ -94,7 +94,7 @@ contains
 
   !> Into the object that is being composed, each under its name.
   subroutine to_json(self, json)
-    class(facts_type), intent(in) :: self
+    class(facts_type), intent(in) :: self   !< the facts
     type(json_type), intent(inout) :: json
     integer :: i
 
@@ -115,7 +115,7 @@ contains
   !> Into a group, each as a data set. Done before a run and again after it, only numbers in their places change:
   !> whenever the run is killed, the file is whole. Texts stay as they were.
   subroutine to_hdf5(self, file, group, again)
-    class(facts_type), intent(in) :: self
+    class(facts_type), intent(in) :: self   !< the facts
     type(hdf5_file_type), intent(inout) :: file
     character(len=*), intent(in) :: group
     logical, intent(in) :: again           !< the facts stand there already, with other values

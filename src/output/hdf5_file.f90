@@ -66,9 +66,9 @@ contains
   !> Create the file. It gets its name when it is handed to the system for the first time: until then it cannot be opened,
   !> and an older file of that name stays.
   subroutine create_file(self, path, err)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: path
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer(hid_t) :: access
     integer :: status
 
@@ -100,21 +100,21 @@ contains
   end subroutine create_file
 
   pure logical function is_open(self)
-    class(hdf5_file_type), intent(in) :: self
+    class(hdf5_file_type), intent(in) :: self   !< the HDF5 file
 
     is_open = self%id >= 0
   end function is_open
 
   !> Properties for making data sets by path.
   pure integer(hid_t) function link_properties(self)
-    class(hdf5_file_type), intent(in) :: self
+    class(hdf5_file_type), intent(in) :: self   !< the HDF5 file
 
     link_properties = self%make_groups
   end function link_properties
 
   !> Keep the first failure: a call answered with a negative status.
   subroutine check(self, status)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     integer, intent(in) :: status
 
     if (status >= 0 .or. allocated(self%failure)) return
@@ -123,7 +123,7 @@ contains
 
   !> Hand everything to the system: a run that is killed from now on leaves at least this.
   subroutine flush_file(self)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     integer :: status
 
     if (allocated(self%failure)) return
@@ -135,7 +135,7 @@ contains
   !> Close the file, and with it all that is open in it; one that was never handed over is removed. Does nothing to one that
   !> is not open.
   subroutine close_file(self)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     integer :: status
 
     if (.not. self%is_open()) return
@@ -148,7 +148,7 @@ contains
   end subroutine close_file
 
   subroutine put_text(self, name, text, long_name)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, text, long_name
     type(string_type) :: texts(1)
 
@@ -157,7 +157,7 @@ contains
   end subroutine put_text
 
   subroutine put_texts(self, name, texts, long_name)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     type(string_type), intent(in) :: texts(:)
 
@@ -165,7 +165,7 @@ contains
   end subroutine put_texts
 
   subroutine put_text_values(self, name, texts, extents, long_name)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     type(string_type), intent(in) :: texts(:)
     integer(hsize_t), intent(in) :: extents(:)
@@ -177,7 +177,7 @@ contains
   end subroutine put_text_values
 
   subroutine put_real(self, name, value, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     real(wp), intent(in), target :: value
     character(len=*), intent(in), optional :: unit
@@ -186,7 +186,7 @@ contains
   end subroutine put_real
 
   subroutine put_reals(self, name, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     real(wp), intent(in), contiguous, target :: values(:)
     character(len=*), intent(in), optional :: unit
@@ -196,7 +196,7 @@ contains
   end subroutine put_reals
 
   subroutine put_matrix(self, name, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     real(wp), intent(in), contiguous, target :: values(:, :)
     character(len=*), intent(in), optional :: unit
@@ -206,7 +206,7 @@ contains
   end subroutine put_matrix
 
   subroutine put_integer(self, name, value, long_name)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     integer, intent(in), target :: value
 
@@ -215,7 +215,7 @@ contains
   end subroutine put_integer
 
   subroutine put_integers(self, name, values, long_name)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     integer, intent(in), contiguous, target :: values(:)
 
@@ -224,7 +224,7 @@ contains
   end subroutine put_integers
 
   subroutine put_integer_matrix(self, name, values, long_name)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     integer, intent(in), contiguous, target :: values(:, :)
 
@@ -233,7 +233,7 @@ contains
   end subroutine put_integer_matrix
 
   subroutine put_long(self, name, value, long_name)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     integer(long), intent(in), target :: value
 
@@ -243,7 +243,7 @@ contains
 
   !> A data set of any type with its attributes.
   subroutine put_values(self, name, file_type, memory_type, extents, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     integer(hid_t), intent(in) :: file_type, memory_type
     integer(hsize_t), intent(in) :: extents(:)     !< empty: a single value; else the Fortran order
@@ -280,7 +280,7 @@ contains
 
   !> What a data set is, and its unit.
   subroutine describe(self, name, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, long_name
     character(len=*), intent(in), optional :: unit
 
@@ -290,7 +290,7 @@ contains
 
   !> An attribute, a text, of a data set or group; `/` is the file itself.
   subroutine add_attribute(self, name, attribute, text)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name, attribute, text
     character(kind=c_char), allocatable, target :: letters(:)
     type(c_ptr), allocatable, target :: starts(:)
@@ -333,7 +333,7 @@ contains
 
   !> Make a data set of one dimension a dimension scale, named as it is.
   subroutine make_scale(self, name)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name
     integer(hid_t) :: data_set
     integer :: status
@@ -349,7 +349,7 @@ contains
 
   !> Attach a scale to each dimension of a data set. A scale is not attached to others.
   subroutine attach_scales(self, name, scales)
-    class(hdf5_file_type), intent(inout) :: self
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     character(len=*), intent(in) :: name
     character(len=*), intent(in) :: scales(:)    !< paths, the slowest dimension first
     integer(hid_t) :: data_set, scale

@@ -59,7 +59,7 @@ contains
 
   !> Before the first quantity.
   subroutine start(self, n_quantities, n_columns, expected_rows, compression)
-    class(hdf5_series_type), intent(inout) :: self
+    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
     integer, intent(in) :: n_quantities, n_columns   !< at most
     integer, intent(in) :: expected_rows             !< there may be more, or fewer
     integer, intent(in) :: compression               !< 0 none to 9 most
@@ -87,7 +87,7 @@ contains
 
   !> One more quantity.
   subroutine add(self, name, columns, extents, long_name, unit, scales, whole)
-    class(hdf5_series_type), intent(inout) :: self
+    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
     character(len=*), intent(in) :: name, long_name, unit
     integer, intent(in) :: columns(:)           !< of the rows that it consists of
     integer, intent(in) :: extents(:)           !< of one row of it, Fortran order; empty: one number
@@ -110,7 +110,7 @@ contains
   !> Make the data sets, one after the other without anything between, and name them then. To be called before
   !> anything else is put into the file: a page of memory then holds all their lengths.
   subroutine create(self, file)
-    class(hdf5_series_type), intent(inout) :: self
+    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
     type(hdf5_file_type), intent(inout) :: file
     integer :: i, status
 
@@ -130,7 +130,7 @@ contains
 
   !> An empty data set, still without a name.
   subroutine create_data_set(self, quantity, file)
-    class(hdf5_series_type), intent(in) :: self
+    class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
     type(quantity_type), intent(inout) :: quantity
     type(hdf5_file_type), intent(inout) :: file
     integer(hid_t) :: creation, access, space
@@ -163,7 +163,7 @@ contains
 
   !> Attach the scales, which stand in the file now.
   subroutine attach(self, file)
-    class(hdf5_series_type), intent(in) :: self
+    class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
     type(hdf5_file_type), intent(inout) :: file
     integer :: i
 
@@ -175,7 +175,7 @@ contains
 
   !> Rows more. They go to the file when the buffers are full.
   subroutine append_rows(self, file, rows)
-    class(hdf5_series_type), intent(inout) :: self
+    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
     type(hdf5_file_type), intent(inout) :: file
     real(wp), intent(in) :: rows(:, :)     !< (columns, rows)
     integer :: next, together
@@ -191,7 +191,7 @@ contains
 
   !> Keep rows, each quantity's numbers side by side.
   pure subroutine take(self, rows)
-    class(hdf5_series_type), intent(inout) :: self
+    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
     real(wp), intent(in) :: rows(:, :)
     integer :: i, j, k
 
@@ -209,7 +209,7 @@ contains
 
   !> Write what waits. What is compressed waits for whole chunks, but at the end.
   subroutine hand_over(self, file, at_end)
-    class(hdf5_series_type), intent(inout) :: self
+    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
     type(hdf5_file_type), intent(inout) :: file
     logical, intent(in), optional :: at_end
     integer :: i
@@ -224,7 +224,7 @@ contains
   end subroutine hand_over
 
   subroutine write_block(self, quantity, file)
-    class(hdf5_series_type), intent(in) :: self
+    class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
     type(quantity_type), intent(in), target :: quantity
     type(hdf5_file_type), intent(inout) :: file
     integer(hsize_t), dimension(size(quantity%extents) + 1) :: whole, first, block
@@ -251,7 +251,7 @@ contains
 
   !> Write what waits and close the data sets.
   subroutine close_series(self, file)
-    class(hdf5_series_type), intent(inout) :: self
+    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
     type(hdf5_file_type), intent(inout) :: file
     integer :: i, status
 

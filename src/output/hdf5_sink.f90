@@ -44,11 +44,11 @@ contains
 
   !> Create the file with all its quantities, still without rows.
   subroutine open_sink(self, path, mechanism, columns, err)
-    class(hdf5_sink_type), intent(inout) :: self
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     character(len=*), intent(in) :: path
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(columns_type), intent(in) :: columns        !< of the rows to come
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: scalars
 
     call self%file%create(path, err)
@@ -70,8 +70,8 @@ contains
 
   !> The quantities over time, each with a scale for every dimension.
   subroutine add_quantities(self, mechanism, columns, scalars)
-    class(hdf5_sink_type), intent(inout) :: self
-    type(mechanism_type), intent(in) :: mechanism
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(columns_type), intent(in) :: columns
     integer, intent(in) :: scalars           !< columns that belong neither to a coordinate nor to a point
     character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
@@ -98,7 +98,7 @@ contains
 
   !> A quantity that each coordinate has.
   subroutine add_of_coordinates(self, columns, name, long_name, order)
-    class(hdf5_sink_type), intent(inout) :: self
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     type(columns_type), intent(in) :: columns
     character(len=*), intent(in) :: name, long_name
     integer, intent(in) :: order             !< 0, 1 or 2 derivatives
@@ -112,8 +112,8 @@ contains
 
   !> A quantity that each point has, with three components.
   subroutine add_of_points(self, mechanism, columns, name, unit, order)
-    class(hdf5_sink_type), intent(inout) :: self
-    type(mechanism_type), intent(in) :: mechanism
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(columns_type), intent(in) :: columns
     character(len=*), intent(in) :: name, unit
     integer, intent(in) :: order             !< 0, 1 or 2 derivatives
@@ -131,7 +131,7 @@ contains
 
   !> Poses of links, and the vertices of their drawing.
   subroutine add_poses(self, columns)
-    class(hdf5_sink_type), intent(inout) :: self
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     type(columns_type), intent(in) :: columns
     integer :: n, vertices, i
 
@@ -189,7 +189,7 @@ contains
 
   subroutine add_coordinate_scales(file, mechanism, columns)
     type(hdf5_file_type), intent(inout) :: file
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(columns_type), intent(in) :: columns
     type(string_type) :: kinds(size(columns%coordinates))
     integer :: i
@@ -207,7 +207,7 @@ contains
 
   subroutine add_point_scales(file, mechanism)
     type(hdf5_file_type), intent(inout) :: file
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(string_type) :: names(size(mechanism%points))
     integer :: i
 
@@ -249,7 +249,7 @@ contains
 
   !> Room for the events of a run: when other coordinates became the independent ones, and which.
   subroutine begin_events(self, n_independent)
-    class(hdf5_sink_type), intent(inout) :: self
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     integer, intent(in) :: n_independent
     integer :: i
 
@@ -266,7 +266,7 @@ contains
 
   !> The events of the run.
   subroutine write_events(self, times, independent)
-    class(hdf5_sink_type), intent(inout) :: self
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     real(wp), intent(in) :: times(:)           !< [s]
     integer, intent(in) :: independent(:, :)   !< (degrees of freedom, events)
     real(wp) :: rows(1 + size(independent, 1), size(times))
@@ -279,9 +279,9 @@ contains
   !> Rows more; about once a second they are made known to the file, and the first ones at once: with them the
   !> places of what follows are settled.
   subroutine write_rows(self, rows, err)
-    class(hdf5_sink_type), intent(inout) :: self
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     real(wp), intent(in) :: rows(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call self%series%append_rows(self%file, rows)
     if (self%pacer%due() .or. .not. self%begun) then
@@ -294,8 +294,8 @@ contains
 
   !> All rows into the file.
   subroutine flush_sink(self, err)
-    class(hdf5_sink_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call self%series%hand_over(self%file, at_end=.true.)
     call self%file%flush()
@@ -303,8 +303,8 @@ contains
   end subroutine flush_sink
 
   subroutine close_sink(self, err)
-    class(hdf5_sink_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (.not. self%file%is_open()) return
     call self%series%close(self%file)
@@ -314,7 +314,7 @@ contains
   end subroutine close_sink
 
   function words(self)
-    class(hdf5_sink_type), intent(in) :: self
+    class(hdf5_sink_type), intent(in) :: self   !< the HDF5 sink
     character(len=:), allocatable :: words
 
     words = 'HDF5 file: '//self%file%path
@@ -322,8 +322,8 @@ contains
 
   !> The first failure of the file, once.
   subroutine tell(self, err)
-    class(hdf5_sink_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%told .or. .not. allocated(self%file%failure)) return
     self%told = .true.

@@ -47,33 +47,33 @@ module mech9_json
 contains
 
   subroutine begin_object(self, name)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in), optional :: name
 
     call self%begin('{', '}', name)
   end subroutine begin_object
 
   subroutine end_object(self)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
 
     call self%finish('}')
   end subroutine end_object
 
   subroutine begin_array(self, name)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in), optional :: name
 
     call self%begin('[', ']', name)
   end subroutine begin_array
 
   subroutine end_array(self)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
 
     call self%finish(']')
   end subroutine end_array
 
   subroutine add_real(self, name, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: value
 
@@ -81,7 +81,7 @@ contains
   end subroutine add_real
 
   subroutine add_integer(self, name, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in) :: name
     integer, intent(in) :: value
 
@@ -89,7 +89,7 @@ contains
   end subroutine add_integer
 
   subroutine add_long(self, name, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in) :: name
     integer(long), intent(in) :: value
 
@@ -97,7 +97,7 @@ contains
   end subroutine add_long
 
   subroutine add_logical(self, name, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in) :: name
     logical, intent(in) :: value
 
@@ -105,7 +105,7 @@ contains
   end subroutine add_logical
 
   subroutine add_text(self, name, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in) :: name
     character(len=*), intent(in) :: value
 
@@ -113,7 +113,7 @@ contains
   end subroutine add_text
 
   subroutine add_reals(self, name, values)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: values(:)
     integer :: i
@@ -126,35 +126,35 @@ contains
   end subroutine add_reals
 
   subroutine item_real(self, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     real(wp), intent(in) :: value
 
     call self%put_item(number_text(value))
   end subroutine item_real
 
   subroutine item_integer(self, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     integer, intent(in) :: value
 
     call self%put_item(to_text(value))
   end subroutine item_integer
 
   subroutine item_long(self, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     integer(long), intent(in) :: value
 
     call self%put_item(to_text(value))
   end subroutine item_long
 
   subroutine item_logical(self, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     logical, intent(in) :: value
 
     call self%put_item(trim(merge('true ', 'false', value)))
   end subroutine item_logical
 
   subroutine item_text(self, value)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in) :: value
 
     call self%put_item(quoted(value))
@@ -162,9 +162,9 @@ contains
 
   !> Write the finished document to a file.
   subroutine save_document(self, path, err)
-    class(json_type), intent(in) :: self
+    class(json_type), intent(in) :: self   !< the json
     character(len=*), intent(in) :: path   !< '-' is standard output
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%wrong .or. self%depth /= 0 .or. self%page%is_empty()) then
       call raise(err, exit_internal, 'the report '//path//' was not composed as a whole document')
@@ -174,7 +174,7 @@ contains
   end subroutine save_document
 
   subroutine begin(self, opening, closing, name)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character, intent(in) :: opening, closing
     character(len=*), intent(in), optional :: name
 
@@ -187,7 +187,7 @@ contains
   end subroutine begin
 
   subroutine finish(self, closing)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character, intent(in) :: closing
 
     if (self%depth == 0) self%wrong = .true.
@@ -204,7 +204,7 @@ contains
 
   !> Write a value that is JSON already, with its name, comma and indentation.
   subroutine put_item(self, value, name)
-    class(json_type), intent(inout) :: self
+    class(json_type), intent(inout) :: self   !< the json
     character(len=*), intent(in) :: value
     character(len=*), intent(in), optional :: name
     logical :: in_object

@@ -26,7 +26,7 @@ contains
 
   !> Begin anew with nothing.
   pure subroutine begin(self, title, names, units, expected)
-    class(kept_rows_type), intent(inout) :: self
+    class(kept_rows_type), intent(inout) :: self   !< the kept rows
     character(len=*), intent(in) :: title
     type(string_type), intent(in) :: names(:), units(:)    !< of the columns, time first
     integer, intent(in) :: expected                        !< how many rows will come at most
@@ -43,7 +43,7 @@ contains
 
   !> Keep rows, which follow those before.
   pure subroutine take(self, rows)
-    class(kept_rows_type), intent(inout) :: self
+    class(kept_rows_type), intent(inout) :: self   !< the kept rows
     real(wp), intent(in) :: rows(:, :)                     !< (columns, rows)
     integer :: i
 
@@ -58,7 +58,7 @@ contains
 
   !> Number of the column with a name; 0 where there is none, and then what was probably meant.
   pure subroutine column(self, name, number, meant)
-    class(kept_rows_type), intent(in) :: self
+    class(kept_rows_type), intent(in) :: self   !< the kept rows
     character(len=*), intent(in) :: name
     integer, intent(out) :: number
     character(len=:), allocatable, intent(out) :: meant    !< empty where no name is near

@@ -114,7 +114,7 @@ contains
   !> Write a number into a field, at its right end: `-1.2345678901234567E+00`. What is not finite
   !> becomes `NaN`, `Infinity` or `-Infinity`.
   pure subroutine put(self, number, field)
-    class(number_format_type), intent(in) :: self
+    class(number_format_type), intent(in) :: self   !< the number format
     real(wp), intent(in) :: number
     character(len=number_width), intent(out) :: field
     integer(long) :: bits, mantissa, digits
@@ -159,7 +159,7 @@ contains
 
   !> The 17 digits of mantissa 2^binary_exponent, and the power of ten of the first of them.
   pure subroutine find_digits(self, mantissa, binary_exponent, digits, exponent, decided)
-    type(number_format_type), intent(in) :: self
+    type(number_format_type), intent(in) :: self   !< the number format
     integer(long), intent(in) :: mantissa   !< 2^52 <= mantissa < 2^53
     integer, intent(in) :: binary_exponent
     integer(long), intent(out) :: digits    !< 10^16 <= digits < 10^17

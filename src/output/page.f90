@@ -25,7 +25,7 @@ contains
 
   !> Append text.
   pure subroutine put(self, text)
-    class(page_type), intent(inout) :: self
+    class(page_type), intent(inout) :: self   !< the page
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: grown
 
@@ -41,7 +41,7 @@ contains
 
   !> Append text and end the line.
   pure subroutine line(self, text)
-    class(page_type), intent(inout) :: self
+    class(page_type), intent(inout) :: self   !< the page
     character(len=*), intent(in) :: text
 
     call self%put(text)
@@ -50,7 +50,7 @@ contains
 
   !> All of it.
   pure function text_of_page(self) result(text)
-    class(page_type), intent(in) :: self
+    class(page_type), intent(in) :: self   !< the page
     character(len=:), allocatable :: text
 
     text = ''
@@ -59,16 +59,16 @@ contains
 
   !> Whether nothing was put yet.
   pure logical function is_empty(self)
-    class(page_type), intent(in) :: self
+    class(page_type), intent(in) :: self   !< the page
 
     is_empty = self%used == 0
   end function is_empty
 
   !> Write the page into a file; '-' is standard output. Errors are exit_file.
   subroutine save_page(self, path, err)
-    class(page_type), intent(in) :: self
+    class(page_type), intent(in) :: self   !< the page
     character(len=*), intent(in) :: path
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call save_text(path, self%text(), err)
   end subroutine save_page

@@ -28,7 +28,7 @@ contains
 
   !> Vertices and lines of all links.
   pure function poses_of(mechanism) result(poses)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(poses_type) :: poses
     type(screw_factors_type) :: factors
     type(pose_type) :: in_moving
@@ -95,7 +95,7 @@ contains
 
   !> Number of the columns.
   pure integer function width(self)
-    class(poses_type), intent(in) :: self
+    class(poses_type), intent(in) :: self   !< the poses
 
     width = 12*self%n_links
     if (self%n_links > 0) width = width + 3*size(self%vertex_link)
@@ -103,9 +103,9 @@ contains
 
   !> Set the columns.
   pure subroutine fill(self, plan, state, columns)
-    class(poses_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(poses_type), intent(in) :: self   !< the poses
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(inout) :: columns(:)
     real(wp) :: r(3, 3, self%n_links), p(3, self%n_links), omega(3), v(3)
     integer :: i, at

@@ -26,17 +26,17 @@ module mech9_result_sink
     !> Take rows, which follow those before; they may wait for a moment. Errors name the file.
     subroutine rows_interface(self, rows, err)
       import :: result_sink_type, error_type, wp
-      class(result_sink_type), intent(inout) :: self
+      class(result_sink_type), intent(inout) :: self   !< the result sink
       real(wp), intent(in) :: rows(:, :)      !< (columns, rows), the columns as they were announced
-      type(error_type), allocatable, intent(out) :: err
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine rows_interface
 
     !> To finish: nothing waits any more, and files are closed even when writing fails. Does nothing to a
     !> sink that is closed.
     subroutine close_interface(self, err)
       import :: result_sink_type, error_type
-      class(result_sink_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: err
+      class(result_sink_type), intent(inout) :: self   !< the result sink
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine close_interface
   end interface
 
@@ -44,13 +44,13 @@ contains
 
   !> Let no row wait any longer; a sink that holds none back has nothing to do.
   subroutine flush_nothing(self, err)
-    class(result_sink_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(result_sink_type), intent(inout) :: self   !< the result sink
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
   end subroutine flush_nothing
 
   !> A line for the user about what was written, once it is closed; a sink with nothing to say has none.
   function no_words(self) result(words)
-    class(result_sink_type), intent(in) :: self
+    class(result_sink_type), intent(in) :: self   !< the result sink
     character(len=:), allocatable :: words
 
     words = ''

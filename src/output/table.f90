@@ -52,13 +52,13 @@ contains
 
   !> Create the file and write what stands above the rows.
   subroutine open_table(self, path, title, program, names, units, err)
-    class(table_type), intent(inout) :: self
+    class(table_type), intent(inout) :: self   !< the table
     character(len=*), intent(in) :: path          !< '-' is standard output
     character(len=*), intent(in) :: title         !< any text; a comment line for each of its lines
     character(len=*), intent(in) :: program       !< name and version
     type(string_type), intent(in) :: names(:)     !< of the columns
     type(string_type), intent(in) :: units(:)     !< of the columns; empty for a plain number
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (size(names) == 0 .or. size(names) /= size(units)) then
       call raise(err, exit_internal, 'a table needs columns, and as many units as names')
@@ -84,9 +84,9 @@ contains
 
   !> Write one row, a value for each column. It may wait in the buffer for a moment.
   subroutine write_row(self, values, err)
-    class(table_type), intent(inout) :: self
+    class(table_type), intent(inout) :: self   !< the table
     real(wp), intent(in) :: values(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: at
 
     if (size(values) /= self%columns .or. .not. self%file%is_open()) then
@@ -145,9 +145,9 @@ contains
 
   !> Write rows, one after the other.
   subroutine write_rows(self, rows, err)
-    class(table_type), intent(inout) :: self
+    class(table_type), intent(inout) :: self   !< the table
     real(wp), intent(in) :: rows(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     do i = 1, size(rows, 2)
@@ -159,8 +159,8 @@ contains
   !> Write the last rows and close the file; does nothing to a table that is not open. The file is closed
   !> even when writing fails.
   subroutine close_table(self, err)
-    class(table_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(table_type), intent(inout) :: self   !< the table
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: close_error
 
     if (.not. self%file%is_open()) return
@@ -173,8 +173,8 @@ contains
   !> Empty the buffer into the file. Rows that cannot be written are dropped: the run is about to
   !> end with this error, and must not meet it again when it closes the table.
   subroutine hand_over(self, err)
-    class(table_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(table_type), intent(inout) :: self   !< the table
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: used
 
     used = self%used

@@ -51,9 +51,9 @@ contains
 
   !> Create the file, or empty it if it exists.
   subroutine open_file(self, path, err, name)
-    class(text_file_type), intent(inout) :: self
+    class(text_file_type), intent(inout) :: self   !< the text file
     character(len=*), intent(in) :: path             !< '-' is standard output
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=*), intent(in), optional :: name   !< what messages call it; its path unless given
 
     if (path == '-') then
@@ -74,16 +74,16 @@ contains
   end subroutine open_file
 
   pure logical function is_open(self)
-    class(text_file_type), intent(in) :: self
+    class(text_file_type), intent(in) :: self   !< the text file
 
     is_open = self%descriptor >= 0
   end function is_open
 
   !> Hand bytes to the system, all of them.
   subroutine write_text(self, text, err)
-    class(text_file_type), intent(inout) :: self
+    class(text_file_type), intent(inout) :: self   !< the text file
     character(len=*), intent(in) :: text
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: done
     integer(c_long) :: written
 
@@ -101,8 +101,8 @@ contains
 
   !> Close the file; does nothing to one that is not open. Some disks tell only now that they are full.
   subroutine close_file(self, err)
-    class(text_file_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(text_file_type), intent(inout) :: self   !< the text file
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer(c_int) :: descriptor
 
     descriptor = self%descriptor
@@ -116,7 +116,7 @@ contains
   subroutine save_text(path, text, err)
     character(len=*), intent(in) :: path   !< '-' is standard output
     character(len=*), intent(in) :: text   !< of whole lines
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: at_close
     type(text_file_type) :: file
 
@@ -132,7 +132,7 @@ contains
   subroutine replace_text(path, text, err)
     character(len=*), intent(in) :: path
     character(len=*), intent(in) :: text   !< of whole lines
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: at_close
     type(replacement_type) :: replacement
     type(text_file_type) :: file

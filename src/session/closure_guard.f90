@@ -16,10 +16,10 @@ contains
 
   !> Fails with exit_singular where a position is not closed.
   subroutine check_closure(plan, t, gap, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: t                 !< time of the position [s]
     real(wp), intent(in) :: gap               !< largest closure error there [m, rotations times the mechanism's size]
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: tolerance
 
     tolerance = max(closed, plan%data_tolerance)*plan%length

@@ -62,7 +62,7 @@ contains
   !> The coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
   subroutine print_coefficients(unit, plan, coefficients)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: coefficients(:, :)   !< lower triangle
     integer :: p, r
 
@@ -77,8 +77,8 @@ contains
 
   !> What a program may want to know of a run.
   subroutine dynamic_facts(mechanism, plan, outcome, run, facts)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome
     type(dynamic_run_type), intent(inout) :: run
     type(facts_type), intent(out) :: facts
@@ -121,13 +121,13 @@ contains
   !> The same, and more, as JSON.
   subroutine save_dynamic_report(path, mechanism, plan, table_path, diagnostics, outcome, run, err)
     character(len=*), intent(in) :: path
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan             !< at the start
     character(len=*), intent(in) :: table_path
     type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
     type(recording_outcome_type), intent(in) :: outcome
     type(dynamic_run_type), intent(inout) :: run
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
 
@@ -144,7 +144,7 @@ contains
   !> [{"p": 1, "r": 5, "value": ...}, ...]
   subroutine add_coefficients(json, plan, coefficients)
     type(json_type), intent(inout) :: json
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: coefficients(:, :)
     integer :: p, r
 
@@ -184,7 +184,7 @@ contains
   !> Coefficients of motion as data sets, and room for events.
   subroutine write_dynamics(hdf5, plan, run)
     type(hdf5_sink_type), intent(inout) :: hdf5
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamic_run_type), intent(in) :: run
     real(wp) :: coefficients(size(plan%independent), size(plan%independent))
     integer :: p

@@ -85,10 +85,10 @@ contains
   !> Plan and assembled initial state: positions and rates of the independent coordinates as given; those
   !> at rest need no velocity.
   subroutine assemble_initial_state(mechanism, plan, state, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(state_type), intent(out) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(out) :: plan   !< the plan of the mechanism
+    type(state_type), intent(out) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: k
 
     do k = 1, size(mechanism%pairs)
@@ -107,11 +107,11 @@ contains
 
   !> A run from an assembled initial state; its motion at the start is worked out. To be closed at the end.
   subroutine start_dynamic_run(mechanism, plan, start, run, err, pictures)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
     type(dynamic_run_type), intent(out) :: run
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical, intent(in), optional :: pictures      !< of the mechanism are wanted; not unless given
     type(plan_type) :: used
 
@@ -145,10 +145,10 @@ contains
 
   !> State, energies and closure at time t.
   subroutine row_at(self, t, row, err)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: row(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: gap
     integer :: next
 
@@ -183,7 +183,7 @@ contains
 
   !> Kinetic and potential energy and their sum [J], and how far that goes from the start.
   subroutine fill_energies(self, energies)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     real(wp), intent(out) :: energies(3)
 
     associate (system => self%system)
@@ -197,9 +197,9 @@ contains
 
   !> The motion at time t, by steps up to there or beyond.
   subroutine go_to(self, t, err)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     real(wp), intent(in) :: t
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical :: found
 
     self%steps_onto = .false.
@@ -221,9 +221,9 @@ contains
   !> One accepted step towards t, with a change of coordinates before it where that helps. It may go beyond, but near
   !> a singular position of the independent coordinates, where outputs are ends of steps.
   subroutine step(self, t, err)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     real(wp), intent(in) :: t
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: failure
     real(wp) :: farthest
     logical :: changed, is_regular
@@ -256,7 +256,7 @@ contains
   !> The motion at a time within the last step: as the method tells it, or by the ends of the last steps, or with points
   !> between them, or by steps onto it. `found` is false where none of these leads there.
   subroutine look_between(self, t, found)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     real(wp), intent(in) :: t
     logical, intent(out) :: found
     type(error_type), allocatable :: err
@@ -287,9 +287,9 @@ contains
 
   !> Work out a point that divides the last step.
   subroutine insert(self, part, err)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     real(wp), intent(in) :: part
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: from, y(size(self%y))
 
     call self%dense_output%start_of_step(from, y)
@@ -299,9 +299,9 @@ contains
 
   !> Back to the start of the last step, to go onto time t within it.
   subroutine step_back(self, t, err)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     real(wp), intent(in) :: t
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(expectation_type) :: nothing
 
     self%steps_onto = .true.
@@ -316,8 +316,8 @@ contains
   end subroutine step_back
 
   subroutine start_integrator(self, err)
-    class(dynamic_run_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     self%y = self%system%vector()
     self%conditioning_here = self%system%conditioning()
@@ -328,7 +328,7 @@ contains
 
   !> What all integrators of the run took together.
   function statistics(self) result(all)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     type(integration_statistics_type) :: all
 
     all = self%before
@@ -338,7 +338,7 @@ contains
 
   !> What was done for the blocks of all systems of the run, the present one included.
   pure function work_done(self) result(all)
-    class(dynamic_run_type), intent(in) :: self
+    class(dynamic_run_type), intent(in) :: self   !< the dynamic run
     type(work_count_type) :: all
 
     all = self%work_before
@@ -364,7 +364,7 @@ contains
 
   !> Keep its counts and give back what it holds.
   subroutine stop_integrator(self)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
 
     self%before = self%statistics()
     call self%integrator%destroy()
@@ -374,9 +374,9 @@ contains
   !> Go on in better conditioned independent coordinates, if there are any. Where the others cannot serve, the motion goes on
   !> in the present ones; any other failure ends it.
   subroutine change_coordinates(self, changed, err)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
     logical, intent(out) :: changed
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(motion_system_type), allocatable :: other
     type(error_type), allocatable :: failure
     type(mechanism_type) :: mechanism
@@ -447,7 +447,7 @@ contains
 
   !> Give back what the integrator and the system hold.
   subroutine close_run(self)
-    class(dynamic_run_type), intent(inout) :: self
+    class(dynamic_run_type), intent(inout) :: self   !< the dynamic run
 
     call self%stop_integrator()
     if (associated(self%system)) deallocate (self%system)

@@ -40,21 +40,21 @@ contains
 
   !> Plan, and put the mechanism together at the start.
   subroutine assemble(self, mechanism, plan, state, err)
-    class(dynamic_task_type), intent(in) :: self
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(state_type), intent(out) :: state
-    type(error_type), allocatable, intent(out) :: err
+    class(dynamic_task_type), intent(in) :: self   !< the dynamic task
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(out) :: plan   !< the plan of the mechanism
+    type(state_type), intent(out) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call assemble_initial_state(mechanism, plan, state, err)
   end subroutine assemble
 
   !> Plan, assemble, work out the start, and run unless only a check is asked for.
   subroutine work(self, options, mechanism, diagnostics, reported, kept)
-    class(dynamic_task_type), intent(in) :: self
+    class(dynamic_task_type), intent(in) :: self   !< the dynamic task
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
     type(plan_type) :: plan
@@ -83,9 +83,9 @@ contains
 
   !> What a run would refuse at its start, is refused by a check.
   subroutine check_motion(mechanism, run, err)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(dynamic_run_type), intent(inout) :: run     !< that was begun; the first row is taken of it
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), allocatable :: row(:)
 
     allocate (row(run%columns%width()))
@@ -96,10 +96,10 @@ contains
   subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamic_run_type), intent(inout) :: run
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
     type(results_type), target :: results

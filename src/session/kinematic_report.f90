@@ -21,8 +21,8 @@ contains
   !> The short report of a run.
   subroutine print_kinematic_report(unit, mechanism, plan, table_path, outcome, driven)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     character(len=*), intent(in) :: table_path
     type(recording_outcome_type), intent(in) :: outcome
     type(driven_motion_type), intent(in) :: driven
@@ -57,7 +57,7 @@ contains
 
   !> What a program may want to know of a run.
   subroutine kinematic_facts(plan, outcome, driven, facts)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome
     type(driven_motion_type), intent(in) :: driven
     type(facts_type), intent(out) :: facts
@@ -87,13 +87,13 @@ contains
   !> The same, and more, as JSON.
   subroutine save_kinematic_report(path, mechanism, plan, table_path, diagnostics, outcome, driven, err)
     character(len=*), intent(in) :: path
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     character(len=*), intent(in) :: table_path
     type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
     type(recording_outcome_type), intent(in) :: outcome
     type(driven_motion_type), intent(in) :: driven
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
 

@@ -30,10 +30,10 @@ contains
 
   !> Plan and assembled position at the start of the motion.
   subroutine assemble_start(mechanism, plan, state, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(state_type), intent(out) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(out) :: plan   !< the plan of the mechanism
+    type(state_type), intent(out) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
 
     q = mechanism%initial_position
@@ -46,8 +46,8 @@ contains
 
   !> A run from an assembled start.
   subroutine new_kinematic_run(mechanism, plan, start, run, pictures)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
     type(kinematic_run_type), intent(out) :: run
     logical, intent(in), optional :: pictures      !< of the mechanism are wanted; not unless given
@@ -66,10 +66,10 @@ contains
 
   !> Position, velocity and acceleration at time t.
   subroutine row_at(self, t, row, err)
-    class(kinematic_run_type), intent(inout) :: self
+    class(kinematic_run_type), intent(inout) :: self   !< the kinematic run
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: row(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: next
 
     if (self%started) then

@@ -41,21 +41,21 @@ contains
 
   !> Plan, and put the mechanism together at the start.
   subroutine assemble(self, mechanism, plan, state, err)
-    class(kinematic_task_type), intent(in) :: self
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(state_type), intent(out) :: state
-    type(error_type), allocatable, intent(out) :: err
+    class(kinematic_task_type), intent(in) :: self   !< the kinematic task
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(out) :: plan   !< the plan of the mechanism
+    type(state_type), intent(out) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call assemble_start(mechanism, plan, state, err)
   end subroutine assemble
 
   !> Plan, assemble, and run unless only a check is asked for.
   subroutine work(self, options, mechanism, diagnostics, reported, kept)
-    class(kinematic_task_type), intent(in) :: self
+    class(kinematic_task_type), intent(in) :: self   !< the kinematic task
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
     type(plan_type) :: plan
@@ -87,10 +87,10 @@ contains
   !> What a run would refuse, is refused by a check: a start from which the motion cannot begin, drives without values
   !> at the end of the time.
   subroutine check_motion(mechanism, plan, start, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start            !< assembled
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(kinematic_run_type) :: run
     real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
     real(wp), allocatable :: row(:)
@@ -105,10 +105,10 @@ contains
   subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(kinematic_run_type), intent(inout) :: run
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
     type(results_type), target :: results

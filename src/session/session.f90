@@ -155,9 +155,9 @@ contains
   subroutine report_briefly(task, options, mechanism, choice, diagnostics, code)
     class(task_type), intent(in) :: task
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(diagnostics_type), intent(in) :: choice
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, intent(inout) :: code
     type(error_type), allocatable :: err
 

@@ -38,20 +38,20 @@ module mech9_task
     !> Plan, and put the mechanism together at the start.
     subroutine assemble_interface(self, mechanism, plan, state, err)
       import :: task_type, mechanism_type, plan_type, state_type, error_type
-      class(task_type), intent(in) :: self
-      type(mechanism_type), intent(in) :: mechanism
-      type(plan_type), intent(out) :: plan
-      type(state_type), intent(out) :: state
-      type(error_type), allocatable, intent(out) :: err
+      class(task_type), intent(in) :: self   !< the task
+      type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+      type(plan_type), intent(out) :: plan   !< the plan of the mechanism
+      type(state_type), intent(out) :: state   !< position and motion of the mechanism
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine assemble_interface
 
     !> Do what the options ask for. Errors go to `diagnostics`, which knows the places in the data file.
     subroutine work_interface(self, options, mechanism, diagnostics, reported, kept)
       import :: task_type, command_line_type, mechanism_type, diagnostics_type, kept_rows_type
-      class(task_type), intent(in) :: self
+      class(task_type), intent(in) :: self   !< the task
       type(command_line_type), intent(in) :: options
-      type(mechanism_type), intent(in) :: mechanism
-      type(diagnostics_type), intent(inout) :: diagnostics
+      type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+      type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
       logical, intent(out) :: reported       !< a report was asked for, and it is written: there was a run
       type(kept_rows_type), intent(inout), optional :: kept   !< the rows of a run, for who looks at them after it
     end subroutine work_interface
@@ -71,11 +71,11 @@ contains
   subroutine print_check(options, pictures, mechanism, plan, requested, start, diagnostics)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(requested_type), intent(in) :: requested      !< what the run asks for
     type(state_type), intent(in) :: start      !< assembled
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(mobility_report_type) :: report
     type(error_type), allocatable :: err
 
@@ -98,7 +98,7 @@ contains
 
   !> What a check can say of the data before the mechanism is put together, and where it cannot be.
   subroutine print_given(mechanism, with_masses)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     logical, intent(in) :: with_masses         !< bodies count in this program
 
     call print_dimensions(output_unit, mechanism)
@@ -107,7 +107,7 @@ contains
 
   !> The coordinates at the start.
   subroutine print_start(mechanism, start)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(state_type), intent(in) :: start
     character(len=16) :: name
     integer :: k
@@ -123,9 +123,9 @@ contains
   !> Answer --graph.
   subroutine draw_graph(options, mechanism, plan, diagnostics)
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
     character(len=:), allocatable :: said
     logical :: drawn
@@ -142,11 +142,11 @@ contains
   subroutine begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     class(motion_source_type), intent(inout) :: run
     type(results_type), intent(out) :: results
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: ready
     type(error_type), allocatable :: err
 
@@ -161,10 +161,10 @@ contains
   subroutine end_run(options, pictures, mechanism, run, results, diagnostics)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     class(motion_source_type), intent(in) :: run
     type(results_type), intent(inout) :: results
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
 
     call results%close(err)
@@ -178,8 +178,8 @@ contains
   !> The title, and with --verbose the structure and the plan.
   subroutine announce(options, mechanism, plan, requested)
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(requested_type), intent(in) :: requested      !< what the run asks for
 
     if (.not. options%has('quiet') .and. mechanism%title /= '') write (error_unit, '(a)') mechanism%title
@@ -193,9 +193,9 @@ contains
   subroutine draw(options, pictures, mechanism, film, diagnostics)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
 
     call pictures%save(mechanism, film, err)

@@ -53,7 +53,7 @@ contains
 
   !> Nothing is known yet.
   pure subroutine begin(self)
-    class(dense_output_type), intent(inout) :: self
+    class(dense_output_type), intent(inout) :: self   !< the dense output
 
     self%count = 0
     self%inserted = 0
@@ -62,7 +62,7 @@ contains
 
   !> The end of a step, or the start of the first one; the system must have been evaluated there last.
   subroutine add(self, system, t, y)
-    class(dense_output_type), intent(inout) :: self
+    class(dense_output_type), intent(inout) :: self   !< the dense output
     type(motion_system_type), intent(inout) :: system
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)                      !< settled
@@ -86,7 +86,7 @@ contains
 
   !> A settled point within the last step; nothing happens where there are enough.
   pure subroutine insert(self, t, y)
-    class(dense_output_type), intent(inout) :: self
+    class(dense_output_type), intent(inout) :: self   !< the dense output
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)
 
@@ -102,7 +102,7 @@ contains
 
   !> Such points of the last step.
   pure integer function count_inserted(self)
-    class(dense_output_type), intent(in) :: self
+    class(dense_output_type), intent(in) :: self   !< the dense output
 
     count_inserted = self%inserted
   end function count_inserted
@@ -121,7 +121,7 @@ contains
 
   !> Place of the i-th end, counted from the last one.
   pure integer function place(self, i)
-    class(dense_output_type), intent(in) :: self
+    class(dense_output_type), intent(in) :: self   !< the dense output
     integer, intent(in) :: i
 
     place = modulo(self%last - i, most) + 1
@@ -130,14 +130,14 @@ contains
   !> Whether a singular position of the independent coordinates lies within the last step: signs are not the same at
   !> its ends.
   pure logical function crosses(self)
-    class(dense_output_type), intent(in) :: self
+    class(dense_output_type), intent(in) :: self   !< the dense output
 
     crosses = any(self%points(place(self, 1))%signs /= self%points(place(self, 2))%signs)
   end function crosses
 
   !> Whether the blocks' Jacobians of the system's state have the signs that they have at the end of the last step.
   logical function agrees(self, system)
-    class(dense_output_type), intent(in) :: self
+    class(dense_output_type), intent(in) :: self   !< the dense output
     type(motion_system_type), intent(inout) :: system
     integer :: signs(size(system%work%blocks))
 
@@ -148,12 +148,12 @@ contains
   !> The vector at time t within the last step. `found` is false where it is not certain to be as accurate as the
   !> ends of the step. Leaves the system in another state. Fails as evaluations do.
   subroutine find(self, system, t, y, found, err)
-    class(dense_output_type), intent(inout) :: self
+    class(dense_output_type), intent(inout) :: self   !< the dense output
     type(motion_system_type), intent(inout) :: system
     real(wp), intent(in) :: t
     real(wp), intent(out) :: y(:)
     logical, intent(out) :: found
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), dimension(system%plan%n_coordinates) :: q, dq, ddq, worse_q, worse_dq
     real(wp) :: change, change_of_rate, per_length
     integer :: i, k, m
@@ -186,10 +186,10 @@ contains
 
   !> The polynomial through the points next to time t, if it is not there already.
   subroutine build(self, system, t, err)
-    class(dense_output_type), intent(inout) :: self
+    class(dense_output_type), intent(inout) :: self   !< the dense output
     type(motion_system_type), intent(inout) :: system
     real(wp), intent(in) :: t
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), dimension(system%plan%n_coordinates, most) :: q, dq, ddq
     real(wp) :: times(most)
     integer :: chosen(most), i, n
@@ -219,7 +219,7 @@ contains
 
   !> Places of the points next to time t, the nearest first; 0 where there are no more.
   pure function points_next_to(self, t) result(chosen)
-    class(dense_output_type), intent(in) :: self
+    class(dense_output_type), intent(in) :: self   !< the dense output
     real(wp), intent(in) :: t
     integer :: chosen(most), i, j
     logical :: is_left(size(self%points))

@@ -57,11 +57,11 @@ contains
   !> The system from an assembled start with the independent rates in `start`; its motion there is worked out,
   !> and work%coefficients are those of the start.
   subroutine set_motion_system(mechanism, plan, start, system, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
     class(motion_system_type), intent(inout) :: system
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     system%settles = .true.
     system%mechanism = mechanism
@@ -77,14 +77,14 @@ contains
 
   !> Length of the vector that is integrated.
   pure integer function size_of_vector(self)
-    class(motion_system_type), intent(in) :: self
+    class(motion_system_type), intent(in) :: self   !< the motion system
 
     size_of_vector = self%plan%n_coordinates + size(self%plan%independent)
   end function size_of_vector
 
   !> The vector of the present state.
   pure function vector(self) result(y)
-    class(motion_system_type), intent(in) :: self
+    class(motion_system_type), intent(in) :: self   !< the motion system
     real(wp) :: y(self%plan%n_coordinates + size(self%plan%independent))
 
     y(:self%plan%n_coordinates) = self%state%q
@@ -93,11 +93,11 @@ contains
 
   !> Derivatives of the vector. A trial state in a singular position fails with exit_singular.
   subroutine rate(self, t, y, ydot, err)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)
     real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, m
 
     call take(self, t, y)
@@ -121,7 +121,7 @@ contains
 
   !> Keep what the first evaluation after an accepted step found there.
   pure subroutine remember(self)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
 
     self%just_settled = .false.
     ! nothing to expect where all coordinates are independent
@@ -131,7 +131,7 @@ contains
 
   !> Positions and independent rates of a vector into the state.
   pure subroutine take(self, t, y)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     real(wp), intent(in) :: t, y(:)
     integer :: i, m
 
@@ -147,10 +147,10 @@ contains
 
   !> After an accepted step: close the chains, and put the closed positions back into the vector.
   subroutine settle(self, t, y, err)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: failed, i
 
     call take(self, t, y)
@@ -170,10 +170,10 @@ contains
   !> Close the chains of the present state. `failed` is the block that does not close, or only by a change of
   !> more than the trusted one; 0 where all do.
   subroutine close_chains(self, trusted, failed, err)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     real(wp), intent(in) :: trusted              !< change of a coordinate, in its unit
     integer, intent(out) :: failed
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: outcome
     integer :: b
 
@@ -191,11 +191,11 @@ contains
   !> A state between two settled ones, and all its velocities and accelerations: y is where the integrator takes it to
   !> be, and the chains are closed there. `ok` is false where they are not certain to close on the same branch.
   subroutine close_near(self, t, y, ok, err)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)
     logical, intent(out) :: ok
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: failed
 
     ok = .false.
@@ -208,10 +208,10 @@ contains
 
   !> A settled state, and all its velocities and accelerations.
   subroutine move_to(self, t, y, err)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)                 !< as settled
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call take(self, t, y)
     call place_all(self%plan, self%state, err)
@@ -220,7 +220,7 @@ contains
 
   !> Go on with what was expected before steps that led aside.
   pure subroutine resume(self, expectation)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     type(expectation_type), intent(in) :: expectation
 
     self%work%expectation = expectation
@@ -230,8 +230,8 @@ contains
   !> With all frames in place: all velocities and accelerations of the state, and the state as
   !> loads see it in work%view, for results.
   subroutine present(self, err)
-    class(motion_system_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(motion_system_type), intent(inout) :: self   !< the motion system
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
@@ -242,7 +242,7 @@ contains
 
   !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.
   pure real(wp) function conditioning(self)
-    class(motion_system_type), intent(in) :: self
+    class(motion_system_type), intent(in) :: self   !< the motion system
     integer :: b
 
     conditioning = 1.0_wp
@@ -254,7 +254,7 @@ contains
   !> Of the determinants of the blocks' Jacobians at the last evaluation; those of a branch change in singular positions
   !> only.
   subroutine signs(self, found)
-    class(motion_system_type), intent(inout) :: self
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     integer, intent(out) :: found(:)             !< (blocks)
     integer :: b
 

@@ -30,7 +30,7 @@ contains
     type(motion_system_type), intent(inout), target :: system    !< must outlive the integrator
     real(wp), intent(in) :: t
     real(wp), intent(in) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: absolute(size(y))
 
     associate (solver => system%mechanism%solver)
@@ -42,12 +42,12 @@ contains
 
   !> To time t, from (from, y), or from where earlier steps led if that lies between. Fails as the integration does.
   subroutine reach(self, system, from, y, t, err)
-    class(side_steps_type), intent(inout) :: self
+    class(side_steps_type), intent(inout) :: self   !< the side steps
     type(motion_system_type), intent(inout), target :: system    !< the same at each call, until closed
     real(wp), intent(in) :: from
     real(wp), intent(in) :: y(:)
     real(wp), intent(in) :: t
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(expectation_type) :: expectation
     logical :: goes_on
 
@@ -68,7 +68,7 @@ contains
 
   !> What they took.
   function statistics(self)
-    class(side_steps_type), intent(inout) :: self
+    class(side_steps_type), intent(inout) :: self   !< the side steps
     type(integration_statistics_type) :: statistics
 
     statistics = self%integrator%statistics()
@@ -76,7 +76,7 @@ contains
 
   !> Give back what they hold.
   subroutine close_side_steps(self)
-    class(side_steps_type), intent(inout) :: self
+    class(side_steps_type), intent(inout) :: self   !< the side steps
 
     call self%integrator%destroy()
     self%begun = .false.

@@ -60,7 +60,7 @@ contains
 
   !> Begin with nothing known and nothing used; a search can be started only once.
   pure subroutine start(self, graph)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
 
     allocate (self%known(graph%n_links), source=.false.)
@@ -75,7 +75,7 @@ contains
 
   !> Add a link to the known ones. The pairs by which it was reached must be marked as used before.
   pure subroutine make_known(self, graph, link)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     integer, intent(in) :: link
 
@@ -88,7 +88,7 @@ contains
   !> The cheapest closed chain, run through so that an independent coordinate comes first where one
   !> end has it, else the smaller number. It is not yet marked as used or known.
   pure subroutine next_closed_chain(self, graph, chain, found)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     type(walk_type), intent(out) :: chain
     logical, intent(out) :: found
@@ -111,7 +111,7 @@ contains
   !> After a link became known or got its label: offer the chains that its pairs close, and labels
   !> to its neighbours.
   pure subroutine look_around(self, graph, link)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     integer, intent(in) :: link
     integer(long) :: distance
@@ -135,7 +135,7 @@ contains
 
   !> Queue a pair if, as the labels stand, it closes a chain.
   pure subroutine offer(self, graph, pair)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     integer, intent(in) :: pair
     type(queue_item_type) :: item
@@ -150,7 +150,7 @@ contains
   !> The cost of the chain that a pair closes, and the least end of it as the labels stand:
   !> least link, then least pair there.
   pure subroutine closing_item(self, graph, pair, item, closes)
-    class(chain_search_type), intent(in) :: self
+    class(chain_search_type), intent(in) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     integer, intent(in) :: pair
     type(queue_item_type), intent(out) :: item
@@ -189,7 +189,7 @@ contains
 
   !> The known link of a pair that serves as label.
   pure integer function end_of_label(self, graph, pair)
-    class(chain_search_type), intent(in) :: self
+    class(chain_search_type), intent(in) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     integer, intent(in) :: pair
 
@@ -199,7 +199,7 @@ contains
 
   !> Drop the offers at the head of the queue that labels have overtaken; newer ones stand further back.
   pure subroutine drop_outdated(self, graph)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     type(queue_item_type) :: offered, current
     logical :: closes
@@ -216,7 +216,7 @@ contains
 
   !> Label the link at the head of the queue, unless it is known or labelled as near already.
   pure subroutine label_next(self, graph)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     type(queue_item_type) :: item
 
@@ -232,7 +232,7 @@ contains
   !> Trace the chain of an offer: from its least end through links with that label, across a pair to
   !> another label, and home to the known links, each time by the least coordinate that will do.
   pure subroutine trace(self, graph, item, chain)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     type(queue_item_type), intent(in) :: item
     type(walk_type), intent(out) :: chain
@@ -269,7 +269,7 @@ contains
   !> depth by increasing coordinate numbers: what it finds first has the least numbers, and a link
   !> it had to turn back from is not tried again.
   pure subroutine trace_out(self, graph, cost, n)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     integer(long), intent(in) :: cost               !< of the whole chain
     integer, intent(out) :: n                       !< pairs in the trail
@@ -314,7 +314,7 @@ contains
 
   !> From a link with another label on to the known links, each pair on a cheapest way there.
   pure subroutine trace_home(self, graph, n)
-    class(chain_search_type), intent(inout) :: self
+    class(chain_search_type), intent(inout) :: self   !< the chain search
     type(link_graph_type), intent(in) :: graph
     integer, intent(inout) :: n                     !< pairs in the trail
     integer :: i, link, label

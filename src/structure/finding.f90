@@ -33,7 +33,7 @@ contains
 
   !> Note one more thing.
   pure subroutine add(self, name, index, message)
-    class(finding_list_type), intent(inout) :: self
+    class(finding_list_type), intent(inout) :: self   !< the finding list
     character(len=*), intent(in) :: name      !< see finding_type
     integer, intent(in) :: index(2)           !< see finding_type
     character(len=*), intent(in) :: message
@@ -53,7 +53,7 @@ contains
 
   !> The findings as an array of just their number; the list is empty afterwards.
   pure subroutine hand_over(self, findings)
-    class(finding_list_type), intent(inout) :: self
+    class(finding_list_type), intent(inout) :: self   !< the finding list
     type(finding_type), allocatable, intent(out) :: findings(:)
 
     allocate (findings(self%count))

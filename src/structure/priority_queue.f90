@@ -27,14 +27,14 @@ module mech9_priority_queue
 contains
 
   pure logical function is_empty(self)
-    class(priority_queue_type), intent(in) :: self
+    class(priority_queue_type), intent(in) :: self   !< the priority queue
 
     is_empty = self%count == 0
   end function is_empty
 
   !> Put an item in.
   pure subroutine push(self, item)
-    class(priority_queue_type), intent(inout) :: self
+    class(priority_queue_type), intent(inout) :: self   !< the priority queue
     type(queue_item_type), intent(in) :: item
     type(queue_item_type), allocatable :: grown(:)
     integer :: i
@@ -57,7 +57,7 @@ contains
 
   !> The item with the least key, which stays in. The queue must not be empty.
   pure function top(self) result(item)
-    class(priority_queue_type), intent(in) :: self
+    class(priority_queue_type), intent(in) :: self   !< the priority queue
     type(queue_item_type) :: item
 
     item = self%heap(1)
@@ -65,7 +65,7 @@ contains
 
   !> Take out the item with the least key. The queue must not be empty.
   pure subroutine pop(self)
-    class(priority_queue_type), intent(inout) :: self
+    class(priority_queue_type), intent(inout) :: self   !< the priority queue
     type(queue_item_type) :: last
     integer :: i, child
 

@@ -108,7 +108,7 @@ contains
     type(string_type), intent(in) :: words(:)       !< the program, looked for in PATH, and its arguments
     character(len=*), intent(in) :: input           !< what it reads from standard input
     type(child_outcome_type), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=*), intent(in), optional :: folder   !< where it works; here unless given
     logical, intent(in), optional :: drop_output       !< nobody sees its standard output
     integer(c_int) :: from, to, drop, failure, process, status, ignored
@@ -146,7 +146,7 @@ contains
   subroutine fill(descriptor, input, err)
     integer(c_int), intent(in) :: descriptor
     character(len=*), intent(in) :: input
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: done
     integer(c_long) :: written
 
@@ -214,7 +214,7 @@ contains
     character(len=*), intent(in) :: name               !< of the program, as it was called
     integer(c_int), intent(in) :: failure              !< file with the number of the error, empty where it was started
     type(child_outcome_type), intent(inout) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(kind=c_char) :: bytes(c_sizeof(failure))
     character(len=:), allocatable :: path
 

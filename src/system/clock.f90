@@ -36,7 +36,7 @@ contains
 
   !> Begin; the first interval starts now.
   subroutine start(self, interval)
-    class(pacer_type), intent(inout) :: self
+    class(pacer_type), intent(inout) :: self   !< the pacer
     real(wp), intent(in) :: interval   !< [s]
 
     self%interval = interval
@@ -48,7 +48,7 @@ contains
 
   !> Whether an interval has passed since `start` or since this last was true.
   logical function due(self)
-    class(pacer_type), intent(inout) :: self
+    class(pacer_type), intent(inout) :: self   !< the pacer
     real(wp) :: now
 
     due = .false.

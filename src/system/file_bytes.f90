@@ -43,7 +43,7 @@ contains
   subroutine read_bytes(path, text, err)
     character(len=*), intent(in) :: path
     character(len=:), allocatable, intent(out) :: text
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(c_ptr) :: stream
     integer(c_int) :: status
 
@@ -68,7 +68,7 @@ contains
   subroutine read_stream(stream, text, err)
     type(c_ptr), intent(in) :: stream
     character(len=:), allocatable, intent(out) :: text
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: grown
     integer :: n, taken
 

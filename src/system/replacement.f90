@@ -80,7 +80,7 @@ contains
   subroutine begin_replacement(path, replacement, err)
     character(len=*), intent(in) :: path
     type(replacement_type), intent(out) :: replacement
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(file_place_type) :: place
     integer(c_int) :: user
 
@@ -103,7 +103,7 @@ contains
   !> Whether a file that is there may be written, and no other program is writing it.
   subroutine refuse_in_use(path, err)
     character(len=*), intent(in) :: path
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(c_ptr) :: stream
     integer(c_int) :: status
 
@@ -130,8 +130,8 @@ contains
 
   !> The file is whole: it gets its name, and the rights of the file that it replaces. Does nothing a second time.
   subroutine finish(self, err)
-    class(replacement_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(replacement_type), intent(inout) :: self   !< the replacement
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer(c_int) :: status
 
     if (self%name == '') return
@@ -148,7 +148,7 @@ contains
 
   !> The file will not be whole: it is removed, and the one that it was to replace stays. Does nothing after `finish`.
   subroutine abandon(self)
-    class(replacement_type), intent(inout) :: self
+    class(replacement_type), intent(inout) :: self   !< the replacement
     integer(c_int) :: status
 
     if (.not. allocated(self%name)) return

@@ -81,7 +81,7 @@ contains
   !> Hand to the system what Fortran has written to standard output. gfortran's runtime library loses the
   !> failure of that (a full disk); only the system's number of the error tells it. Fails with exit_file.
   subroutine flush_output(err)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: status
 
     call clear_error_number()

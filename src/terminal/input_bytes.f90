@@ -58,7 +58,7 @@ contains
   !> The next byte; waits for it. Who asks whether it was disturbed is told so at once instead, without a byte,
   !> when a signal came that ends nothing: the program was stopped and goes on, the window has another size.
   subroutine next_byte(self, byte, status, disturbed)
-    class(input_bytes_type), intent(inout) :: self
+    class(input_bytes_type), intent(inout) :: self   !< the input bytes
     character, intent(out) :: byte
     integer, intent(out) :: status   !< input_read, or why there is none
     logical, intent(out), optional :: disturbed
@@ -81,14 +81,14 @@ contains
 
   !> Give the byte taken last once more.
   subroutine step_back(self)
-    class(input_bytes_type), intent(inout) :: self
+    class(input_bytes_type), intent(inout) :: self   !< the input bytes
 
     if (self%place > 0) self%place = self%place - 1
   end subroutine step_back
 
   !> Wait for input and take it; `disturbed` is true where a signal broke the waiting off.
   subroutine refill(self, status, disturbed)
-    class(input_bytes_type), intent(inout) :: self
+    class(input_bytes_type), intent(inout) :: self   !< the input bytes
     integer, intent(out) :: status
     logical, intent(out) :: disturbed
     type(poll_type) :: asked

@@ -56,7 +56,7 @@ contains
 
   !> Begin; `ready` is false where the terminal is not to be had.
   subroutine start(self, program_name, ready)
-    class(line_editor_type), intent(inout) :: self
+    class(line_editor_type), intent(inout) :: self   !< the line editor
     character(len=*), intent(in) :: program_name
     logical, intent(out) :: ready
 
@@ -95,7 +95,7 @@ contains
 
   !> Everything that is as we want it, and not as libedit has it.
   subroutine set_up(self)
-    class(line_editor_type), intent(inout) :: self
+    class(line_editor_type), intent(inout) :: self   !< the line editor
     integer(c_int) :: status
 
     status = history_w(self%history, self%event, h_setsize, history_size)
@@ -138,7 +138,7 @@ contains
 
   !> Ask for a line and wait for it.
   subroutine read_line(self, prompt, words, line, status)
-    class(line_editor_type), intent(inout) :: self
+    class(line_editor_type), intent(inout) :: self   !< the line editor
     character(len=*), intent(in) :: prompt              !< one line
     type(string_type), intent(in) :: words(:)           !< what may be completed here
     character(len=:), allocatable, intent(out) :: line  !< without its end
@@ -169,7 +169,7 @@ contains
 
   !> Give back what was taken.
   subroutine stop_editor(self)
-    class(line_editor_type), intent(inout) :: self
+    class(line_editor_type), intent(inout) :: self   !< the line editor
     integer(c_int) :: ignored
 
     if (c_associated(self%editor)) call el_end(self%editor)

@@ -33,7 +33,7 @@ contains
   !> Begin. From now on Ctrl-C and a closed terminal are answers of `read_line` instead of the
   !> program's end.
   subroutine open_input(self, program_name)
-    class(line_input_type), intent(inout) :: self
+    class(line_input_type), intent(inout) :: self   !< the line input
     character(len=*), intent(in) :: program_name
 
     call catch_interrupts()
@@ -45,7 +45,7 @@ contains
 
   !> Ask for a line and wait for it. A last line without an end counts as one.
   subroutine read_line(self, prompt, words, line, status)
-    class(line_input_type), intent(inout) :: self
+    class(line_input_type), intent(inout) :: self   !< the line input
     character(len=*), intent(in) :: prompt             !< may have several lines
     type(string_type), intent(in) :: words(:)          !< what may be completed here
     character(len=:), allocatable, intent(out) :: line !< without its end; whatever bytes it has
@@ -67,7 +67,7 @@ contains
 
   !> No more lines are asked for.
   subroutine close_input(self)
-    class(line_input_type), intent(inout) :: self
+    class(line_input_type), intent(inout) :: self   !< the line input
 
     if (self%edits) call self%editor%stop()
     self%edits = .false.

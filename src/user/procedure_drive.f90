@@ -29,7 +29,7 @@ contains
     real(wp), intent(in) :: start             !< a time at which the procedure may be called [s]
     real(wp), intent(in) :: parameters(:)
     type(procedure_drive_type), intent(out) :: drive
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: q
     real(wp) :: value
 
@@ -45,10 +45,10 @@ contains
   end subroutine make_procedure_drive
 
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(procedure_drive_type), intent(in) :: self
+    class(procedure_drive_type), intent(in) :: self   !< the procedure drive
     real(wp), intent(in) :: t
     real(wp), intent(out) :: q, dq, ddq
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: x
     logical :: ok
 
@@ -69,7 +69,7 @@ contains
   !> Value and derivatives from the form in plain reals: the widest stencil that is at round-off is
   !> taken, or the best of all. `ok` is false where no stencil has finite values.
   subroutine differentiate(self, t, x, ok)
-    type(procedure_drive_type), intent(in) :: self
+    type(procedure_drive_type), intent(in) :: self   !< the procedure drive
     real(wp), intent(in) :: t
     type(taylor), intent(out) :: x
     logical, intent(out) :: ok

@@ -26,7 +26,7 @@ contains
 
   !> The procedure may ask for any link.
   pure subroutine mark_links(self, needed)
-    class(procedure_load_type), intent(in) :: self
+    class(procedure_load_type), intent(in) :: self   !< the procedure load
     logical, intent(inout) :: needed(:)
 
     needed = .true.
@@ -34,17 +34,17 @@ contains
 
   !> Or for any coordinate.
   pure subroutine mark_coordinates(self, needed)
-    class(procedure_load_type), intent(in) :: self
+    class(procedure_load_type), intent(in) :: self   !< the procedure load
     logical, intent(inout) :: needed(:)
 
     needed = .true.
   end subroutine mark_coordinates
 
   subroutine apply(self, state, sum, err)
-    class(procedure_load_type), intent(in) :: self
+    class(procedure_load_type), intent(in) :: self   !< the procedure load
     type(motion_view_type), intent(in) :: state
     type(force_sum_type), intent(inout) :: sum
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call user_force(state%t, state, self%parameters, sum)
     if (associated(state%fault)) call must_exist(self, state%fault, err)
@@ -63,9 +63,9 @@ contains
 
   !> Fails where the procedure gave a number that no link or coordinate has.
   pure subroutine must_exist(self, fault, err)
-    class(procedure_load_type), intent(in) :: self
+    class(procedure_load_type), intent(in) :: self   !< the procedure load
     type(call_fault_type), intent(in) :: fault                !< what was noted during the call
-    type(error_type), allocatable, intent(inout) :: err
+    type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
 
     if (.not. fault%found) return
     call raise(err, exit_data, 'user_force calls '//trim(fault%procedure)//' with '//trim(fault%counted)//' '// &
@@ -75,7 +75,7 @@ contains
 
   !> None is known: its work counts as put in.
   pure real(wp) function potential(self, state)
-    class(procedure_load_type), intent(in) :: self
+    class(procedure_load_type), intent(in) :: self   !< the procedure load
     type(motion_view_type), intent(in) :: state
 
     potential = 0.0_wp

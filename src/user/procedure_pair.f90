@@ -33,7 +33,7 @@ contains
     integer, intent(in) :: coordinate
     real(wp), intent(in) :: parameters(:)
     type(procedure_pair_type), intent(out) :: pair
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: r1(3), r2(3), r3(3)
     real(wp) :: v1(3), v2(3), v3(3)
 
@@ -56,10 +56,10 @@ contains
   end function is_missing
 
   subroutine evaluate(self, q, motion, err)
-    class(procedure_pair_type), intent(in) :: self
+    class(procedure_pair_type), intent(in) :: self   !< the procedure pair
     real(wp), intent(in) :: q
     type(pair_motion_type), intent(out) :: motion
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: r(3, 3)
     type(pose_type) :: pose
     logical :: ok
@@ -135,7 +135,7 @@ contains
   !> Points and their derivatives from the form in plain reals: the widest stencil that is at
   !> round-off is taken, or the best of all. `ok` is false where no stencil has finite values.
   subroutine differentiate(self, q, r, ok)
-    type(procedure_pair_type), intent(in) :: self
+    type(procedure_pair_type), intent(in) :: self   !< the procedure pair
     real(wp), intent(in) :: q
     type(taylor), intent(out) :: r(3, 3)
     logical, intent(out) :: ok
@@ -181,7 +181,7 @@ contains
   end subroutine points_from_stencil
 
   pure subroutine as_screw(self, factors, is_screw)
-    class(procedure_pair_type), intent(in) :: self
+    class(procedure_pair_type), intent(in) :: self   !< the procedure pair
     type(screw_factors_type), intent(out) :: factors
     logical, intent(out) :: is_screw
 
@@ -189,14 +189,14 @@ contains
   end subroutine as_screw
 
   pure function kind_name(self) result(name)
-    class(procedure_pair_type), intent(in) :: self
+    class(procedure_pair_type), intent(in) :: self   !< the procedure pair
     character(len=kind_name_length) :: name
 
     name = 'user'
   end function kind_name
 
   pure integer function user_calls(self)
-    class(procedure_pair_type), intent(in) :: self
+    class(procedure_pair_type), intent(in) :: self   !< the procedure pair
 
     user_calls = merge(stencil_size, 1, self%plain_values)
   end function user_calls

@@ -81,7 +81,7 @@ contains
 
   !> All messages, each once and in a line, at most a few.
   pure function messages_of(diagnostics) result(text)
-    type(diagnostics_type), intent(in) :: diagnostics
+    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: text, message
     type(span_type) :: span
     integer, parameter :: most = 4

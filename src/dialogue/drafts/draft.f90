@@ -45,7 +45,7 @@ contains
 
   !> Nothing is said yet.
   pure subroutine clear(self)
-    class(draft_type), intent(inout) :: self
+    class(draft_type), intent(inout) :: self   !< the draft
 
     self%head = ''
     self%comments_left_out = 0
@@ -55,7 +55,7 @@ contains
 
   !> Index of a group; 0 where there is none.
   pure integer function find(self, group, place) result(index)
-    class(draft_type), intent(in) :: self
+    class(draft_type), intent(in) :: self   !< the draft
     character(len=*), intent(in) :: group
     integer, intent(in) :: place
     integer :: n
@@ -70,7 +70,7 @@ contains
 
   !> Place of the group whose name `key` has this number; 0 where there is none.
   pure integer function with_number(self, group, key, number) result(place)
-    class(draft_type), intent(in) :: self
+    class(draft_type), intent(in) :: self   !< the draft
     character(len=*), intent(in) :: group, key
     integer, intent(in) :: number
     integer :: i
@@ -86,7 +86,7 @@ contains
 
   !> How many groups have this name.
   pure integer function count_of(self, group) result(n)
-    class(draft_type), intent(in) :: self
+    class(draft_type), intent(in) :: self   !< the draft
     character(len=*), intent(in) :: group
     integer :: i
 
@@ -98,7 +98,7 @@ contains
 
   !> Place of the group with this index among those of its name.
   pure integer function place_of(self, index) result(place)
-    class(draft_type), intent(in) :: self
+    class(draft_type), intent(in) :: self   !< the draft
     integer, intent(in) :: index
     integer :: i
 
@@ -110,7 +110,7 @@ contains
 
   !> Number of an entry in its group; 0 where the group does not have it.
   pure integer function find_entry(self, group, place, name) result(number)
-    class(draft_type), intent(in) :: self
+    class(draft_type), intent(in) :: self   !< the draft
     character(len=*), intent(in) :: group, name
     integer, intent(in) :: place
     integer :: i
@@ -142,7 +142,7 @@ contains
 
   !> The values under a name as text; empty where it is not given.
   pure function value(self, group, place, name) result(text)
-    class(draft_type), intent(in) :: self
+    class(draft_type), intent(in) :: self   !< the draft
     character(len=*), intent(in) :: group, name
     integer, intent(in) :: place
     character(len=:), allocatable :: text
@@ -155,7 +155,7 @@ contains
 
   !> The whole number under a name; 0 where there is none.
   pure integer function number(self, group, place, name)
-    class(draft_type), intent(in) :: self
+    class(draft_type), intent(in) :: self   !< the draft
     character(len=*), intent(in) :: group, name
     integer, intent(in) :: place
 
@@ -164,7 +164,7 @@ contains
 
   !> Whether a name is given.
   pure logical function has(self, group, place, name)
-    class(draft_type), intent(in) :: self
+    class(draft_type), intent(in) :: self   !< the draft
     character(len=*), intent(in) :: group, name
     integer, intent(in) :: place
 
@@ -173,7 +173,7 @@ contains
 
   !> One group more, empty: after its fellows, or where the table of groups has it.
   pure subroutine add(self, group)
-    class(draft_type), intent(inout) :: self
+    class(draft_type), intent(inout) :: self   !< the draft
     character(len=*), intent(in) :: group
     type(draft_group_type), allocatable :: longer(:)
     integer :: i, at
@@ -210,7 +210,7 @@ contains
 
   !> Give a name a value, in the place of an earlier one; a group that is not there yet is added.
   pure subroutine give(self, group, place, name, text)
-    class(draft_type), intent(inout) :: self
+    class(draft_type), intent(inout) :: self   !< the draft
     character(len=*), intent(in) :: group, name, text
     integer, intent(in) :: place             !< at most one more than there are
     integer :: i, number
@@ -269,7 +269,7 @@ contains
 
   !> Say nothing under a name any more.
   pure subroutine take_away(self, group, place, name)
-    class(draft_type), intent(inout) :: self
+    class(draft_type), intent(inout) :: self   !< the draft
     character(len=*), intent(in) :: group, name
     integer, intent(in) :: place
     type(entry_type), allocatable :: shorter(:)
@@ -291,7 +291,7 @@ contains
 
   !> A group less.
   pure subroutine remove(self, group, place)
-    class(draft_type), intent(inout) :: self
+    class(draft_type), intent(inout) :: self   !< the draft
     character(len=*), intent(in) :: group
     integer, intent(in) :: place
     type(draft_group_type), allocatable :: shorter(:)

@@ -31,9 +31,9 @@ contains
     type(draft_type), intent(in) :: draft
     character(len=*), intent(in) :: path          !< of the data file: tables of drives stand beside it
     logical, intent(in) :: needs_drives
-    type(mechanism_type), intent(out) :: mechanism
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     type(draft_text_type), intent(out) :: written
-    type(diagnostics_type), intent(out) :: diagnostics
+    type(diagnostics_type), intent(out) :: diagnostics   !< gets what is wrong
     type(document_type) :: document
 
     call write_draft(draft, '', written)
@@ -63,7 +63,7 @@ contains
     type(structure_type), intent(out) :: structure
     type(structural_vectors_type), intent(out) :: vectors
     type(draft_text_type), intent(out) :: written
-    type(diagnostics_type), intent(out) :: diagnostics
+    type(diagnostics_type), intent(out) :: diagnostics   !< gets what is wrong
     type(document_type) :: document
 
     call write_draft(part, '', written)
@@ -115,7 +115,7 @@ contains
 
   !> Errors with the entries of the draft they are about, in the order in which they were found.
   pure subroutine find_faults(diagnostics, written, faults)
-    type(diagnostics_type), intent(in) :: diagnostics
+    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
     type(draft_text_type), intent(in) :: written
     type(fault_type), allocatable, intent(out) :: faults(:)
     type(span_type) :: span
@@ -130,7 +130,7 @@ contains
 
   !> The errors of a draft that was read by read_draft.
   pure subroutine faults_of(diagnostics, written, faults)
-    type(diagnostics_type), intent(in) :: diagnostics
+    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
     type(draft_text_type), intent(in) :: written
     type(fault_type), allocatable, intent(out) :: faults(:)
 

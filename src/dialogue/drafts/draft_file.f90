@@ -28,7 +28,7 @@ contains
     character(len=*), intent(in) :: path
     character(len=*), intent(in) :: bookmark       !< empty: the data file is finished
     character(len=*), intent(in) :: program_name
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(draft_text_type) :: written
     character(len=:), allocatable :: remark
 
@@ -44,7 +44,7 @@ contains
     integer, intent(in) :: most_parts              !< links, or coordinates, that a conversation can hold
     type(draft_type), intent(out) :: draft
     character(len=:), allocatable, intent(out) :: bookmark
-    type(diagnostics_type), intent(inout) :: diagnostics
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(document_type) :: document
     integer :: first, last
 

@@ -19,7 +19,7 @@ contains
   !> Take over what a document says: one entry for each name, the coincidence matrix by rows. Values
   !> that cannot be read are left out; they have been reported when the document was read.
   pure subroutine draft_from_document(document, draft)
-    type(document_type), intent(in) :: document
+    type(document_type), intent(in) :: document   !< the data file as groups and items
     type(draft_type), intent(out) :: draft
     type(document_type) :: checked
     type(diagnostics_type) :: ignored
@@ -44,8 +44,8 @@ contains
   end subroutine draft_from_document
 
   pure subroutine take_group(document, group, draft)
-    type(document_type), intent(in) :: document
-    type(group_type), intent(in) :: group
+    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(draft_type), intent(inout) :: draft
     character(len=:), allocatable :: comment
     integer :: i, place, number
@@ -66,8 +66,8 @@ contains
 
   !> The coincidence matrix, however it is given, as rows.
   pure subroutine take_matrix(document, group, draft)
-    type(document_type), intent(in) :: document
-    type(group_type), intent(in) :: group
+    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(group_type), intent(in) :: group   !< the group of the data file
     type(draft_type), intent(inout) :: draft
     type(matrix_type) :: matrix
     type(diagnostics_type) :: ignored

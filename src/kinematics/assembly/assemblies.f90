@@ -28,7 +28,7 @@ contains
   !> Assemblies for the independent coordinates of an assembled start, which is the first of them. The
   !> starts are always the same ones.
   subroutine find_assemblies(plan, start, n_starts, list)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
     integer, intent(in) :: n_starts
     type(assembly_list_type), intent(out) :: list
@@ -54,7 +54,7 @@ contains
   !> Close blocks, of which the last one does not close on the others as they are, from starts ever
   !> farther from the coordinates in `state`.
   subroutine close_from_random_starts(plan, blocks, state, closed)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)
     type(state_type), intent(inout) :: state       !< left as it is where no start helps
     logical, intent(out) :: closed
@@ -77,11 +77,11 @@ contains
 
   !> Change all dependent coordinates at random and close block after block.
   subroutine close_from(plan, blocks, amount, random, state, closed)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)
     real(wp), intent(in) :: amount                 !< in units of the coordinates
-    type(random_type), intent(inout) :: random
-    type(state_type), intent(inout) :: state
+    type(random_type), intent(inout) :: random   !< source of random numbers
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     logical, intent(out) :: closed
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
@@ -103,7 +103,7 @@ contains
 
   !> Count an assembly, new or found before.
   subroutine enter(plan, q, list)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: q(:)
     type(assembly_list_type), intent(inout) :: list
     real(wp), allocatable :: longer(:, :)

@@ -45,13 +45,13 @@ contains
   !> Close the chains of a block from the guesses in `state`. Where no closed position is found, the
   !> coordinates are those that came nearest from the first guess.
   subroutine assemble_block(plan, block, state, work, may_restart, outcome, err)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     logical, intent(in) :: may_restart
     type(assembly_outcome_type), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: guess(size(block%unknowns)), nearest(size(block%unknowns))
     type(random_type) :: random
     integer :: restart, restarts, i, k
@@ -89,12 +89,12 @@ contains
   !> singular position Newton's method would leave the chains closed anyhow but the coordinates
   !> elsewhere: there damped least squares goes on as far as it gets.
   subroutine descend(plan, block, state, work, outcome, err)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     type(assembly_outcome_type), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
     real(wp) :: before(size(block%unknowns)), residual_norm, enough
 
@@ -123,14 +123,14 @@ contains
   !> Damped least squares (Levenberg and Marquardt) until the errors are as small as asked for, or get
   !> no smaller.
   subroutine reduce_errors(plan, block, state, work, enough, damping_at_first, residual_norm, err)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     real(wp), intent(in) :: enough
     real(wp), intent(in) :: damping_at_first
     real(wp), intent(out) :: residual_norm            !< length of the errors that are left
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(least_squares_type) :: damped
     real(wp) :: right(block%equations + size(block%unknowns)), before(size(block%unknowns))
     real(wp) :: damping, trial_norm, norm_then
@@ -169,9 +169,9 @@ contains
   !> The change of the unknowns that a damped linear step asks for, in work%change. The errors stand
   !> in work%right.
   subroutine damped_change(plan, block, state, damping, damped, right, work)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: damping
     type(least_squares_type), intent(inout) :: damped
     real(wp), intent(out) :: right(:)
@@ -194,12 +194,12 @@ contains
 
   !> Length of the block's errors at the coordinates in `state`; the errors stay in work%right.
   subroutine measure(plan, block, state, work, residual_norm, err)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     real(wp), intent(out) :: residual_norm
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     residual_norm = huge(residual_norm)
     call place_frames(plan, block, state, err)
@@ -210,9 +210,9 @@ contains
 
   !> The closure of a block that is farthest from closed.
   subroutine find_worst(plan, block, state, outcome)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(assembly_outcome_type), intent(inout) :: outcome
     real(wp) :: gap
     integer :: c
@@ -229,11 +229,11 @@ contains
 
   !> Take full turns off the coordinates of revolute pairs, so that each is within half a turn of its guess.
   subroutine unwind(plan, block, guess, state, err)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in) :: guess(:)
-    type(state_type), intent(inout) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
     logical :: changed
 

@@ -32,10 +32,10 @@ contains
   !> not allocated: they can serve, or the mechanism is too large to be judged in one piece. `state` is
   !> then a closed position near the coordinates it came with, if `closed`.
   subroutine judge_choice(plan, state, closed, err)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     logical, intent(out) :: closed
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(assembly_outcome_type) :: outcome
     type(state_type) :: trial
     real(wp), allocatable :: motions(:, :), best(:, :), positions(:, :)
@@ -79,8 +79,8 @@ contains
   !> each time. Where the rates say that such a one moves, they are wrong: it is locked, and the position
   !> singular.
   subroutine find_positions(plan, state, positions, back)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), allocatable, intent(out) :: positions(:, :)   !< (M,n): the given one where no other closes
     logical, intent(out) :: back(:)
     real(wp), parameter :: amounts(6) = [0.3_wp, 0.1_wp, 0.03_wp, 0.3_wp, 0.1_wp, 0.03_wp]
@@ -202,7 +202,7 @@ contains
   !> Coordinates that no chain determines, of a mechanism too large to be judged in one piece.
   subroutine refuse_undetermined(undetermined, err)
     integer, intent(in) :: undetermined(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call raise(err, exit_structure, 'the independent coordinates cannot determine the others: '// &
                to_text(size(undetermined))//' more must be independent (cq); '//some_of(undetermined, longest_list)// &
@@ -211,9 +211,9 @@ contains
 
   !> Chains that do not close.
   subroutine refuse_open(plan, outcome, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(assembly_outcome_type), intent(in) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: text
 
     associate (closure => plan%closures(outcome%worst_closure))
@@ -234,9 +234,9 @@ contains
 
   !> A chain whose equations are redundant at the start only.
   subroutine refuse_locked(plan, locked, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(locked_chain_type), intent(in) :: locked
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: text
 
     text = 'closed chain '//to_text(plan%closures(locked%closure)%chain)//' does not move: '//to_text(locked%redundant)// &

@@ -124,9 +124,9 @@ contains
 
   !> Close the blocks at displaced independent coordinates, up to the first that stays open.
   subroutine close_in_order(plan, amount, state, moves, nearest, locked)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: amount                            !< of the displacement [rad, or parts of the size]
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     logical, intent(inout) :: moves(:)                        !< (blocks)
     type(locked_chain_type), intent(inout) :: nearest(:)      !< (blocks)
     type(locked_chain_type), intent(inout) :: locked
@@ -164,9 +164,9 @@ contains
 
   !> Whether the unknowns of a block, whose Jacobian is factorized, leave the least residual.
   logical function is_least(plan, block, state, work)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
 
     call block_residual(plan, block, state, work%right)
@@ -176,7 +176,7 @@ contains
 
   !> Where the independent coordinates cannot be displaced: displace all coordinates up to block b and close them together.
   subroutine displace_all(plan, home, b, moves)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: home
     integer, intent(in) :: b                 !< the block to be judged
     logical, intent(out) :: moves
@@ -208,10 +208,10 @@ contains
 
   !> Whether some coordinate on the loops of a block has moved by a finite amount.
   pure logical function has_moved(plan, block, home, state)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: home
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer :: c
 
     has_moved = .false.
@@ -226,7 +226,7 @@ contains
   !> constant poses of its loops, least in their sum of squares, that close it at displaced positions on both sides. It stays
   !> unknown where such changes do not explain the gaps.
   subroutine estimate_distance(plan, home, locked)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: home
     type(locked_chain_type), intent(inout) :: locked
     real(wp), parameter :: step = 0.2_wp
@@ -266,7 +266,7 @@ contains
   !> Gaps of a block in the directions that its unknowns cannot close, at a displaced position, and how changes of
   !> dimensions act on them. Nothing where an earlier block stays open, or the gap is not small, or the position singular.
   subroutine find_effects(plan, b, state, effects, gaps)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: b                              !< the block
     type(state_type), intent(inout) :: state              !< displaced independent coordinates, guesses of the others
     real(wp), allocatable, intent(out) :: effects(:, :)   !< (directions, six for each step)
@@ -299,9 +299,9 @@ contains
   !> Derivatives of a block's equations with respect to small turns about, and shifts along, the axes of the frame before each
   !> step of its loops.
   pure subroutine dimension_columns(plan, block, state, columns)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out) :: columns(:, :)      !< (equations, six for each step) [1 per rad, 1 per part of the size]
     real(wp) :: w(3), v(3)
     integer :: c, i, j, s, row
@@ -346,7 +346,7 @@ contains
 
   !> Number of unknowns of a block.
   pure elemental integer function unknowns_of(block)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
 
     unknowns_of = size(block%unknowns)
   end function unknowns_of

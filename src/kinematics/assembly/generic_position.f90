@@ -39,7 +39,7 @@ contains
   !> the independent coordinates cannot move both ways at the start, half of the trials are in vain;
   !> where no trial closes, all coordinates are set free.
   subroutine find_generic_position(plan, blocks, start, generic, closed)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)      !< from the first one on
     type(state_type), intent(in) :: start          !< closed for these blocks
     type(generic_position_type), intent(inout) :: generic
@@ -71,7 +71,7 @@ contains
   end function amount_of
 
   subroutine try_inputs(plan, blocks, start, amount, generic, closed)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)
     type(state_type), intent(in) :: start
     real(wp), intent(in) :: amount
@@ -99,8 +99,8 @@ contains
 
   !> Close one more block, from its coordinates at the start, somewhat changed.
   subroutine extend(plan, block, start, amount, generic, closed)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: start
     real(wp), intent(in) :: amount
     type(generic_position_type), intent(inout) :: generic
@@ -122,7 +122,7 @@ contains
 
   !> Change and close everything up to a block at once, the independent coordinates with the others.
   subroutine try_all_free(plan, last, start, generic, closed)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: last           !< the last block that must be closed
     type(state_type), intent(in) :: start
     type(generic_position_type), intent(inout) :: generic
@@ -145,8 +145,8 @@ contains
 
   !> Does some coordinate on the loops of a block differ between two positions?
   pure logical function has_moved(plan, block, start, state)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: start, state
     integer :: c, i, k
 
@@ -162,7 +162,7 @@ contains
   !> All steps and closures up to some as one block with every coordinate unknown. Its equations are right
   !> only while the paths of the closures are those of whole loops.
   pure function free_block(plan, last_step, last_closure) result(block)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: last_step, last_closure
     type(block_type) :: block
     integer :: i

@@ -24,8 +24,8 @@ contains
   !> each freedom, rates in the units of the coordinates. The frames must be in place, and the paths
   !> of the closures be those of whole loops.
   subroutine find_motions(plan, state, held, motions)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     logical, intent(in) :: held(:)                         !< coordinates that are known not to move
     real(wp), allocatable, intent(out) :: motions(:, :)    !< (M, mobility)
     type(block_type) :: block

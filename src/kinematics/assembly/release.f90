@@ -24,11 +24,11 @@ contains
 
   !> Close all chains from the coordinates in `state`, all of which may change.
   subroutine close_free(plan, state, may_restart, outcome, err)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     logical, intent(in) :: may_restart
     type(assembly_outcome_type), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_type) :: block
     type(block_work_type) :: work
 
@@ -40,9 +40,9 @@ contains
   !> From a position with all chains closed, move the independent coordinates to given values and keep
   !> the chains closed; `arrived` says whether that was possible. Angles go the shorter way round.
   subroutine carry_inputs(plan, target, state, arrived)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: target(:)        !< (M): values of the independent coordinates count
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     logical, intent(out) :: arrived
     type(block_type) :: block
     type(block_work_type) :: work

@@ -14,7 +14,7 @@ contains
 
   !> Execute a plan in space. The ranks of its closures count as they are now.
   pure subroutine set_in_space(plan)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer :: c
 
     plan%planar = planar_plan_type()
@@ -29,7 +29,7 @@ contains
 
   !> Execute a plan in its plane, if it has been laid out there.
   pure subroutine set_in_plane(plan)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer :: c
 
     if (.not. plan%planar%used) return

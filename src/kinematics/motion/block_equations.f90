@@ -11,9 +11,9 @@ contains
 
   !> By how much the constraints of a block are not satisfied: rotations in rad, translations in lengths of the mechanism.
   pure subroutine block_residual(plan, block, state, residual)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out), contiguous :: residual(:)      !< (equations)
     integer :: c, row
 
@@ -29,9 +29,9 @@ contains
   !> Derivatives of the block's equations with respect to its unknowns, each coordinate in its own unit (rad, or the
   !> mechanism's length).
   pure subroutine block_jacobian(plan, block, state, column_of, jacobian)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in), contiguous :: column_of(:)       !< column of each of the block's steps; 0: not an unknown
     real(wp), intent(out), contiguous :: jacobian(:, :)   !< (equations, unknowns)
     integer :: c, row
@@ -54,10 +54,10 @@ contains
   !> earlier blocks must move as these say; of the block's own frames no accelerations are needed, and no velocities for the
   !> first derivatives.
   pure subroutine block_rates(plan, block, order, state, rates)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     integer, intent(in) :: order                          !< 1 or 2
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out), contiguous :: rates(:)         !< (equations)
     integer :: c, row
 
@@ -72,8 +72,8 @@ contains
 
   !> Largest gap of any constraint that the plan's blocks solve: a length [m], rotations times the mechanism's size.
   pure real(wp) function largest_gap(plan, state) result(largest)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer :: b, c
 
     largest = 0.0_wp

@@ -59,8 +59,8 @@ contains
 
   !> Scratch for a block. With its plan complete, a planar chain of three unknowns gets arithmetic of its own.
   pure function new_block_work(block, plan) result(work)
-    type(block_type), intent(in) :: block
-    type(plan_type), intent(in), optional :: plan
+    type(block_type), intent(in) :: block   !< the block
+    type(plan_type), intent(in), optional :: plan   !< the plan of the mechanism
     type(block_work_type) :: work
     integer :: i
 
@@ -77,12 +77,12 @@ contains
   !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its
   !> frames are in place. Whether it converged, and how, is in `outcome`. Fails only where a pair has no pose.
   subroutine close_block(plan, block, state, work, outcome, err, at_least)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     type(newton_outcome_type), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer, intent(in), optional :: at_least        !< iterations also where the chains are closed enough
     real(wp) :: size_of_change, previous, residual_norm
     integer :: least
@@ -127,9 +127,9 @@ contains
 
   !> Jacobian of a block at the position in `state`, factorized.
   subroutine factorize_block(plan, block, state, work)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
 
     if (work%factors_stay) return
@@ -159,17 +159,17 @@ contains
 
   !> Frames that a block makes.
   pure integer function steps_of(block)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
 
     steps_of = block%last_step - block%first_step + 1
   end function steps_of
 
   !> Add a change, given in units of the coordinates, to the block's dependent coordinates.
   pure subroutine apply_change(plan, block, change, state)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in), contiguous :: change(:)
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
 
     call add_at(size(change), block%coordinates, change, plan%unit_of, state%q)
   end subroutine apply_change
@@ -177,9 +177,9 @@ contains
   !> Rates of the block's dependent coordinates, J_d dq_d = -J_i dq_i, and velocities of its frames.
   !> The Jacobian must be factorized at this position.
   subroutine solve_rates(plan, block, state, work, remainder, no_more)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     real(wp), intent(out), optional :: remainder   !< what no rates of the unknowns can make up for
     logical, intent(in), optional :: no_more       !< accelerations are not asked for: velocities only as `last_moved` wants
@@ -215,9 +215,9 @@ contains
   !> Rates and accelerations of the block's dependent coordinates and the motion of its frames. The Jacobian must be
   !> factorized at this position.
   subroutine solve_motion(plan, block, state, work)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
 
     if (work%chain%used .and. work%equations%by_cofactors) then
@@ -235,9 +235,9 @@ contains
   !> Accelerations of the block's dependent coordinates, J_d ddq_d = -J_i ddq_i - dJ/dt dq, and of its frames.
   !> The Jacobian must be factorized at this position and the rates be known.
   subroutine solve_accelerations(plan, block, state, work)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     integer :: last
 

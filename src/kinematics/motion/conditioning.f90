@@ -29,7 +29,7 @@ contains
   !> Take a position into account whose Jacobians stand factorized in `work`. Not every one is looked at: pivots
   !> tell when it is worth while.
   subroutine glance(self, t, work)
-    class(conditioning_type), intent(inout) :: self
+    class(conditioning_type), intent(inout) :: self   !< the conditioning
     real(wp), intent(in) :: t
     type(block_work_type), intent(inout) :: work(:)
     real(wp) :: pivot, least
@@ -46,7 +46,7 @@ contains
 
   !> The same without exception; `least` is that of this position.
   subroutine look(self, t, work, least)
-    class(conditioning_type), intent(inout) :: self
+    class(conditioning_type), intent(inout) :: self   !< the conditioning
     real(wp), intent(in) :: t
     type(block_work_type), intent(inout) :: work(:)
     real(wp), intent(out) :: least

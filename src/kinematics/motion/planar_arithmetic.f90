@@ -29,17 +29,17 @@ contains
   !> Room in a state for frames 0 .. m, all in the place of frame 0 and at rest.
   pure subroutine make_frames(m, state)
     integer, intent(in) :: m                      !< steps
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
 
     state%planar = new_planar_motion(m)
   end subroutine make_frames
 
   !> Poses of frames and the ways of their slides, from the coordinates in `state`.
   subroutine place(plan, first, last, state, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< never allocated: user pairs are not planar
 
     call place_in_plane(plan%planar, first, last, state%q, state%planar)
@@ -47,7 +47,7 @@ contains
 
   !> The same after a small change of the coordinates of some steps.
   subroutine nudge(plan, first, last, changed, change, state, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
     integer, intent(in) :: changed(:)             !< steps
@@ -60,28 +60,28 @@ contains
 
   !> Velocities of frames from the rates in `state`.
   pure subroutine spread_velocities(plan, first, last, state)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
 
     call planar_velocities(plan%planar, first, last, state%dq, state%planar)
   end subroutine spread_velocities
 
   !> Accelerations of frames from the rates and accelerations in `state`.
   pure subroutine spread_accelerations(plan, first, last, state)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
 
     call planar_accelerations(plan%planar, first, last, state%dq, state%ddq, state%planar)
   end subroutine spread_accelerations
 
   !> A link's own system and its motion, in the system of link 1.
   pure subroutine link_motion(plan, state, link, r, p, omega, v)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: link
     real(wp), intent(out) :: r(3, 3)              !< rotation
     real(wp), intent(out) :: p(3)                 !< origin [m]
@@ -106,8 +106,8 @@ contains
 
   !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1.
   pure subroutine point_motion(plan, state, link, place, position, velocity, acceleration)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: link
     real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
     real(wp), intent(out) :: position(3)          !< [m]
@@ -130,8 +130,8 @@ contains
 
   !> The screw of a step at its new frame's origin, in the axes of frame 0.
   pure subroutine step_screw(plan, state, s, w, v, place)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: s                      !< step
     real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
     real(wp), intent(out) :: v(3)                 !< [m per unit of q]

@@ -31,8 +31,8 @@ contains
 
   !> A block as such a chain; not used where it is none.
   pure function new_planar_chain(plan, block) result(chain)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     type(planar_chain_type) :: chain
     integer :: i, s
 

@@ -25,9 +25,9 @@ contains
 
   !> The angle and the way from the target to the closing frame.
   pure subroutine residual(self, plan, state, values)
-    class(planar_closure_constraint_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out), contiguous :: values(:)      !< (3)
     real(wp) :: error(3)
 
@@ -39,12 +39,12 @@ contains
 
   !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
   pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
-    class(planar_closure_constraint_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
+    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(loop_type), intent(in) :: loop                 !< the steps
     integer, intent(in) :: first                        !< earlier steps are left out
     integer, intent(in), contiguous :: column_of(:)     !< column of step `first` and each later one; 0: none
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: row                          !< before the first row
     real(wp), intent(inout), contiguous :: matrix(:, :)
 
@@ -55,11 +55,11 @@ contains
 
   !> Derivatives with respect to the coordinate of one step, in its unit.
   pure subroutine column(self, plan, s, sign, state, values)
-    class(planar_closure_constraint_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
+    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: s                            !< step
     real(wp), intent(in) :: sign                        !< of the step in the loop
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out), contiguous :: values(:)      !< (3)
 
     call step_column(plan%planar%steps(s), sign, state%planar%pose(:, s), state%planar%slide(:, s), &
@@ -69,10 +69,10 @@ contains
   !> Time derivatives at the rates, or rates and accelerations, in `state`. For the second ones velocities must be known of all
   !> frames of the loop.
   pure subroutine rates(self, plan, order, state, values)
-    class(planar_closure_constraint_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
+    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: order                        !< 1 or 2
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out), contiguous :: values(:)      !< (3)
     real(wp) :: opening(3)
 
@@ -93,9 +93,9 @@ contains
 
   !> How far the closure is from closed: a length [m], its angle times the mechanism's size.
   pure real(wp) function gap(self, plan, state)
-    class(planar_closure_constraint_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp) :: error(3)
 
     call find_error(plan%planar%closures(self%closure), size(plan%planar%steps), state%planar%pose, error)

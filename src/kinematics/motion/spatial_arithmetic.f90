@@ -30,7 +30,7 @@ contains
   !> Room in a state for frames 0 .. m, all in the place of frame 0 and at rest.
   pure subroutine make_frames(m, state)
     integer, intent(in) :: m                      !< steps
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     integer :: i
 
     allocate (state%r(3, 3, 0:m), state%p(3, 0:m), source=0.0_wp)
@@ -46,11 +46,11 @@ contains
 
   !> Poses of frames and the screws of their steps, from the coordinates in `state`.
   subroutine place(plan, first, last, state, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: s
 
     do s = first, last
@@ -62,13 +62,13 @@ contains
 
   !> The same after a small change of the coordinates of some steps.
   subroutine nudge(plan, first, last, changed, change, state, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
     integer, intent(in) :: changed(:)             !< steps
     real(wp), intent(in) :: change(:)             !< of their coordinates, in units of these
     type(state_type), intent(inout) :: state      !< its coordinates are changed already
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     do i = 1, size(changed)
@@ -82,11 +82,11 @@ contains
 
   !> Poses of frames from the cosines and sines of their steps.
   subroutine compose_frames(plan, first, last, state, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: s
 
     do s = first, last
@@ -133,10 +133,10 @@ contains
 
   !> One step through a pair that has no fixed axis.
   subroutine place_user(plan, s, state, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: s                      !< step
-    type(state_type), intent(inout) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(pair_motion_type) :: motion
     real(wp) :: r_departing(3, 3), p_departing(3)
 
@@ -157,10 +157,10 @@ contains
 
   !> Velocities of frames from the rates in `state`.
   pure subroutine spread_velocities(plan, first, last, state)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
 
     call find_velocities(size(plan%steps), plan%steps, first, last, state%dq, state%p, state%axis_w, state%axis_v, &
                          state%omega, state%v)
@@ -168,10 +168,10 @@ contains
 
   !> Accelerations of frames from the rates and accelerations in `state`.
   pure subroutine spread_accelerations(plan, first, last, state)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
 
     call find_accelerations(size(plan%steps), plan%steps, first, last, state%dq, state%ddq, state%p, state%axis_w, &
                             state%axis_v, state%axis_w_rate, state%axis_v_rate, state%omega, state%v, state%alpha, state%a)
@@ -240,8 +240,8 @@ contains
 
   !> A link's own system and its motion, in the system of link 1.
   pure subroutine link_motion(plan, state, link, r, p, omega, v)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: link
     real(wp), intent(out) :: r(3, 3)              !< rotation
     real(wp), intent(out) :: p(3)                 !< origin [m]
@@ -260,8 +260,8 @@ contains
 
   !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1.
   pure subroutine point_motion(plan, state, link, place, position, velocity, acceleration)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: link
     real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
     real(wp), intent(out) :: position(3)          !< [m]
@@ -280,8 +280,8 @@ contains
 
   !> The screw of a step at its new frame's origin, in the axes of frame 0.
   pure subroutine step_screw(plan, state, s, w, v, place)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: s                      !< step
     real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
     real(wp), intent(out) :: v(3)                 !< [m per unit of q]

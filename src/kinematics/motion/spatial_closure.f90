@@ -28,9 +28,9 @@ contains
 
   !> The independent components of the error pose's screw.
   pure subroutine residual(self, plan, state, values)
-    class(spatial_closure_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out), contiguous :: values(:)     !< (equations)
     real(wp) :: w(3), v(3), place(3)
 
@@ -40,12 +40,12 @@ contains
 
   !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
   pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
-    class(spatial_closure_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
+    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(loop_type), intent(in) :: loop           !< the steps
     integer, intent(in) :: first                  !< earlier steps are left out
     integer, intent(in), contiguous :: column_of(:)     !< column of step `first` and each later one; 0: none
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer, intent(in) :: row                    !< before the first row
     real(wp), intent(inout), contiguous :: matrix(:, :)
     integer :: i, s
@@ -60,11 +60,11 @@ contains
 
   !> Derivatives with respect to the coordinate of one step, in its unit.
   pure subroutine column(self, plan, s, sign, state, values)
-    class(spatial_closure_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
+    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: s                      !< step
     real(wp), intent(in) :: sign                  !< of the step in the loop
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out), contiguous :: values(:)     !< (equations)
     real(wp) :: arm(3), w(3), v(3), unit
 
@@ -80,10 +80,10 @@ contains
   !> Time derivatives at the rates, or rates and accelerations, in `state`. The frames of earlier blocks must move as these say;
   !> of its own frames no accelerations are needed, and no velocities for the first derivatives.
   pure subroutine rates(self, plan, order, state, values)
-    class(spatial_closure_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
+    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: order                  !< 1 or 2
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out), contiguous :: values(:)     !< (equations)
     real(wp) :: w(3), v(3)
 
@@ -99,9 +99,9 @@ contains
 
   !> How far the closure is from closed, all six components: a length [m], rotations times the mechanism's size.
   pure real(wp) function gap(self, plan, state)
-    class(spatial_closure_type), intent(in) :: self
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp) :: w(3), v(3), place(3)
 
     call error_screw(plan%closures(self%closure), state, w, v, place)
@@ -110,9 +110,9 @@ contains
 
   !> Velocity of the closing frame relative to the target, from the rates of the coordinates in the closure's part.
   pure subroutine opening_velocity(plan, closure, state, w, v)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out) :: w(3)                 !< relative angular motion, axes of frame 0
     real(wp), intent(out) :: v(3)                 !< relative motion at the closing frame's origin, axes of frame 0
     real(wp) :: place(3), arm(3), spin(3), rate
@@ -158,9 +158,9 @@ contains
 
   !> Acceleration of the closing frame relative to the target, from the rates and accelerations in the closure's part.
   pure subroutine opening_acceleration(plan, closure, state, w, v)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out) :: w(3)                 !< relative angular motion, axes of frame 0
     real(wp), intent(out) :: v(3)                 !< relative motion at the closing frame's origin, axes of frame 0
     real(wp) :: place(3), arm(3), spin(3), slip(3), rate, acceleration
@@ -195,7 +195,7 @@ contains
   !> Error pose of a closure as a screw at the closing frame's origin, in the axes of frame 0.
   pure subroutine error_screw(closure, state, w, v, place)
     type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(out) :: w(3)                 !< rotation vector from the target to the closing frame [rad]
     real(wp), intent(out) :: v(3)                 !< from the target's place to the closing frame [m]
     real(wp), intent(out) :: place(3)             !< the closing frame's origin [m]
@@ -215,9 +215,9 @@ contains
 
   !> The independent components of a screw that is given at `place` in the axes of frame 0.
   pure subroutine reduced_screw(plan, closure, state, w, v, place, components)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: w(3)                  !< angular part [rad]
     real(wp), intent(in) :: v(3)                  !< part of the place [m]
     real(wp), intent(in) :: place(3)              !< [m]
@@ -238,9 +238,9 @@ contains
 
   !> A screw given at `place` in the axes of frame 0, moved to the base frame of a loop, lengths scaled.
   pure function loop_screw(plan, closure, state, w, v, place) result(screw)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: w(3)                  !< angular part [rad]
     real(wp), intent(in) :: v(3)                  !< part of the place [m]
     real(wp), intent(in) :: place(3)              !< [m]

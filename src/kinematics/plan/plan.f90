@@ -135,46 +135,46 @@ module mech9_plan
     pure subroutine frames_maker(m, state)
       import :: state_type
       integer, intent(in) :: m                      !< steps
-      type(state_type), intent(inout) :: state
+      type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     end subroutine frames_maker
 
     !> Poses of frames and the screws of their steps, from the coordinates in `state`. The frames that they start from must
     !> be in place. Fails only where a user pair has no pose.
     subroutine placing(plan, first, last, state, err)
       import :: plan_type, state_type, error_type
-      type(plan_type), intent(in) :: plan
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
       integer, intent(in) :: first                  !< frames from this one
       integer, intent(in) :: last                   !< to this one
-      type(state_type), intent(inout) :: state
-      type(error_type), allocatable, intent(out) :: err
+      type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine placing
 
     !> The same after a small change of the coordinates of some steps: their angles are turned on, not computed anew.
     subroutine nudging(plan, first, last, changed, change, state, err)
       import :: plan_type, state_type, error_type, wp
-      type(plan_type), intent(in) :: plan
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
       integer, intent(in) :: first                  !< frames from this one
       integer, intent(in) :: last                   !< to this one
       integer, intent(in) :: changed(:)             !< steps
       real(wp), intent(in) :: change(:)             !< of their coordinates, in units of these
       type(state_type), intent(inout) :: state      !< its coordinates are changed already
-      type(error_type), allocatable, intent(out) :: err
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine nudging
 
     !> Velocities, or accelerations, of frames from those of the coordinates in `state`.
     pure subroutine spreading(plan, first, last, state)
       import :: plan_type, state_type
-      type(plan_type), intent(in) :: plan
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
       integer, intent(in) :: first                  !< frames from this one
       integer, intent(in) :: last                   !< to this one
-      type(state_type), intent(inout) :: state
+      type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     end subroutine spreading
 
     !> A link's own system, its angular velocity and the velocity of its origin, in the system of link 1.
     pure subroutine link_reader(plan, state, link, r, p, omega, v)
       import :: plan_type, state_type, wp
-      type(plan_type), intent(in) :: plan
-      type(state_type), intent(in) :: state
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+      type(state_type), intent(in) :: state   !< position and motion of the mechanism
       integer, intent(in) :: link
       real(wp), intent(out) :: r(3, 3)              !< rotation
       real(wp), intent(out) :: p(3)                 !< origin [m]
@@ -185,8 +185,8 @@ module mech9_plan
     !> Position, velocity and acceleration of a point of a link, in the system of link 1.
     pure subroutine point_reader(plan, state, link, place, position, velocity, acceleration)
       import :: plan_type, state_type, wp
-      type(plan_type), intent(in) :: plan
-      type(state_type), intent(in) :: state
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+      type(state_type), intent(in) :: state   !< position and motion of the mechanism
       integer, intent(in) :: link
       real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
       real(wp), intent(out) :: position(3)          !< [m]
@@ -198,8 +198,8 @@ module mech9_plan
     !> the axes of frame 0, from its origin.
     pure subroutine screw_reader(plan, state, s, w, v, place)
       import :: plan_type, state_type, wp
-      type(plan_type), intent(in) :: plan
-      type(state_type), intent(in) :: state
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+      type(state_type), intent(in) :: state   !< position and motion of the mechanism
       integer, intent(in) :: s                      !< step
       real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
       real(wp), intent(out) :: v(3)                 !< [m per unit of q]
@@ -209,9 +209,9 @@ module mech9_plan
     !> By how much the equations are not satisfied at the position in `state`.
     pure subroutine residual_of(self, plan, state, values)
       import :: constraint_type, plan_type, state_type, wp
-      class(constraint_type), intent(in) :: self
-      type(plan_type), intent(in) :: plan
-      type(state_type), intent(in) :: state
+      class(constraint_type), intent(in) :: self   !< the constraint
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+      type(state_type), intent(in) :: state   !< position and motion of the mechanism
       real(wp), intent(out), contiguous :: values(:)        !< (equations)
     end subroutine residual_of
 
@@ -219,12 +219,12 @@ module mech9_plan
     !> `row` + 1 on. Columns of other coordinates are left as they are.
     pure subroutine jacobian_of(self, plan, loop, first, column_of, state, row, matrix)
       import :: constraint_type, plan_type, loop_type, state_type, wp
-      class(constraint_type), intent(in) :: self
-      type(plan_type), intent(in) :: plan
+      class(constraint_type), intent(in) :: self   !< the constraint
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
       type(loop_type), intent(in) :: loop                   !< the steps
       integer, intent(in) :: first                          !< earlier steps are left out
       integer, intent(in), contiguous :: column_of(:)       !< column of step `first` and each later one; 0: none
-      type(state_type), intent(in) :: state
+      type(state_type), intent(in) :: state   !< position and motion of the mechanism
       integer, intent(in) :: row
       real(wp), intent(inout), contiguous :: matrix(:, :)
     end subroutine jacobian_of
@@ -232,21 +232,21 @@ module mech9_plan
     !> Derivatives of the equations with respect to the coordinate of one step, in its unit.
     pure subroutine column_of_step(self, plan, s, sign, state, values)
       import :: constraint_type, plan_type, state_type, wp
-      class(constraint_type), intent(in) :: self
-      type(plan_type), intent(in) :: plan
+      class(constraint_type), intent(in) :: self   !< the constraint
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
       integer, intent(in) :: s                              !< step
       real(wp), intent(in) :: sign                          !< of the step in the loop
-      type(state_type), intent(in) :: state
+      type(state_type), intent(in) :: state   !< position and motion of the mechanism
       real(wp), intent(out), contiguous :: values(:)        !< (equations)
     end subroutine column_of_step
 
     !> First or second time derivatives of the residual at the rates, or rates and accelerations, in `state`.
     pure subroutine rates_of(self, plan, order, state, values)
       import :: constraint_type, plan_type, state_type, wp
-      class(constraint_type), intent(in) :: self
-      type(plan_type), intent(in) :: plan
+      class(constraint_type), intent(in) :: self   !< the constraint
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
       integer, intent(in) :: order                          !< 1 or 2
-      type(state_type), intent(in) :: state
+      type(state_type), intent(in) :: state   !< position and motion of the mechanism
       real(wp), intent(out), contiguous :: values(:)        !< (equations)
     end subroutine rates_of
 
@@ -254,9 +254,9 @@ module mech9_plan
     !> mechanism's size.
     pure real(wp) function gap_of(self, plan, state)
       import :: constraint_type, plan_type, state_type, wp
-      class(constraint_type), intent(in) :: self
-      type(plan_type), intent(in) :: plan
-      type(state_type), intent(in) :: state
+      class(constraint_type), intent(in) :: self   !< the constraint
+      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+      type(state_type), intent(in) :: state   !< position and motion of the mechanism
     end function gap_of
   end interface
 
@@ -264,7 +264,7 @@ contains
 
   !> A state with room for all frames of a plan, everything zero and nothing known.
   pure function new_state(plan) result(state)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type) :: state
     integer :: i
 

@@ -17,7 +17,7 @@ contains
 
   !> What the results of a run show: all, unless the data file asks for less.
   pure function requested_by_results(mechanism, pictures) result(requested)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     logical, intent(in), optional :: pictures   !< of the mechanism are wanted: they show all links; not unless given
     type(requested_type) :: requested
     logical :: whole
@@ -32,7 +32,7 @@ contains
 
   !> What else the equations of motion ask for: links with mass, and whatever loads depend on.
   pure subroutine add_forces(mechanism, requested)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(requested_type), intent(inout) :: requested
     integer :: i
 
@@ -48,7 +48,7 @@ contains
 
   !> The blocks on which something that is asked for depends.
   pure function needed_blocks(plan, requested) result(needed)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(requested_type), intent(in) :: requested
     logical :: needed(size(plan%blocks))
     logical :: frames(0:plan%n_coordinates)
@@ -66,7 +66,7 @@ contains
   !> Leave out the blocks on which nothing depends that is asked for, and accelerations of frames that only serve their
   !> own block. The chains of such blocks are not followed: whether they could go on is not noticed.
   pure subroutine leave_out(plan, requested)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(requested_type), intent(in) :: requested
     type(block_type), allocatable :: blocks(:)
     logical :: needed(size(plan%blocks)), frames(0:plan%n_coordinates)
@@ -97,7 +97,7 @@ contains
   !> What a plan follows is asked for from now on, whatever coordinates become independent: were a chain left out
   !> for a while, its position would not be known when another plan needs it.
   pure subroutine stay_with(plan, requested)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(requested_type), intent(inout) :: requested
     integer :: b
 
@@ -109,7 +109,7 @@ contains
 
   !> The frames of some links.
   pure subroutine mark_links(plan, links, frames)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     logical, intent(in) :: links(:)
     logical, intent(out) :: frames(0:)
     integer :: i
@@ -122,8 +122,8 @@ contains
 
   !> The frames of earlier blocks on which a block stands.
   pure subroutine mark_departures(plan, block, frames)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     logical, intent(inout) :: frames(0:)
     integer :: s, c
 

@@ -52,7 +52,7 @@ contains
 
   !> The parts of the loops that a block's own steps make up; earlier steps are those of other blocks.
   pure subroutine split_loops(block, plan)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
     type(plan_type), intent(inout) :: plan          !< its closures get their parts
     logical, allocatable :: own(:)
     integer :: c

@@ -17,7 +17,7 @@ contains
   !> Divide a plan into blocks and put its steps and closures in their order. Where some unknowns have
   !> no chain that could determine them, the plan is left as it is, in no blocks.
   subroutine make_blocks(plan, undetermined)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer, allocatable, intent(out) :: undetermined(:)   !< coordinates
     integer :: owner(plan%n_coordinates)                   ! chain that determines the coordinate of each step
     integer :: block_of_step(plan%n_coordinates), block_of_closure(size(plan%closures)), n_blocks, s
@@ -37,8 +37,8 @@ contains
 
   !> Unknowns, equations and chains of a block from its ranges.
   pure subroutine count_block(plan, block)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(inout) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(inout) :: block   !< the block
     integer :: s
 
     block%unknowns = pack([(s, s=block%first_step, block%last_step)], &
@@ -50,7 +50,7 @@ contains
 
   !> The steps with unknown coordinates on each loop, outermost first: these belong to the chain itself.
   pure function loops_of(plan) result(loops)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(loop_lists_type) :: loops
     integer :: c, i, n
 
@@ -77,7 +77,7 @@ contains
   !> Blocks of the closures and of the steps with unknown coordinates. The graph has a node for each
   !> step and, behind them, one for each closure; each leads to what must be there before it.
   subroutine find_blocks(plan, owner, block_of_step, block_of_closure, n_blocks)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: owner(:)
     integer, intent(out) :: block_of_step(:), block_of_closure(:), n_blocks
     type(graph_type) :: requested
@@ -106,7 +106,7 @@ contains
   !> A step needs its parent and, where its coordinate is unknown, the closure that determines it; a
   !> closure needs all steps of its loop.
   function graph_of_needs(plan, owner) result(requested)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: owner(:)
     type(graph_type) :: requested
     integer :: m, c, s, n
@@ -145,7 +145,7 @@ contains
   !> Steps whose coordinates are given go into the first block that needs them; what no closure needs
   !> are open chains, each of which has its own block at the end.
   pure subroutine place_free_steps(plan, owner, block_of_closure, block_of_step, n_blocks)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: owner(:), block_of_closure(:)
     integer, intent(inout) :: block_of_step(:), n_blocks
     integer :: c, i, s, chain
@@ -175,7 +175,7 @@ contains
 
   !> Steps and closures in the order of their blocks, otherwise as before, and the ranges of the blocks.
   pure subroutine sort_plan(plan, block_of_step, block_of_closure)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer, intent(in) :: block_of_step(:), block_of_closure(:)
     integer :: place(0:plan%n_coordinates)      ! new number of each step, and of the frame it makes
     integer :: last(0:size(plan%blocks))
@@ -215,7 +215,7 @@ contains
   end subroutine counting_sort
 
   pure subroutine renumber_steps(plan, place)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer, intent(in) :: place(0:)
     type(step_type), allocatable :: steps(:)
     integer :: s
@@ -231,7 +231,7 @@ contains
   end subroutine renumber_steps
 
   pure subroutine renumber_closures(plan, place, order)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer, intent(in) :: place(0:)      !< new number of each step and frame
     integer, intent(in) :: order(:)       !< new number of each closure
     type(closure_type), allocatable :: closures(:)

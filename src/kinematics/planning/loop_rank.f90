@@ -30,7 +30,7 @@ contains
   !> Set `offers` of all closures. Their ranks must be known; the paths must be those of whole loops,
   !> in ascending order.
   subroutine find_offers(plan, guess)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: guess(:)       !< (M)
     integer :: c, n
 
@@ -81,7 +81,7 @@ contains
 
   !> A plan of one loop alone: its base frame is frame 0 and all its coordinates are unknown.
   function loop_alone(plan, closure) result(loop)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(closure_type), intent(in) :: closure
     type(plan_type) :: loop
     integer :: i, k, n

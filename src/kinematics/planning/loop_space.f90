@@ -23,9 +23,9 @@ contains
   !> Rank and rows of all closures. The screws are taken at random coordinates near the guesses: the
   !> space they generate does not depend on the position, whether the loops are closed or not.
   subroutine find_loop_spaces(plan, guess, err)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: guess(:)       !< (M)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: state
     type(random_type) :: random
     integer :: c, k
@@ -45,8 +45,8 @@ contains
   end subroutine find_loop_spaces
 
   subroutine find_space(plan, state, closure)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(closure_type), intent(inout) :: closure
     real(wp) :: screws(6, 2*size(closure%loop%steps))
     integer :: i, n, s

@@ -20,7 +20,7 @@ contains
   !> prismatic pairs across it, and every closed chain bound in all three dimensions of the plane. The ranks
   !> of the closures must be known. `planar%used` and `planar%why_not` tell.
   pure subroutine lay_out_in_plane(plan)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(planar_plan_type) :: planar
     real(wp) :: to_frame(3, 3, 0:plan%n_coordinates)
     logical :: fits
@@ -63,7 +63,7 @@ contains
 
   !> The axes of the plane, from the first revolute pair. `fits` is false where there is none.
   pure subroutine find_axes(plan, planar, fits)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(planar_plan_type), intent(inout) :: planar
     logical, intent(out) :: fits
     real(wp) :: normal(3), r(3, 3)
@@ -92,7 +92,7 @@ contains
 
   !> One step. `to_frame` turns components in a frame of the plan into those of the same frame in the plane.
   pure subroutine lay_out_step(plan, s, planar, to_frame, fits)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: s
     type(planar_plan_type), intent(inout) :: planar
     real(wp), intent(inout) :: to_frame(:, :, 0:)
@@ -127,7 +127,7 @@ contains
 
   !> Where a closing frame must be, if that is in the plane.
   pure subroutine lay_out_closure(plan, c, to_frame, planar, fits)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: c
     real(wp), intent(in) :: to_frame(:, :, 0:)
     type(planar_plan_type), intent(inout) :: planar

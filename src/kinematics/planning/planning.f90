@@ -45,11 +45,11 @@ contains
   !> independent ones. Fails with exit_structure where the dependent coordinates are not determined
   !> by the independent ones, with exit_assembly where the chains do not close.
   subroutine make_plan(mechanism, start, plan, state, err, in_space, requested)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     real(wp), intent(in) :: start(:)        !< (M): independent coordinates as given, guesses of the others
-    type(plan_type), intent(out) :: plan
+    type(plan_type), intent(out) :: plan   !< the plan of the mechanism
     type(state_type), intent(out) :: state  !< assembled
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical, intent(in), optional :: in_space   !< no planar arithmetic, even where it could be used
     type(requested_type), intent(in), optional :: requested   !< what does not serve them is left out and not assembled
     type(generic_position_type) :: generic
@@ -88,9 +88,9 @@ contains
   !> Blocks by structure and ranks of the loops. An error says that they cannot determine all
   !> coordinates.
   subroutine propose_blocks(plan, state, err)
-    type(plan_type), intent(inout) :: plan
-    type(state_type), intent(inout) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer, allocatable :: undetermined(:)
     logical :: closed
 
@@ -112,10 +112,10 @@ contains
 
   !> Assemble the proposed blocks one after the other and join those that prove too small.
   subroutine settle_blocks(plan, state, generic, err)
-    type(plan_type), intent(inout) :: plan
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(generic_position_type), intent(inout) :: generic
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_type), allocatable :: blocks(:)
     type(state_type) :: trial
     integer :: b, n
@@ -147,12 +147,12 @@ contains
 
   !> Assemble the last block, the others being closed, and say whether its coordinates are all determined.
   subroutine settle_block(plan, blocks, state, generic, complete, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(generic_position_type), intent(inout) :: generic
     logical, intent(out) :: complete
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
     logical :: closed
@@ -182,11 +182,11 @@ contains
   !> then the way through a position in which the independent coordinates give way. An error tells why
   !> neither helps.
   subroutine assemble_otherwise(plan, blocks, outcome, state, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)
     type(assembly_outcome_type), intent(in) :: outcome   !< how it failed
-    type(state_type), intent(inout) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: trial
     logical :: closed
 
@@ -209,10 +209,10 @@ contains
 
   !> The independent coordinates must be free to move at any rates, and by more than nothing.
   subroutine check_inputs(plan, state, generic, err)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(generic_position_type), intent(inout) :: generic
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: trial
     type(block_work_type) :: work
     type(random_type) :: random
@@ -252,9 +252,9 @@ contains
 
   !> Chains with redundant equations must stay closed when they move.
   subroutine check_motion(plan, state, err)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state      !< assembled
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(locked_chain_type) :: locked
 
     call find_locked_chain(plan, state, locked)
@@ -262,13 +262,13 @@ contains
   end subroutine check_motion
 
   pure elemental integer function unknowns_of(block)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
 
     unknowns_of = size(block%unknowns)
   end function unknowns_of
 
   pure integer function chain_names_length(block) result(length)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
 
     length = len('an open chain')
     if (size(block%chains) == 1) length = len('closed chain ') + len(to_text(block%chains))
@@ -277,7 +277,7 @@ contains
 
   !> "closed chain 2" or "closed chains 1, 3 together".
   pure function chain_names(block) result(names)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
     character(len=chain_names_length(block)) :: names
 
     if (size(block%chains) == 0) then
@@ -291,7 +291,7 @@ contains
 
   !> Blocks whose Jacobian never changes, since all steps of their loops slide.
   pure subroutine find_constants(plan)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer :: b, c
 
     do b = 1, size(plan%blocks)

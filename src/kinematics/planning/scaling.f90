@@ -20,8 +20,8 @@ contains
   !> in one point, as in spherical mechanisms, it is the largest distance of a point or pair from the
   !> origin of its link, or 1 if that is nothing.
   subroutine find_size(mechanism, plan)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(inout) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     real(wp) :: low(3, mechanism%structure%n_links), high(3, mechanism%structure%n_links)
     type(screw_factors_type) :: factors
     type(pose_type) :: frame
@@ -64,8 +64,8 @@ contains
 
   !> What counts as one in each coordinate.
   subroutine find_units(mechanism, plan)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(inout) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(screw_factors_type) :: factors
     logical :: is_screw
     integer :: k

@@ -33,8 +33,8 @@ contains
 
   !> Steps, frames and closures (their ranks and rows are found later) chain by chain; no blocks yet.
   subroutine lay_out_frames(mechanism, plan)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(out) :: plan   !< the plan of the mechanism
     type(chain_type), allocatable :: chains(:)
     type(layout_type) :: layout
     integer :: i
@@ -67,12 +67,12 @@ contains
 
   !> One chain: an open one, and the stem of one that closes on itself, from its known end outwards.
   subroutine lay_out_chain(mechanism, chain, links, coordinates, closed, plan, layout)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: chain
     integer, intent(in) :: links(0:)         !< the known link it starts at, then the link of each step
     integer, intent(in) :: coordinates(:)
     logical, intent(in) :: closed
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(layout_type), intent(inout) :: layout
     integer :: i, n, stem, frame, reached
 
@@ -94,11 +94,11 @@ contains
 
   !> New links between two known ones, reached from both ends, and the closure where they meet.
   subroutine lay_out_loop(mechanism, chain, links, coordinates, plan, layout)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: chain
     integer, intent(in) :: links(0:)         !< known, new ..., known
     integer, intent(in) :: coordinates(:)
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(layout_type), intent(inout) :: layout
     integer :: n, here, there, from_here, i, reached
 
@@ -125,7 +125,7 @@ contains
 
   !> A frame of each of two links, so that there are few steps from one to the other.
   pure subroutine nearest_frames(plan, layout, a, b, frame_a, frame_b)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(layout_type), intent(in) :: layout
     integer, intent(in) :: a, b
     integer, intent(out) :: frame_a, frame_b
@@ -156,7 +156,7 @@ contains
   !> The frame by which a link is known.
   pure subroutine make_first(link, frame, plan, layout)
     integer, intent(in) :: link, frame
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(layout_type), intent(in) :: layout
 
     plan%frame_of(link) = frame
@@ -165,10 +165,10 @@ contains
 
   !> One more step, from a frame of one link through a pair to a new frame of another.
   subroutine add_step(mechanism, chain, from, to, coordinate, parent, plan, layout, reached)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: chain, from, to, coordinate
     integer, intent(in) :: parent            !< frame of link `from`
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(layout_type), intent(inout) :: layout
     integer, intent(out) :: reached
 
@@ -185,10 +185,10 @@ contains
   !> The step from link `from` to link `to` through the pair of a coordinate; `after` is the arriving
   !> link's system in the new frame.
   subroutine make_step(mechanism, from, to, coordinate, link_in_frame, plan, step, after)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: from, to, coordinate
     type(pose_type), intent(in) :: link_in_frame    !< the departing link's system in the frame it departs from
-    type(plan_type), intent(inout) :: plan
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(step_type), intent(out) :: step
     type(pose_type), intent(out) :: after
     type(screw_factors_type) :: factors
@@ -222,7 +222,7 @@ contains
 
   !> The closure where two frames of a link must coincide, and the loop it belongs to.
   subroutine make_closure(plan, layout, closing, target, closure)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(layout_type), intent(in) :: layout
     integer, intent(in) :: closing, target
     type(closure_type), intent(out) :: closure

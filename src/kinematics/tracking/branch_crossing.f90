@@ -44,12 +44,12 @@ contains
   !> The way through the crossing at time t of the branch on which `stepper` departs, which must be near but
   !> regular. It does not exist where no smooth motion goes on. Fails where a pair has no pose.
   subroutine build_crossing(mechanism, plan, stepper, t, crossing, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper
     real(wp), intent(in) :: t
     type(branch_crossing_type), intent(inout) :: crossing
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(branch_stepper_type) :: scout
     real(wp) :: half
     integer :: trial
@@ -69,12 +69,12 @@ contains
 
   !> Two positions before, two after.
   subroutine try_passage(mechanism, plan, scout, t, half, crossing, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: scout       !< departs at t - half
     real(wp), intent(in) :: t, half
     type(branch_crossing_type), intent(inout) :: crossing
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: no_drive
     real(wp), dimension(plan%n_coordinates, 4) :: q, dq, ddq
     real(wp) :: times(4)
@@ -128,12 +128,12 @@ contains
 
   !> Regular steps to a time.
   subroutine walk(mechanism, plan, scout, t, arrived, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: scout
     real(wp), intent(in) :: t
     logical, intent(out) :: arrived
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical :: stuck
     integer :: refused_by
 
@@ -147,8 +147,8 @@ contains
 
   !> Land at time t straight on from a start where nothing but positions and rates is known.
   subroutine land_near(mechanism, plan, t, scout, ok, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: t
     type(branch_stepper_type), intent(inout) :: scout
     logical, intent(out) :: ok
@@ -167,8 +167,8 @@ contains
 
   !> Close all blocks at time t from their prediction; `ok` if each is as good as met, and so are the rates.
   subroutine land(mechanism, plan, way, t, slack, scout, ok, err, no_drive)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(hermite_type), intent(in) :: way
     real(wp), intent(in) :: t
     real(wp), intent(in) :: slack                            !< how many times as far off it may be
@@ -208,14 +208,14 @@ contains
 
   !> Position, rates and accelerations at a time within a passage.
   subroutine position_within(mechanism, plan, crossing, t, state, work, monitors, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_crossing_type), intent(in) :: crossing
     real(wp), intent(in) :: t
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work(:)
     type(singularity_monitor_type), intent(inout) :: monitors(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
     real(wp), dimension(plan%n_coordinates) :: dq, ddq
     integer :: b
@@ -251,12 +251,12 @@ contains
 
   !> Close a block as far as its equations determine it: what the least pivots belong to is left as predicted.
   subroutine close_where_determined(plan, block, state, work, monitor, err)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     type(singularity_monitor_type), intent(in) :: monitor
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     do i = 1, 2
@@ -270,9 +270,9 @@ contains
 
   !> Rates and accelerations of a block, likewise.
   subroutine move_where_determined(plan, block, state, work, monitor)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     type(singularity_monitor_type), intent(in) :: monitor
 

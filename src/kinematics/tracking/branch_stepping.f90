@@ -66,10 +66,10 @@ contains
 
   !> Independent coordinates and their derivatives at a time, from the drives.
   subroutine set_inputs(mechanism, t, q, dq, ddq, err)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     real(wp), intent(in) :: t
     real(wp), intent(inout) :: q(:), dq(:), ddq(:)   !< (M)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, k
 
     do i = 1, size(mechanism%drives)
@@ -81,8 +81,8 @@ contains
 
   !> A follower at an assembled position; nothing but the position is known yet.
   pure function new_branch_stepper(mechanism, plan, assembled) result(stepper)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: assembled
     type(branch_stepper_type) :: stepper
     integer :: b, m
@@ -103,8 +103,8 @@ contains
   !> Numbers of the drives whose coordinates belong to closed chains. Those of open chains may move as far
   !> as they like in a step.
   pure function drives_of_chains(mechanism, plan) result(drives)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, allocatable :: drives(:)
     logical :: marked(plan%n_coordinates), drives_chain(size(mechanism%drives))
     integer :: b, c, i
@@ -136,13 +136,13 @@ contains
   !> cannot, or that too many have led nearly nowhere, and `refused_by` because of which block. Fails where a
   !> drive or a pair has no value.
   subroutine step_towards(mechanism, plan, stepper, t, stuck, refused_by, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper
     real(wp), intent(in) :: t
     logical, intent(out) :: stuck
     integer, intent(out) :: refused_by
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: remaining, h, worst
     logical :: no_drive, driven, complete
 
@@ -179,7 +179,7 @@ contains
   !> Count a short step that is about to be accepted, if it moves nothing far. Were there no end to them, the
   !> search would be as good as endless.
   pure subroutine count_creeping(plan, stepper, too_many, slowest)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper
     logical, intent(out) :: too_many
     integer, intent(inout) :: slowest         !< too many: the block that is nearest to a singular position
@@ -199,8 +199,8 @@ contains
 
   !> Shorten a step until no driven coordinate of a closed chain can move far within it.
   subroutine limit_by_drives(mechanism, plan, stepper, direction, h, driven)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper
     real(wp), intent(in) :: direction         !< +1, or -1 backwards in time
     real(wp), intent(inout) :: h              !< > 0
@@ -225,14 +225,14 @@ contains
 
   !> Predict, correct and judge one step of all blocks, from the departure to the time in the state.
   subroutine try_step(mechanism, plan, stepper, complete, worst, refused_by, no_drive, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper
     logical, intent(in) :: complete             !< with accelerations
     real(wp), intent(out) :: worst              !< at most 1: accepted; else about how much too long it was
     integer, intent(out) :: refused_by          !< number of the block
     logical, intent(out) :: no_drive            !< failed because a drive has no value
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
     integer :: b
 
@@ -271,10 +271,10 @@ contains
 
   !> Judge a block's prediction against its correction, and its movement against its rates.
   pure subroutine judge(block, per_unit, predictor, state, newton, pivot, worst)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in), contiguous :: per_unit(:)
     type(predictor_type), intent(in) :: predictor
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(newton_outcome_type), intent(in) :: newton
     real(wp), intent(in) :: pivot
     real(wp), intent(inout) :: worst
@@ -306,7 +306,7 @@ contains
 
   !> The trial becomes the place of departure.
   pure subroutine accept(plan, stepper, complete)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper
     logical, intent(in) :: complete             !< its accelerations are known
 
@@ -318,7 +318,7 @@ contains
 
   !> The accelerations at the place of departure, where the follower is, if it goes without them.
   subroutine add_accelerations(plan, stepper)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper
     integer :: b
 

@@ -45,12 +45,12 @@ contains
 
   !> Begin at an assembled position: velocities and accelerations there. Later positions may do without accelerations.
   subroutine start_driven_motion(mechanism, plan, assembled, t, driven, err, with_accelerations)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: assembled
     real(wp), intent(in) :: t
     type(driven_motion_type), intent(out) :: driven
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical, intent(in), optional :: with_accelerations
     integer :: b
     logical :: special
@@ -86,12 +86,12 @@ contains
 
   !> Rates of a block that starts in a singular position, if it can leave it in one way only.
   subroutine leave_special(mechanism, plan, block, already, driven, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     logical, intent(in) :: already                 !< a block before it does so too
     type(driven_motion_type), intent(inout) :: driven
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(ways_type) :: ways
     character(len=:), allocatable :: text
     integer :: b
@@ -121,8 +121,8 @@ contains
 
   !> Append the rates by which it could go on: "dq2 = 1, dq3 = 0.5 or dq2 = 1, dq3 = -0.5 (rad/s, m/s)".
   pure subroutine append_rates(mechanism, block, ways, text)
-    type(mechanism_type), intent(in) :: mechanism
-    type(block_type), intent(in) :: block
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(block_type), intent(in) :: block   !< the block
     type(ways_type), intent(in) :: ways
     character(len=:), allocatable, intent(inout) :: text
     integer :: way, i, k
@@ -140,10 +140,10 @@ contains
 
   !> The way on from a special start.
   subroutine begin_crossing(mechanism, plan, driven, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     driven%predictor%t = driven%state%t
     driven%predictor%q = driven%state%q
@@ -163,11 +163,11 @@ contains
   !> Go on to a time: position, velocity and acceleration there, on the same branch. Fails with
   !> exit_singular where the motion cannot go on; the state is then the last one reached.
   subroutine advance(mechanism, plan, driven, t, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven
     real(wp), intent(in) :: t
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: direction
     integer :: refused_by
     logical :: stuck
@@ -208,11 +208,11 @@ contains
 
   !> After a step: where a block came near a singular position, see what lies ahead.
   subroutine look_out(mechanism, plan, driven, direction, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven
     real(wp), intent(in) :: direction
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(finding_type) :: ahead
     integer :: b
 
@@ -267,10 +267,10 @@ contains
 
   !> The motion ends before the next output: go as near as it can be regular, and say why.
   subroutine end_motion(mechanism, plan, driven, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: t
     integer :: refused_by
     logical :: stuck
@@ -285,7 +285,7 @@ contains
 
   !> Count a position that was asked for.
   subroutine record(plan, driven)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven
 
     driven%positions = driven%positions + 1
@@ -296,10 +296,10 @@ contains
 
   !> Say where and why the motion cannot go on, and keep the independent coordinates there.
   subroutine refuse(mechanism, plan, driven, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: no_value
     real(wp), dimension(plan%n_coordinates) :: q, dq, ddq
     character(len=:), allocatable :: text, where
@@ -336,8 +336,8 @@ contains
 
   !> The coordinates that a block determines, in their order.
   pure function coordinates_of(plan, block) result(coordinates)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     integer, allocatable :: coordinates(:)
     logical :: mine(plan%n_coordinates)
     integer :: k
@@ -348,16 +348,16 @@ contains
   end function coordinates_of
 
   pure integer function words_length(plan, block) result(length)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
 
     length = len(chain_names(block)) + len(' (coordinates )') + len(to_text(coordinates_of(plan, block)))
   end function words_length
 
   !> "closed chain 2 (coordinates 4, 6, 7)".
   pure function words_of_block(plan, block) result(words)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     character(len=words_length(plan, block)) :: words
 
     words = chain_names(block)//' (coordinates '//to_text(coordinates_of(plan, block))//')'

@@ -39,7 +39,7 @@ contains
 
   !> A place with nothing known before it; its accelerations are.
   pure subroutine begin_at(state, predictor)
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(predictor_type), intent(inout) :: predictor
 
     predictor%t = state%t
@@ -55,7 +55,7 @@ contains
 
   !> The next place, after a step from the last one.
   pure subroutine depart_from(state, unit_of, complete, correction, predictor)
-    type(state_type), intent(in) :: state
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: unit_of(:)          !< (M)
     logical, intent(in) :: complete             !< its accelerations are known
     real(wp), intent(in) :: correction          !< of the prediction, in units of the coordinates
@@ -93,9 +93,9 @@ contains
 
   !> Polynomial prediction of a block's dependent coordinates, for the time that was aimed at.
   pure subroutine predict(block, predictor, state)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
     type(predictor_type), intent(in) :: predictor
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     real(wp) :: h, near
 
     if (predictor%uses_past) then

@@ -33,7 +33,7 @@ contains
 
   !> A watch on a block; nothing is known yet.
   pure function new_singularity_monitor(block) result(monitor)
-    type(block_type), intent(in) :: block
+    type(block_type), intent(in) :: block   !< the block
     type(singularity_monitor_type) :: monitor
 
     allocate (monitor%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
@@ -42,9 +42,9 @@ contains
 
   !> Put the block's Jacobian at the position in `state` on trial, and factorize it.
   subroutine factorize_trial(plan, block, state, work, monitor)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     type(singularity_monitor_type), intent(inout) :: monitor
 
@@ -65,9 +65,9 @@ contains
   !> Factorize the block's Jacobian at the end of a step, unless it is, and judge whether a singular one lies
   !> between.
   subroutine monitor_step(plan, block, state, factorized, work, monitor, worst)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     logical, intent(in) :: factorized
     type(block_work_type), intent(inout) :: work
     type(singularity_monitor_type), intent(inout) :: monitor

@@ -62,8 +62,8 @@ contains
 
   !> Look ahead from a follower that is near a singular position of its block b.
   subroutine look_ahead(mechanism, plan, stepper, b, direction, finding)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper
     integer, intent(in) :: b
     real(wp), intent(in) :: direction          !< +1, or -1 backwards in time
@@ -123,7 +123,7 @@ contains
 
   !> Whether the fastest coordinate of a block escapes, and when it is beyond all bounds.
   pure subroutine find_escape(plan, stepper, b, stuck, finding)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper
     integer, intent(in) :: b
     logical, intent(in) :: stuck                   !< it cannot go on, however far the coordinate is
@@ -146,7 +146,7 @@ contains
 
   !> Whether a dependent coordinate of a block slides and is far.
   pure logical function slides_far(plan, stepper, b)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper
     integer, intent(in) :: b
     integer :: i, k
@@ -164,7 +164,7 @@ contains
 
   !> Whether the fastest coordinate of a block slides, is far, and moves as a power of 1/(T - t).
   pure logical function follows_power_law(plan, stepper, b) result(follows)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper
     integer, intent(in) :: b
     real(wp) :: quotient
@@ -186,7 +186,7 @@ contains
 
   !> Largest rate of a block's dependent coordinates, and of all that drives it if that is more than `usual`.
   pure subroutine find_speeds(plan, stepper, b, speed, usual)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper
     integer, intent(in) :: b
     real(wp), intent(out) :: speed              !< [rad/s, lengths of the mechanism/s]
@@ -206,7 +206,7 @@ contains
 
   !> When the square-root law ends: x = x* + c sqrt(T - t) has x'/x'' = 2 (T - t).
   pure real(wp) function time_of_dead_point(plan, stepper, b) result(t)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper
     integer, intent(in) :: b
     integer :: k
@@ -220,7 +220,7 @@ contains
 
   !> The dependent coordinate of a block that moves fastest.
   pure integer function fastest_of(plan, stepper, b) result(fastest)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper
     integer, intent(in) :: b
     integer :: i, k

@@ -40,9 +40,9 @@ contains
 
   !> The ways of a block whose position, and whose inputs with their rates and accelerations, are in `state`.
   subroutine find_ways(plan, block, state, work, ways)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(inout) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
     type(ways_type), intent(out) :: ways
     real(wp), dimension(block%equations, block%equations) :: u
@@ -78,9 +78,9 @@ contains
 
   !> Singular values and vectors of the block's Jacobian.
   subroutine decompose(plan, block, state, work, u, s, vt)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
-    type(state_type), intent(in) :: state
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(in) :: work
     real(wp), intent(out) :: u(:, :), s(:), vt(:, :)
     real(wp) :: a(size(u, 1), size(s)), scratch(20*(size(u, 1) + size(s)))
@@ -92,10 +92,10 @@ contains
 
   !> Rates of the dependent coordinates, in their units, their accelerations zero, and the motion of the frames.
   pure subroutine set_rates(plan, block, rates, state)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in) :: rates(:)
-    type(state_type), intent(inout) :: state
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     integer :: i, k
 
     do i = 1, size(block%unknowns)
@@ -151,11 +151,11 @@ contains
   !> The way on from a start in a special position whose rates are in `scout`: three regular positions beside
   !> it. It does not exist where they cannot be reached with certainty.
   subroutine start_crossing(mechanism, plan, scout, crossing, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: scout
     type(branch_crossing_type), intent(inout) :: crossing
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(branch_stepper_type) :: walker
     real(wp), dimension(plan%n_coordinates, 3) :: q, dq, ddq
     real(wp) :: times(3), step, speed

@@ -53,7 +53,7 @@ contains
     type(scene_type), intent(in) :: scene
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(script_type) :: script
     character(len=:), allocatable :: size
     logical :: found
@@ -163,7 +163,7 @@ contains
 
   !> A polygon; an empty colour fills nothing.
   subroutine polygon(self, corners, fill, line, width)
-    class(script_type), intent(inout) :: self
+    class(script_type), intent(inout) :: self   !< the script
     real(wp), intent(in) :: corners(:, :)          !< (2,n) [px]
     character(len=*), intent(in) :: fill, line
     real(wp), intent(in) :: width                  !< of the line [px]
@@ -186,7 +186,7 @@ contains
 
   !> A line from corner to corner: a polygon that comes back the way it went.
   subroutine polyline(self, corners, line, width)
-    class(script_type), intent(inout) :: self
+    class(script_type), intent(inout) :: self   !< the script
     real(wp), intent(in) :: corners(:, :)
     character(len=*), intent(in) :: line
     real(wp), intent(in) :: width
@@ -205,7 +205,7 @@ contains
   end function forth_and_back
 
   subroutine circle(self, centre, radius, fill, line, width)
-    class(script_type), intent(inout) :: self
+    class(script_type), intent(inout) :: self   !< the script
     real(wp), intent(in) :: centre(2), radius      !< [px]
     character(len=*), intent(in) :: fill, line
     real(wp), intent(in) :: width

@@ -34,7 +34,7 @@ contains
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
     logical, intent(in) :: planar                  !< seen along the normal of its plane: dragging moves it at first
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(page_type) :: page
 
     call page%line('<!DOCTYPE html>')

@@ -28,7 +28,7 @@ contains
     type(scene_type), intent(in) :: scene
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(page_type) :: page
     type(drawing_type), allocatable :: drawings(:)
     integer, allocatable :: order(:)

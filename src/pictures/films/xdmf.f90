@@ -40,7 +40,7 @@ contains
   !> The description of an HDF5 file that is going to be written; it gets its name, with the ending .xdmf.
   pure function new_xdmf(hdf5_path, mechanism, poses) result(sink)
     character(len=*), intent(in) :: hdf5_path
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(poses_type), intent(in) :: poses
     type(xdmf_type) :: sink
 
@@ -62,16 +62,16 @@ contains
   end function xdmf_path
 
   subroutine write_rows(self, rows, err)
-    class(xdmf_type), intent(inout) :: self
+    class(xdmf_type), intent(inout) :: self   !< the xdmf
     real(wp), intent(in) :: rows(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     self%rows = self%rows + size(rows, 2)
   end subroutine write_rows
 
   subroutine save_description(self, err)
-    class(xdmf_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(xdmf_type), intent(inout) :: self   !< the xdmf
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(page_type) :: page
     integer :: i
 
@@ -92,7 +92,7 @@ contains
 
   !> One output: lines between vertices, and which link each line belongs to.
   subroutine put_step(self, row, page)
-    type(xdmf_type), intent(in) :: self
+    type(xdmf_type), intent(in) :: self   !< the xdmf
     integer, intent(in) :: row                    !< of the HDF5 file, from 0
     type(page_type), intent(inout) :: page
     character(len=:), allocatable :: vertices, lines
@@ -112,7 +112,7 @@ contains
 
   !> Numbers in the HDF5 file.
   pure function item(self, dimensions, type, data_set) result(text)
-    type(xdmf_type), intent(in) :: self
+    type(xdmf_type), intent(in) :: self   !< the xdmf
     character(len=*), intent(in) :: dimensions, type, data_set
     character(len=:), allocatable :: text
 
@@ -121,7 +121,7 @@ contains
   end function item
 
   function words(self)
-    class(xdmf_type), intent(in) :: self
+    class(xdmf_type), intent(in) :: self   !< the xdmf
     character(len=:), allocatable :: words
 
     words = 'for ParaView: '//self%path

@@ -90,7 +90,7 @@ contains
   subroutine run_gnuplot(script, found, err, folder, picture)
     character(len=*), intent(in) :: script
     logical, intent(out) :: found
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=*), intent(in), optional :: folder   !< where it works; here unless given
     character(len=*), intent(in), optional :: picture  !< the file that the script makes, seen from here
     type(child_outcome_type) :: outcome
@@ -111,7 +111,7 @@ contains
   subroutine check_picture(path, failed, err)
     character(len=*), intent(in) :: path
     logical, intent(in) :: failed                      !< gnuplot ended with an error: only why is asked
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(text_file_type) :: file
     character(len=longest_end) :: last
     logical :: whole

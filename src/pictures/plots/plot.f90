@@ -40,7 +40,7 @@ contains
 
   !> Read what is asked for; before the run, so that a wrong name costs no time (exit_usage).
   subroutine open_plot(self, text, title, names, units, expected, picture, table, err)
-    class(plot_type), intent(inout) :: self
+    class(plot_type), intent(inout) :: self   !< the plot
     character(len=*), intent(in) :: text          !< the argument of --plot
     character(len=*), intent(in) :: title         !< of the mechanism
     type(string_type), intent(in) :: names(:)     !< of the columns of the results, time first
@@ -48,7 +48,7 @@ contains
     integer, intent(in) :: expected               !< rows that will come at most
     character(len=*), intent(in) :: picture       !< its file, unless the text names one
     character(len=*), intent(in) :: table         !< file with the whole results; empty or '-': none
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call read_plot_request(text, names, self%request, err)
     if (allocated(err)) return
@@ -63,9 +63,9 @@ contains
 
   !> Take rows.
   subroutine write_rows(self, rows, err)
-    class(plot_type), intent(inout) :: self
+    class(plot_type), intent(inout) :: self   !< the plot
     real(wp), intent(in) :: rows(:, :)   !< (columns, rows)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     do i = 1, size(rows, 2)
@@ -76,8 +76,8 @@ contains
   !> Draw what was taken: in the terminal, or into a picture with its script beside it. Where gnuplot is not
   !> there a picture's script is kept all the same.
   subroutine close_plot(self, err)
-    class(plot_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(plot_type), intent(inout) :: self   !< the plot
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%is_open .and. self%data%count > 0) then
       if (self%request%in_terminal) then
@@ -91,7 +91,7 @@ contains
 
   !> What to tell the user after it is closed.
   function words(self)
-    class(plot_type), intent(in) :: self
+    class(plot_type), intent(in) :: self   !< the plot
     character(len=:), allocatable :: words
 
     words = ''
@@ -99,8 +99,8 @@ contains
   end function words
 
   subroutine draw_in_terminal(self, err)
-    class(plot_type), intent(in) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(plot_type), intent(in) :: self   !< the plot
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: columns, rows
     logical :: found
 
@@ -114,8 +114,8 @@ contains
   end subroutine draw_in_terminal
 
   subroutine draw_picture(self, err)
-    class(plot_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(plot_type), intent(inout) :: self   !< the plot
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: script_path, script, source, folder
     logical :: found
 
@@ -184,7 +184,7 @@ contains
     real(wp), intent(in) :: rows(:, :)                    !< rows(:, i): row i of the results
     character(len=*), intent(in) :: picture               !< its file, unless the text names one
     character(len=:), allocatable, intent(out) :: said    !< a line for the user; empty: nothing to say
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plot_type) :: plot
 
     said = ''

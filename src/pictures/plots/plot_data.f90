@@ -43,7 +43,7 @@ contains
 
   !> Keep what is needed of the next row.
   pure subroutine take(self, row)
-    class(plot_data_type), intent(inout) :: self
+    class(plot_data_type), intent(inout) :: self   !< the plot data
     real(wp), intent(in) :: row(:)   !< all columns of the results
 
     if (modulo(self%seen, self%stride) == 0 .and. self%count < size(self%values, 2)) then
@@ -55,7 +55,7 @@ contains
 
   !> Where a column of the results stands among those that are kept.
   pure integer function place_of(self, column)
-    class(plot_data_type), intent(in) :: self
+    class(plot_data_type), intent(in) :: self   !< the plot data
     integer, intent(in) :: column
 
     place_of = count(self%columns <= column)
@@ -63,7 +63,7 @@ contains
 
   !> Least and greatest value of some columns; [0, 0] where there is none that is finite.
   pure function extent(self, columns) result(ends)
-    class(plot_data_type), intent(in) :: self
+    class(plot_data_type), intent(in) :: self   !< the plot data
     integer, intent(in) :: columns(:)
     real(wp) :: ends(2), value
     integer :: i, j

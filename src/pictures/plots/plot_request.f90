@@ -38,7 +38,7 @@ contains
     character(len=*), intent(in) :: text
     type(string_type), intent(in) :: names(:)         !< of the columns, the first is the time
     type(plot_request_type), intent(out) :: request
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(curve_type) :: curve
     integer :: at
 
@@ -130,7 +130,7 @@ contains
     type(string_type), intent(in) :: names(:)
     integer, intent(inout) :: at
     type(curve_type), intent(out) :: curve
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call take_name(text, names, at, curve%y, err)
     if (allocated(err) .or. text(at:min(at, len(text))) /= ':') return
@@ -146,7 +146,7 @@ contains
     type(string_type), intent(in) :: names(:)
     integer, intent(inout) :: at
     integer, intent(out) :: column
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=*), parameter :: ends = ' ,:'
     integer :: i, length, after
 
@@ -178,7 +178,7 @@ contains
   pure subroutine refuse_name(word, names, err)
     character(len=*), intent(in) :: word
     type(string_type), intent(in) :: names(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: nearest, hint
     character(len=longest_name) :: known(size(names))
     integer :: i

@@ -31,11 +31,11 @@ contains
   !> beside it. Where dot is not there the text is kept, and `said` tells how to use it.
   subroutine save_structure_graph(path, mechanism, plan, drawn, said, err)
     character(len=*), intent(in) :: path
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     logical, intent(out) :: drawn                        !< or else the words tell why there is no such picture
     character(len=:), allocatable, intent(out) :: said   !< a line for the user
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: text, text_path
 
     text = structure_graph(mechanism, plan)
@@ -66,7 +66,7 @@ contains
     character(len=*), intent(in) :: path, text, text_path
     logical, intent(out) :: drawn
     character(len=:), allocatable, intent(inout) :: said
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(child_outcome_type) :: outcome
     type(string_type) :: words(3)
 
@@ -86,8 +86,8 @@ contains
 
   !> The text of the graph.
   pure function structure_graph(mechanism, plan) result(text)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     character(len=:), allocatable :: text
     integer :: b
 
@@ -109,7 +109,7 @@ contains
 
   !> The links that a block reaches first.
   pure function cluster(plan, b) result(text)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: b
     character(len=:), allocatable :: text
     integer :: s
@@ -126,8 +126,8 @@ contains
 
   !> What a block solves, and for what.
   pure function words_of(plan, block) result(words)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     character(len=:), allocatable :: words
     integer :: i, listed
 
@@ -140,8 +140,8 @@ contains
 
   !> The pairs of a block, from the link that is known.
   pure function edges(mechanism, plan, b) result(text)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: b
     character(len=:), allocatable :: text
     integer :: s, k, from

@@ -49,7 +49,7 @@ contains
 
   !> A film with room for the frames of a run, and for what they hold of its columns, if they are given.
   pure function new_film(mechanism, outputs, columns) result(film)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: outputs               !< expected number of outputs
     type(columns_type), intent(in), optional :: columns   !< of the rows that are taken, the time first
     type(film_type) :: film
@@ -76,9 +76,9 @@ contains
 
   !> The next output of the run; it is kept if its turn has come, or if it is the last.
   pure subroutine take(self, mechanism, plan, state, row)
-    class(film_type), intent(inout) :: self
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    class(film_type), intent(inout) :: self   !< the film
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state        !< positions known
     real(wp), intent(in) :: row(:)               !< the columns at this output, as far as the film has room for them
     logical :: last
@@ -92,10 +92,10 @@ contains
 
   !> Go on with the paths of the points.
   pure subroutine take_points(self, mechanism, plan, state)
-    class(film_type), intent(inout) :: self
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(film_type), intent(inout) :: self   !< the film
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp) :: now(3, size(mechanism%points), 3)
     integer :: i, n, new
 
@@ -143,9 +143,9 @@ contains
   end subroutine curve_to
 
   pure subroutine take_frame(self, plan, state, row)
-    class(film_type), intent(inout) :: self
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(film_type), intent(inout) :: self   !< the film
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: row(:)
     real(wp) :: omega(3), v(3)
     integer :: i
@@ -160,7 +160,7 @@ contains
 
   !> Where a point of a link is in a frame of the film [m].
   pure function position(self, frame, link, point)
-    class(film_type), intent(in) :: self
+    class(film_type), intent(in) :: self   !< the film
     integer, intent(in) :: frame, link
     real(wp), intent(in) :: point(3)             !< in the link's system [m]
     real(wp) :: position(3)
@@ -170,7 +170,7 @@ contains
 
   !> A direction of a link, in fixed axes, in a frame of the film.
   pure function direction(self, frame, link, vector)
-    class(film_type), intent(in) :: self
+    class(film_type), intent(in) :: self   !< the film
     integer, intent(in) :: frame, link
     real(wp), intent(in) :: vector(3)            !< in the link's axes
     real(wp) :: direction(3)
@@ -180,7 +180,7 @@ contains
 
   !> Which point of a link is at a place of link 1 in a frame of the film [m].
   pure function local(self, frame, link, place)
-    class(film_type), intent(in) :: self
+    class(film_type), intent(in) :: self   !< the film
     integer, intent(in) :: frame, link
     real(wp), intent(in) :: place(3)             !< in the system of link 1 [m]
     real(wp) :: local(3)

@@ -47,7 +47,7 @@ contains
 
   !> One more line that labels should not cover.
   pure subroutine add_obstacle(self, from, to, half, weight, owner)
-    class(obstacles_type), intent(inout) :: self
+    class(obstacles_type), intent(inout) :: self   !< the obstacles
     real(wp), intent(in) :: from(2), to(2)       !< its ends [px]
     real(wp), intent(in) :: half                 !< how far it reaches to each side [px]
     real(wp), intent(in) :: weight               !< 1 for a bar

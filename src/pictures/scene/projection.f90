@@ -44,7 +44,7 @@ contains
   !> The projection in which the whole motion fits the page. One that may be `turned` has room for the
   !> mechanism seen from everywhere.
   subroutine fit_projection(mechanism, film, skeleton, view, turned, projection)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
     type(view_type), intent(in) :: view
@@ -76,7 +76,7 @@ contains
 
   !> The box around pairs, points, springs and paths, in frames that stand for the film.
   subroutine enclose_motion(mechanism, film, skeleton, view, box)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
     type(view_type), intent(in) :: view
@@ -184,7 +184,7 @@ contains
 
   !> Where a place of link 1 stands on the page [px], and how near to the viewer it is [m].
   pure subroutine on_page(self, place, xy, depth)
-    class(projection_type), intent(in) :: self
+    class(projection_type), intent(in) :: self   !< the projection
     real(wp), intent(in) :: place(3)           !< [m]
     real(wp), intent(out) :: xy(2), depth
     real(wp) :: seen(3)
@@ -196,7 +196,7 @@ contains
 
   !> The length in the mechanism that is so long on the page, for symbols in space [m].
   pure real(wp) function metres(self, length)
-    class(projection_type), intent(in) :: self
+    class(projection_type), intent(in) :: self   !< the projection
     real(wp), intent(in) :: length             !< [px] at full size of symbols
 
     metres = length*self%symbol/self%scale

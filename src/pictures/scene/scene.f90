@@ -60,7 +60,7 @@ contains
 
   !> One more point of a link.
   pure subroutine add_node(self, link, at, node)
-    class(scene_type), intent(inout) :: self
+    class(scene_type), intent(inout) :: self   !< the scene
     integer, intent(in) :: link
     real(wp), intent(in) :: at(3)             !< in the link's system [m]
     integer, intent(out) :: node              !< its number
@@ -83,7 +83,7 @@ contains
 
   !> One more thing to draw, above those that are there.
   pure subroutine add_item(self, shape, style, nodes, link, above, text, shift)
-    class(scene_type), intent(inout) :: self
+    class(scene_type), intent(inout) :: self   !< the scene
     integer, intent(in) :: shape, style
     integer, intent(in) :: nodes(:)
     integer, intent(in), optional :: link
@@ -127,7 +127,7 @@ contains
 
   !> Where all nodes are in a frame of the film, in the system of link 1 [m].
   pure function places_at(self, film, frame) result(places)
-    class(scene_type), intent(in) :: self
+    class(scene_type), intent(in) :: self   !< the scene
     type(film_type), intent(in) :: film
     integer, intent(in) :: frame
     real(wp), allocatable :: places(:, :)     !< (3,n)

@@ -41,7 +41,7 @@ contains
 
   !> Add the labels to a scene that is whole but for them.
   subroutine add_labels(mechanism, film, projection, symbols, nodes, shapes, scene)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
     type(symbols_type), intent(in) :: symbols

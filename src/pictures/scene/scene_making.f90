@@ -32,7 +32,7 @@ contains
 
   !> The scene of a film. It is drawn for one projection: symbols have their size on the page.
   subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, scene)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
     type(projection_type), intent(in) :: projection
@@ -71,7 +71,7 @@ contains
   !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
   !> mass centre besides.
   subroutine find_outline(mechanism, skeleton, symbols, link, scene, outline)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(skeleton_type), intent(in) :: skeleton
     type(symbols_type), intent(in) :: symbols
     integer, intent(in) :: link
@@ -222,7 +222,7 @@ contains
 
   !> Points and mass centres.
   subroutine add_points(mechanism, with_masses, nodes, scene)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     logical, intent(in) :: with_masses
     integer, intent(out) :: nodes(:)              !< of the points
     type(scene_type), intent(inout) :: scene

@@ -18,7 +18,7 @@ contains
 
   !> Where the points have been.
   subroutine add_paths(mechanism, film, px, scene)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     real(wp), intent(in) :: px                  !< length of 1 px in the mechanism [m]
     type(scene_type), intent(inout) :: scene

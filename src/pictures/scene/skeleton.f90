@@ -43,7 +43,7 @@ contains
 
   !> Places of all pairs but the sliding ones, which follow from these.
   subroutine make_skeleton(mechanism, film, skeleton)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film          !< its first frame is looked at
     type(skeleton_type), intent(out) :: skeleton
     type(pair_axes_type), allocatable :: axes(:)
@@ -126,7 +126,7 @@ contains
 
   !> Diagonal of the box around everything of the mechanism that has a place.
   pure real(wp) function size_of(mechanism, film, places)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(place_type), intent(in) :: places(:)
     real(wp) :: low(3), high(3)

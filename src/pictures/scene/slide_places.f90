@@ -28,7 +28,7 @@ contains
 
   !> Places of all pairs that slide; the others have theirs.
   subroutine place_slides(mechanism, film, skeleton)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(inout) :: skeleton
     type(pins_type) :: pins(2)
@@ -50,7 +50,7 @@ contains
 
   !> The places of a link's other pairs that turn or are the user's; without any, its points.
   subroutine find_pins(mechanism, skeleton, k, link, pins)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(skeleton_type), intent(in) :: skeleton
     integer, intent(in) :: k, link
     type(pins_type), intent(out) :: pins
@@ -87,7 +87,7 @@ contains
 
   !> Whether a link has pins, all at one place, on a line.
   pure logical function all_at_one_place(self, point, axis, tolerance)
-    class(pins_type), intent(in) :: self
+    class(pins_type), intent(in) :: self   !< the pins
     real(wp), intent(in) :: point(3), axis(3)    !< of the line
     real(wp), intent(in) :: tolerance            !< [m]
     integer :: i

@@ -24,7 +24,7 @@ contains
 
   !> All springs and dampers. A load that has neither, such as a constant force on a coordinate, is not drawn.
   subroutine add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
     type(projection_type), intent(in) :: projection

@@ -35,7 +35,7 @@ contains
     type(film_type), intent(in) :: film
     type(projection_type), intent(in) :: projection
     integer, intent(in) :: frame
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(page_type) :: page
 
     call page%line('<?xml version="1.0" encoding="UTF-8"?>')

@@ -24,7 +24,7 @@ contains
 
   !> What is seen of a vector: its parts to the right, upwards, and towards the viewer.
   pure function seen(self, vector)
-    class(view_type), intent(in) :: self
+    class(view_type), intent(in) :: self   !< the view
     real(wp), intent(in) :: vector(3)
     real(wp) :: seen(3)
 
@@ -66,7 +66,7 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(in) :: code                  !< of the error, one of the exit_ codes
     type(view_type), intent(out) :: view
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: word
     real(wp) :: direction(3)
     integer :: right, up

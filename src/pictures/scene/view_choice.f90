@@ -23,7 +23,7 @@ contains
 
   !> The view unless the user asks for another one.
   pure subroutine choose_view(mechanism, film, skeleton, view, planar)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
     type(view_type), intent(out) :: view

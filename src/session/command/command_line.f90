@@ -48,7 +48,7 @@ contains
     type(string_type), intent(in) :: words(:)      !< without the program's name
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d: whose options count
     type(command_line_type), intent(out) :: options
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
     logical :: only_files
 
@@ -146,7 +146,7 @@ contains
   pure subroutine take_file(word, options, err)
     character(len=*), intent(in) :: word
     type(command_line_type), intent(inout) :: options
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (word == '') then
       call raise(err, exit_usage, 'the name of the data file is empty')
@@ -164,7 +164,7 @@ contains
     integer, intent(inout) :: i
     character(len=*), intent(in) :: program_name
     type(command_line_type), intent(inout) :: options
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: name, argument
     integer :: equals, place
     logical :: has_argument
@@ -198,7 +198,7 @@ contains
   pure subroutine raise_unknown(name, program_name, err)
     character(len=*), intent(in) :: name   !< with its dashes
     character(len=*), intent(in) :: program_name
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: nearest, hint
     integer :: i
 
@@ -217,7 +217,7 @@ contains
     character(len=*), intent(in) :: argument
     logical, intent(in) :: has_argument
     type(command_line_type), intent(in) :: options   !< what was given before
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: name
 
     name = '--'//trim(option%name)
@@ -277,7 +277,7 @@ contains
 
   !> Whether an option is given.
   pure logical function has(self, name)
-    class(command_line_type), intent(in) :: self
+    class(command_line_type), intent(in) :: self   !< the command line
     character(len=*), intent(in) :: name    !< without the dashes
 
     has = place_of(self, name) > 0
@@ -285,7 +285,7 @@ contains
 
   !> The argument of an option that is given at most once; empty where it, or the option, is not given.
   pure function argument(self, name) result(text)
-    class(command_line_type), intent(in) :: self
+    class(command_line_type), intent(in) :: self   !< the command line
     character(len=*), intent(in) :: name    !< without the dashes
     character(len=:), allocatable :: text
     integer :: place
@@ -297,7 +297,7 @@ contains
 
   !> The arguments of an option that may be repeated, in their order.
   pure subroutine arguments(self, name, texts)
-    class(command_line_type), intent(in) :: self
+    class(command_line_type), intent(in) :: self   !< the command line
     character(len=*), intent(in) :: name    !< without the dashes
     type(string_type), allocatable, intent(out) :: texts(:)
     integer :: i, n
@@ -313,7 +313,7 @@ contains
 
   !> The argument of an option that takes a whole number; `default` where it is not given.
   pure integer function number(self, name, default)
-    class(command_line_type), intent(in) :: self
+    class(command_line_type), intent(in) :: self   !< the command line
     character(len=*), intent(in) :: name    !< without the dashes
     integer, intent(in) :: default
     integer :: place
@@ -325,7 +325,7 @@ contains
 
   !> Where an option stands among the given ones; 0 where it is not given.
   pure integer function place_of(self, name)
-    class(command_line_type), intent(in) :: self
+    class(command_line_type), intent(in) :: self   !< the command line
     character(len=*), intent(in) :: name
 
     do place_of = size(self%given), 1, -1
@@ -337,7 +337,7 @@ contains
   pure subroutine judge(program_name, options, err)
     character(len=*), intent(in) :: program_name
     type(command_line_type), intent(in) :: options
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (options%has('help') .or. options%has('version') .or. options%has('help-data')) return
     if (options%has('quiet') .and. options%has('verbose')) then
@@ -353,7 +353,7 @@ contains
 
   !> The option that is answered instead of a run, the first where there are several; empty where none is given.
   pure function answer(self) result(name)
-    class(command_line_type), intent(in) :: self
+    class(command_line_type), intent(in) :: self   !< the command line
     character(len=:), allocatable :: name
     character(len=*), parameter :: answers(*) = [character(len=9) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph']
     integer :: i
@@ -366,7 +366,7 @@ contains
 
   !> Whether a conversation is asked for, instead of work on a data file as it is.
   pure logical function converses(self)
-    class(command_line_type), intent(in) :: self
+    class(command_line_type), intent(in) :: self   !< the command line
 
     converses = self%file == '' .or. self%has('dialogue') .or. self%has('edit') .or. self%has('resume')
   end function converses
@@ -375,7 +375,7 @@ contains
   pure subroutine judge_conversation(program_name, options, err)
     character(len=*), intent(in) :: program_name
     type(command_line_type), intent(in) :: options
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: missing
     character(len=9), parameter :: generic(6) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'set']
     integer :: i

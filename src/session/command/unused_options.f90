@@ -40,7 +40,7 @@ contains
 
   !> Whether the data file asks for pictures of the mechanism.
   pure logical function pictures_of(mechanism)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
 
     pictures_of = .false.
     if (allocated(mechanism%output%sketch)) pictures_of = mechanism%output%sketch /= ''

@@ -20,7 +20,7 @@ contains
     type(hdf5_file_type), intent(inout) :: file
     character(len=*), intent(in) :: program_name
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     character(len=*), intent(in) :: data_text       !< of the data file, as it is
 
     call file%add_attribute('/', 'title', mechanism%title)
@@ -58,7 +58,7 @@ contains
   !> The first and the second set of structural data.
   subroutine write_structure(file, mechanism)
     type(hdf5_file_type), intent(inout) :: file
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer :: links(2, size(mechanism%pairs)), k
 
     do k = 1, size(mechanism%pairs)

@@ -18,7 +18,7 @@ contains
   subroutine refuse_overwriting(options, inputs, err, output)
     type(command_line_type), intent(in) :: options
     type(string_type), intent(in) :: inputs(:)                     !< paths of the files that are read
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(output_settings_type), intent(in), optional :: output     !< what the data file says, once it is understood
     type(written_file_type), allocatable :: files(:)
     type(file_place_type), allocatable :: places(:)
@@ -44,7 +44,7 @@ contains
     type(written_file_type), intent(in) :: file
     type(file_place_type), intent(in) :: place
     type(string_type), intent(in) :: inputs(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(file_place_type) :: input
     integer :: i
 
@@ -61,7 +61,7 @@ contains
   subroutine refuse_output(files, places, err)
     type(written_file_type), intent(in) :: files(:)
     type(file_place_type), intent(in) :: places(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, last
 
     last = size(files)

@@ -45,10 +45,10 @@ contains
   !> file that cannot be meant.
   subroutine read_picture_requests(options, mechanism, program_name, requests, err)
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     character(len=*), intent(in) :: program_name
     type(picture_requests_type), intent(out) :: requests
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(result_paths_type) :: paths
 
     call find_result_paths(options, mechanism%output, paths)
@@ -76,18 +76,18 @@ contains
 
   !> Whether any picture is asked for.
   pure logical function any_wanted(self)
-    class(picture_requests_type), intent(in) :: self
+    class(picture_requests_type), intent(in) :: self   !< the picture requests
 
     any_wanted = self%sketch /= '' .or. self%animation /= ''
   end function any_wanted
 
   !> Make the sketch of an assembled position, without a run. Errors are exit_file.
   subroutine save_start(self, mechanism, plan, start, err)
-    class(picture_requests_type), intent(in) :: self
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    class(picture_requests_type), intent(in) :: self   !< the picture requests
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(picture_requests_type) :: sketch_only
     type(film_type) :: film
 
@@ -100,10 +100,10 @@ contains
 
   !> Make the pictures of a film; of none where it has no frame. Errors are exit_file.
   subroutine save_pictures(self, mechanism, film, err)
-    class(picture_requests_type), intent(in) :: self
-    type(mechanism_type), intent(in) :: mechanism
+    class(picture_requests_type), intent(in) :: self   !< the picture requests
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(skeleton_type) :: skeleton
     type(view_type) :: view
     logical :: planar
@@ -124,7 +124,7 @@ contains
 
   !> Say which pictures were made.
   subroutine print_words(self, unit)
-    class(picture_requests_type), intent(in) :: self
+    class(picture_requests_type), intent(in) :: self   !< the picture requests
     integer, intent(in) :: unit
 
     if (self%sketch /= '') write (unit, '(2a)') 'sketch: ', self%sketch
@@ -133,15 +133,15 @@ contains
 
   !> One picture. A page can be turned, unless the mechanism is planar: it has room for that.
   subroutine save_one(self, mechanism, film, skeleton, view, planar, path, moving, err)
-    class(picture_requests_type), intent(in) :: self
-    type(mechanism_type), intent(in) :: mechanism
+    class(picture_requests_type), intent(in) :: self   !< the picture requests
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film
     type(skeleton_type), intent(in) :: skeleton
     type(view_type), intent(in) :: view
     logical, intent(in) :: planar
     character(len=*), intent(in) :: path
     logical, intent(in) :: moving
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(projection_type) :: projection
     type(scene_type) :: scene
     logical :: page

@@ -32,7 +32,7 @@ contains
 
   !> Begin. Nothing will be shown if standard error is no terminal or the user wants no talk.
   subroutine start(self, label, quiet)
-    class(progress_type), intent(inout) :: self
+    class(progress_type), intent(inout) :: self   !< the progress
     character(len=*), intent(in) :: label   !< what runs
     logical, intent(in) :: quiet
 
@@ -47,7 +47,7 @@ contains
 
   !> Tell how much is done; cheap enough for each position.
   subroutine update(self, fraction)
-    class(progress_type), intent(inout) :: self
+    class(progress_type), intent(inout) :: self   !< the progress
     real(wp), intent(in) :: fraction   !< 0 to 1
     real(wp) :: elapsed
     integer :: status
@@ -65,7 +65,7 @@ contains
 
   !> Take the line away; to be called before anything else is said on the terminal.
   subroutine finish(self)
-    class(progress_type), intent(inout) :: self
+    class(progress_type), intent(inout) :: self   !< the progress
     integer :: status
 
     if (self%shown) then

@@ -36,10 +36,10 @@ module mech9_recording
     !> Go on to output time t and give its row. Output times come in order, the first one is the start.
     subroutine row_interface(self, t, row, err)
       import :: motion_source_type, error_type, wp
-      class(motion_source_type), intent(inout) :: self
+      class(motion_source_type), intent(inout) :: self   !< the motion source
       real(wp), intent(in) :: t
       real(wp), intent(inout) :: row(:)
-      type(error_type), allocatable, intent(out) :: err
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine row_interface
   end interface
 
@@ -56,11 +56,11 @@ contains
   !> user interrupts, what was computed is written first.
   subroutine record(source, mechanism, results, quiet, outcome, err, kept)
     class(motion_source_type), intent(inout) :: source
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(results_type), intent(inout) :: results
     logical, intent(in) :: quiet
     type(recording_outcome_type), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(kept_rows_type), intent(inout), optional :: kept   !< for who looks at the rows after the run
     type(error_type), allocatable :: stopped, at_flush
     type(progress_type) :: progress
@@ -96,13 +96,13 @@ contains
   !> The next rows, from output number `next` on; fewer than fit where the motion or the run ends, or takes long.
   subroutine compute_rows(source, mechanism, progress, pacer, next, rows, count, err)
     class(motion_source_type), intent(inout) :: source
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(progress_type), intent(inout) :: progress
     type(pacer_type), intent(inout) :: pacer
     integer, intent(inout) :: next
     real(wp), intent(inout) :: rows(:, :)
     integer, intent(out) :: count
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     count = 0
     do while (count < size(rows, 2) .and. next <= mechanism%time%intervals)
@@ -120,7 +120,7 @@ contains
   !> An error where the user wants the run to end. What takes long to come to an output asks on the way.
   subroutine stop_if_interrupted(t, err)
     real(wp), intent(in) :: t            !< the output that comes next [s]
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (interrupted()) call raise(err, exit_interrupted, 'interrupted before t = '//to_text(t, 10)//' s')
   end subroutine stop_if_interrupted

@@ -40,13 +40,13 @@ contains
 
   !> Open everything that is asked for. After an error nothing is open.
   subroutine open_results(self, options, mechanism, data_text, program_name, columns, err)
-    class(results_type), intent(out) :: self
+    class(results_type), intent(out) :: self   !< the results
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     character(len=*), intent(in) :: data_text        !< of the data file
     character(len=*), intent(in) :: program_name
     type(columns_type), intent(in) :: columns        !< of the rows to come
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(result_paths_type) :: paths
     type(error_type), allocatable :: at_close
     type(sink_slot_type), allocatable :: plots(:)
@@ -73,12 +73,12 @@ contains
 
   !> The plots that are asked for.
   subroutine open_plots(self, options, mechanism, columns, plots, err)
-    class(results_type), intent(in) :: self
+    class(results_type), intent(in) :: self   !< the results
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(columns_type), intent(in) :: columns
     type(sink_slot_type), allocatable, intent(out) :: plots(:)
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(string_type), allocatable :: requests(:)
     type(plot_type), allocatable :: plot
     character(len=:), allocatable :: picture
@@ -103,7 +103,7 @@ contains
 
   !> Whether the results have fewer columns than they could have.
   pure logical function leaves_out(mechanism)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
 
     associate (output => mechanism%output)
       leaves_out = output%derivatives < 2 .or. .not. (output%energies .and. all(output%recorded(size(mechanism%pairs))))
@@ -111,11 +111,11 @@ contains
   end function leaves_out
 
   subroutine open_table(self, mechanism, program_name, columns, err)
-    class(results_type), intent(inout) :: self
-    type(mechanism_type), intent(in) :: mechanism
+    class(results_type), intent(inout) :: self   !< the results
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     character(len=*), intent(in) :: program_name
     type(columns_type), intent(in) :: columns
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(table_type), allocatable :: table
     class(result_sink_type), allocatable :: sink
 
@@ -128,12 +128,12 @@ contains
   end subroutine open_table
 
   subroutine open_hdf5(self, options, mechanism, data_text, program_name, columns, err)
-    class(results_type), intent(inout) :: self
+    class(results_type), intent(inout) :: self   !< the results
     type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     character(len=*), intent(in) :: data_text, program_name
     type(columns_type), intent(in) :: columns
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(hdf5_sink_type), allocatable :: file
     class(result_sink_type), allocatable :: sink
 
@@ -152,9 +152,9 @@ contains
 
   !> Rows to everyone; the first error ends it.
   subroutine write_rows(self, rows, err)
-    class(results_type), intent(inout) :: self
+    class(results_type), intent(inout) :: self   !< the results
     real(wp), intent(in) :: rows(:, :)      !< (columns, rows), those of poses at the end
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     do i = 1, size(self%sinks)
@@ -167,8 +167,8 @@ contains
 
   !> Let no row wait any longer, in none of them; the first error is told.
   subroutine flush_results(self, err)
-    class(results_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(results_type), intent(inout) :: self   !< the results
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: one
     integer :: i
 
@@ -180,8 +180,8 @@ contains
 
   !> Close all of them, whatever happens; the first error is told.
   subroutine close_results(self, err)
-    class(results_type), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: err
+    class(results_type), intent(inout) :: self   !< the results
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: one
     integer :: i
 
@@ -193,7 +193,7 @@ contains
 
   !> The HDF5 file among the results, for what it holds besides rows; null where there is none.
   function hdf5(self)
-    class(results_type), intent(in), target :: self
+    class(results_type), intent(in), target :: self   !< the results
     type(hdf5_sink_type), pointer :: hdf5
     integer :: i
 
@@ -209,7 +209,7 @@ contains
   !> What is to be told of the run, where there is a place for it: before the run, and again after it. Failures are
   !> those of the files, told with the next rows or when they are closed.
   subroutine write_facts(self, facts, exit_code)
-    class(results_type), intent(in), target :: self
+    class(results_type), intent(in), target :: self   !< the results
     type(facts_type), intent(in) :: facts
     integer, intent(in), optional :: exit_code   !< that the run is going to answer; before it: not given
     type(hdf5_sink_type), pointer :: hdf5
@@ -225,7 +225,7 @@ contains
 
   !> What the user is told about what was written, once all is closed; to be `quiet`, about what was not.
   subroutine print_words(self, unit, quiet)
-    class(results_type), intent(in) :: self
+    class(results_type), intent(in) :: self   !< the results
     integer, intent(in) :: unit
     logical, intent(in) :: quiet
     character(len=:), allocatable :: words

@@ -16,8 +16,8 @@ contains
   !> the groups of one, put into the data file, make it the start.
   subroutine print_assemblies(unit, mechanism, plan, start, n_starts)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start      !< assembled
     integer, intent(in) :: n_starts
     type(assembly_list_type) :: list

@@ -23,7 +23,7 @@ contains
   !> A line for each note.
   subroutine print_notes(unit, mechanism, with_masses)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     logical, intent(in) :: with_masses       !< bodies and initial velocities count in this program, else drives
     type(error_type), allocatable :: err
     real(wp) :: q, dq, ddq
@@ -47,7 +47,7 @@ contains
   !> Angles and their rates that seem to be in the other unit.
   subroutine note_angle(unit, mechanism, k, what, q, dq)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: k                 !< the coordinate
     character(len=*), intent(in) :: what     !< 'the drive' or 'the start'
     real(wp), intent(in) :: q, dq            !< its value and rate at the start [rad, rad/s]
@@ -75,7 +75,7 @@ contains
   !> Bodies of the frame, and links that were left without mass.
   subroutine note_bodies(unit, mechanism)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     logical :: massless(mechanism%structure%n_links)
     integer :: i

@@ -23,7 +23,7 @@ contains
   !> The table of the links' dimensions, in which a mistaken number of the data file shows.
   subroutine print_dimensions(unit, mechanism)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     character(len=3) :: angle_name
     real(wp) :: largest, shown(3)
@@ -68,8 +68,8 @@ contains
   !> Put before the error of a mechanism that cannot be assembled or cannot move what is odd about its geometry, and the place
   !> of the pair that seems to be mistaken. Other errors, and mechanisms without oddities, stay as they are.
   subroutine explain_geometry(mechanism, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(error_type), allocatable, intent(inout) :: err
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
     type(oddity_type) :: oddity
 
     if (.not. allocated(err)) return

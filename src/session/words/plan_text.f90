@@ -20,7 +20,7 @@ contains
   !> The blocks in order, each with its chains, unknowns, equations and rank, and what is left out.
   subroutine print_plan(unit, mechanism, plan, requested)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan          !< of the whole mechanism
     type(requested_type), intent(in) :: requested        !< what the run asks for
     logical :: needed(size(plan%blocks))
@@ -45,8 +45,8 @@ contains
   !> One block: its links, equations and chains.
   subroutine print_block(unit, plan, block, number, is_needed)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
     integer, intent(in) :: number
     logical, intent(in) :: is_needed
     integer :: c, i
@@ -76,7 +76,7 @@ contains
   !> "turning about (0, 0, 1), sliding along (1, 0, 0), (0, 1, 0) of link 1"; nothing where there are all six.
   subroutine print_basis(unit, plan, closure)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(closure_type), intent(in) :: closure
     character(len=:), allocatable :: turning, sliding
     real(wp) :: turns(3, 3), slides(3, 3), to_link(3, 3)
@@ -126,7 +126,7 @@ contains
   !> Planar or spatial, and why.
   subroutine print_arithmetic(unit, plan)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
 
     if (plan%planar%used) then
       write (unit, '(a)') 'planar arithmetic: all pairs turn about or slide across the direction '// &
@@ -139,8 +139,8 @@ contains
   !> What Lagrange's equations leave out.
   subroutine print_dynamics_plan(unit, mechanism, plan)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type) :: dynamics
     logical :: has_mass(plan%n_links), idle(plan%n_links), without_effect(size(mechanism%loads))
     integer :: i

@@ -21,8 +21,8 @@ contains
   !> A line for each independent coordinate: start, lower and upper end, unit, and what limits it.
   subroutine print_ranges(unit, mechanism, plan, start)
     integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start      !< assembled
     type(motion_range_type) :: range
     character(len=:), allocatable :: name
@@ -63,7 +63,7 @@ contains
 
   !> What limits a coordinate on both sides.
   pure function reasons(plan, range, factor, unit) result(text)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(motion_range_type), intent(in) :: range
     real(wp), intent(in) :: factor
     character(len=*), intent(in) :: unit
@@ -76,7 +76,7 @@ contains
   end function reasons
 
   pure function reason(plan, found, factor, unit) result(text)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(end_type), intent(in) :: found
     real(wp), intent(in) :: factor
     character(len=*), intent(in) :: unit

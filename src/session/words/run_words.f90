@@ -43,7 +43,7 @@ contains
   subroutine begin_report(json, program_name, mechanism, diagnostics, table_path)
     type(json_type), intent(inout) :: json
     character(len=*), intent(in) :: program_name
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
     character(len=*), intent(in) :: table_path          !< '-' is standard output; empty: no table
 
@@ -62,7 +62,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism       !< as far as it was read
     integer, intent(in) :: exit_code                    !< that the program is going to answer
     type(diagnostics_type), intent(in) :: choice, diagnostics   !< what it is going to say
-    type(error_type), allocatable, intent(out) :: err
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(json_type) :: json
 
     call json%begin_object()
@@ -79,7 +79,7 @@ contains
   subroutine add_outcome(json, program_name, mechanism, exit_code)
     type(json_type), intent(inout) :: json
     character(len=*), intent(in) :: program_name
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: exit_code
 
     call json%add('program', program_name)
@@ -93,7 +93,7 @@ contains
   !> What is wrong: each message, with its place where it has one.
   subroutine add_errors(json, diagnostics)
     type(json_type), intent(inout) :: json
-    type(diagnostics_type), intent(in) :: diagnostics
+    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: message
     type(span_type) :: span
     type(place_type) :: place
@@ -120,8 +120,8 @@ contains
   !> The structural vectors and the blocks.
   subroutine add_structure(json, mechanism, plan)
     type(json_type), intent(inout) :: json
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer :: b, i
 
     call json%add('links', plan%n_links)

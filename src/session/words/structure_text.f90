@@ -44,7 +44,7 @@ contains
   !> Counts, mobility and redundancy.
   subroutine print_mobility(unit, plan)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer :: b, unknowns, equations
 
     unknowns = 0
@@ -61,7 +61,7 @@ contains
 
   subroutine print_counts(unit, plan)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
 
     write (unit, '(a)') to_text(plan%n_links)//' links, '//counted(plan%n_coordinates, 'coordinate')//', '// &
       counted(size(plan%closures), 'closed chain')
@@ -80,7 +80,7 @@ contains
   !> Counts, ranks, redundant equations, and what each coordinate can be.
   subroutine print_mobility_report(unit, plan, report)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(mobility_report_type), intent(in) :: report
     integer :: i, c
 
@@ -110,7 +110,7 @@ contains
   !> Equations and rank of each block; of many blocks only those that are singular at the start.
   subroutine print_ranks(unit, plan, report)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(mobility_report_type), intent(in) :: report
     integer :: b, left_out
 
@@ -133,7 +133,7 @@ contains
   !> Coordinates that could be independent instead of one that is.
   subroutine print_alternatives(unit, plan, report, i)
     integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(mobility_report_type), intent(in) :: report
     integer, intent(in) :: i                  !< its place among the independent ones
     integer :: k
