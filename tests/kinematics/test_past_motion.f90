@@ -1,7 +1,7 @@
 !> Predictions from past positions and rates: exact for polynomials up to the degree that so many of them determine.
 program test_past_motion
   use mech9_kinds, only: wp
-  use mech9_past_motion, only: past_motion_type, new_past_motion, forget_motion, take_motion, judge_past, weigh_past, &
+  use mech9_past_motion, only: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, &
     predict_from_past, acceleration_from_past
   use mech9_testing, only: tester_type
   implicit none
@@ -69,7 +69,7 @@ contains
     integer :: i
 
     do i = 1, size(times)
-      call take_motion(past, times(i), [value(degree, times(i)), -value(degree, times(i))], &
+      call add_to_past(past, times(i), [value(degree, times(i)), -value(degree, times(i))], &
                        [derivative(degree, 1, times(i)), -derivative(degree, 1, times(i))])
     end do
   end subroutine take
@@ -89,8 +89,8 @@ contains
     do d = 0, degree + 1
       past = new_past_motion(2)
       call take(past, d, times)
-      if (with_positions) call judge_past(past, abs(t - times(last)), 1.0_wp)
-      call weigh_past(past, t - times(last))
+      if (with_positions) call choose_formula(past, abs(t - times(last)), 1.0_wp)
+      call find_weights(past, t - times(last))
       q = 7.0_wp
       call predict_from_past(past, [2], q)
       call test%near(q(1), 7.0_wp, 0.0_wp, why//': other coordinates are left')
@@ -118,7 +118,7 @@ contains
     t = 0.0_wp
     do i = 1, 60
       if (i > 5) then
-        call weigh_past(past, h)
+        call find_weights(past, h)
         call predict_from_past(past, [1, 2], q)
         call test%near(q(1), value(5, t + h), 1.0e-14_wp, 'step after step')
       end if
@@ -127,7 +127,7 @@ contains
       if (i == 30) h = 0.004_wp
       h = h*(1.0_wp + 1.0e-13_wp)
     end do
-    call forget_motion(past)
+    call clear_past(past)
     call test%is_true(past%count == 0, 'all is forgotten')
   end subroutine check_even_steps
 
@@ -136,13 +136,13 @@ contains
     type(past_motion_type) :: past
 
     past = new_past_motion(2)
-    call judge_past(past, 0.1_wp, 1.0e-12_wp)
+    call choose_formula(past, 0.1_wp, 1.0e-12_wp)
     call test%is_true(.not. past%with_positions, 'rates alone do')
-    call judge_past(past, 0.1_wp, 1.0e-8_wp)
+    call choose_formula(past, 0.1_wp, 1.0e-8_wp)
     call test%is_true(past%with_positions, 'rates alone do not')
-    call judge_past(past, 0.06_wp, 1.0e-16_wp)
+    call choose_formula(past, 0.06_wp, 1.0e-16_wp)
     call test%is_true(past%with_positions, 'a step that is not much shorter')
-    call judge_past(past, 0.04_wp, 1.0e-16_wp)
+    call choose_formula(past, 0.04_wp, 1.0e-16_wp)
     call test%is_true(.not. past%with_positions, 'a step half as long')
   end subroutine check_choice
 end program test_past_motion

@@ -8,7 +8,8 @@ program test_singularity_monitor
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_block_solver, only: block_work_type, new_block_work
-  use mech9_singularity_monitor, only: singularity_monitor_type, new_singularity_monitor, factorize_trial, monitor_step, keep
+  use mech9_singularity_monitor, only: singularity_monitor_type, new_singularity_monitor, factorize_trial, monitor_step, &
+    accept_jacobians
   use mech9_sample_mechanisms, only: four_bar
   use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit
   use mech9_testing, only: tester_type
@@ -60,7 +61,7 @@ contains
 
     call go_to(angle, branch)
     call factorize_trial(plan, plan%blocks(1), state, work(1), monitors(1))
-    call keep(work, monitors)
+    call accept_jacobians(work, monitors)
   end subroutine depart
 
   !> What watching a step to a position adds: up to 1 it is trusted.

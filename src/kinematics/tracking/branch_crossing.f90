@@ -13,19 +13,19 @@ module mech9_branch_crossing
   use mech9_state, only: state_type, acceleration_known
   use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, apply_change
   use mech9_singularity_monitor, only: singularity_monitor_type, factorize_trial
-  use mech9_branch_stepping, only: branch_stepper_type, settle, step_towards, set_inputs
+  use mech9_branch_stepping, only: branch_stepper_type, accept_start, step_towards, set_inputs
   use mech9_frame_motion, only: place_frames, spread_velocities, spread_accelerations
   use mech9_block_equations, only: block_rates, block_residual
   implicit none
   private
-  public :: branch_crossing_type, build_crossing, position_within, land_near, walk
+  public :: branch_crossing_type, build_crossing, position_within, close_from_rates, step_until
 
   !> The way through, from one regular position to another.
   type :: branch_crossing_type
     logical :: exists = .false.
     real(wp) :: from = 0.0_wp, to = 0.0_wp       !< [s]
-    type(hermite_type) :: way                    !< all coordinates over time
-    type(branch_stepper_type) :: beyond                !< at its end
+    type(hermite_type) :: polynomial                    !< all coordinates over time
+    type(branch_stepper_type) :: stepper_beyond                !< at its end
     logical :: ends = .false.                    !< at the special position: the drives have no value beyond
   end type branch_crossing_type
 
@@ -50,28 +50,28 @@ contains
     real(wp), intent(in) :: t
     type(branch_crossing_type), intent(inout) :: crossing
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(branch_stepper_type) :: scout
+    type(branch_stepper_type) :: probe
     real(wp) :: half
     integer :: trial
 
     half = t - stepper%predictor%t
     crossing%exists = .false.
     do trial = 1, most_trials
-      scout = stepper
-      scout%with_accelerations = .true.
-      if (trial > 1) call walk(mechanism, plan, scout, t - half, crossing%exists, err)
+      probe = stepper
+      probe%with_accelerations = .true.
+      if (trial > 1) call step_until(mechanism, plan, probe, t - half, crossing%exists, err)
       if (allocated(err)) return
-      if (trial == 1 .or. crossing%exists) call try_passage(mechanism, plan, scout, t, half, crossing, err)
+      if (trial == 1 .or. crossing%exists) call try_crossing(mechanism, plan, probe, t, half, crossing, err)
       if (allocated(err) .or. crossing%exists) return
       half = half*shorter
     end do
   end subroutine build_crossing
 
   !> Two positions before, two after.
-  subroutine try_passage(mechanism, plan, scout, t, half, crossing, err)
+  subroutine try_crossing(mechanism, plan, probe, t, half, crossing, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: scout       !< departs at t - half
+    type(branch_stepper_type), intent(inout) :: probe       !< departs at t - half
     real(wp), intent(in) :: t, half
     type(branch_crossing_type), intent(inout) :: crossing
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -82,55 +82,55 @@ contains
 
     times = t + half*[-1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp]
     call take(1)
-    call walk(mechanism, plan, scout, times(2), crossing%exists, err)
+    call step_until(mechanism, plan, probe, times(2), crossing%exists, err)
     if (allocated(err) .or. .not. crossing%exists) return
     call take(2)
     crossing%from = times(1)
     crossing%to = times(4)
     crossing%ends = .false.
-    call build_hermite(times(:2), q(:, :2), dq(:, :2), ddq(:, :2), crossing%way)
-    call land(mechanism, plan, crossing%way, times(3), 1.0_wp, scout, ok, err, no_drive)
+    call build_hermite(times(:2), q(:, :2), dq(:, :2), ddq(:, :2), crossing%polynomial)
+    call close_all_blocks(mechanism, plan, crossing%polynomial, times(3), 1.0_wp, probe, ok, err, no_drive)
     crossing%exists = ok
     if (allocated(no_drive)) then
-      call end_there()
+      call end_at_crossing()
       return
     end if
     if (allocated(err) .or. .not. ok) return
     call take(3)
-    call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%way)
-    call land(mechanism, plan, crossing%way, times(4), 1.0_wp, scout, ok, err, no_drive)
+    call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%polynomial)
+    call close_all_blocks(mechanism, plan, crossing%polynomial, times(4), 1.0_wp, probe, ok, err, no_drive)
     crossing%exists = ok
     if (allocated(err) .or. .not. ok) return
     call take(4)
-    call build_hermite(times, q, dq, ddq, crossing%way)
-    crossing%beyond = scout
+    call build_hermite(times, q, dq, ddq, crossing%polynomial)
+    crossing%stepper_beyond = probe
 
   contains
 
     subroutine take(i)
       integer, intent(in) :: i
 
-      q(:, i) = scout%predictor%q
-      dq(:, i) = scout%predictor%dq
-      ddq(:, i) = scout%predictor%ddq
+      q(:, i) = probe%predictor%q
+      dq(:, i) = probe%predictor%dq
+      ddq(:, i) = probe%predictor%ddq
     end subroutine take
 
     !> The last result may lie just there: one more position before it.
-    subroutine end_there()
+    subroutine end_at_crossing()
       times(3) = t - 0.25_wp*half
-      call walk(mechanism, plan, scout, times(3), crossing%exists, err)
+      call step_until(mechanism, plan, probe, times(3), crossing%exists, err)
       if (allocated(err) .or. .not. crossing%exists) return
       call take(3)
-      call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%way)
+      call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%polynomial)
       crossing%ends = .true.
-    end subroutine end_there
-  end subroutine try_passage
+    end subroutine end_at_crossing
+  end subroutine try_crossing
 
   !> Regular steps to a time.
-  subroutine walk(mechanism, plan, scout, t, arrived, err)
+  subroutine step_until(mechanism, plan, stepper, t, arrived, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: scout
+    type(branch_stepper_type), intent(inout) :: stepper
     real(wp), intent(in) :: t
     logical, intent(out) :: arrived
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -138,41 +138,41 @@ contains
     integer :: refused_by
 
     stuck = .false.
-    do while (abs(t - scout%predictor%t) > 0.0_wp .and. .not. stuck)
-      call step_towards(mechanism, plan, scout, t, stuck, refused_by, err)
+    do while (abs(t - stepper%predictor%t) > 0.0_wp .and. .not. stuck)
+      call step_towards(mechanism, plan, stepper, t, stuck, refused_by, err)
       if (allocated(err)) exit
     end do
     arrived = .not. (stuck .or. allocated(err))
-  end subroutine walk
+  end subroutine step_until
 
   !> Land at time t straight on from a start where nothing but positions and rates is known.
-  subroutine land_near(mechanism, plan, t, scout, ok, err)
+  subroutine close_from_rates(mechanism, plan, t, stepper, ok, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: t
-    type(branch_stepper_type), intent(inout) :: scout
+    type(branch_stepper_type), intent(inout) :: stepper
     logical, intent(out) :: ok
     type(error_type), allocatable, intent(out) :: err        !< a pair has no pose, or a drive no value
     type(error_type), allocatable :: no_drive
-    type(hermite_type) :: way
+    type(hermite_type) :: polynomial
     real(wp), dimension(plan%n_coordinates, 1) :: q, dq, ddq
 
-    q(:, 1) = scout%state%q
-    dq(:, 1) = scout%state%dq
+    q(:, 1) = stepper%state%q
+    dq(:, 1) = stepper%state%dq
     ddq = 0.0_wp
-    call build_hermite([scout%state%t], q, dq, ddq, way)
-    call land(mechanism, plan, way, t, 10.0_wp, scout, ok, err, no_drive)
+    call build_hermite([stepper%state%t], q, dq, ddq, polynomial)
+    call close_all_blocks(mechanism, plan, polynomial, t, 10.0_wp, stepper, ok, err, no_drive)
     if (allocated(no_drive)) call move_alloc(no_drive, err)
-  end subroutine land_near
+  end subroutine close_from_rates
 
   !> Close all blocks at time t from their prediction; `ok` if each is as good as met, and so are the rates.
-  subroutine land(mechanism, plan, way, t, slack, scout, ok, err, no_drive)
+  subroutine close_all_blocks(mechanism, plan, polynomial, t, slack, stepper, ok, err, no_drive)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(hermite_type), intent(in) :: way
+    type(hermite_type), intent(in) :: polynomial
     real(wp), intent(in) :: t
     real(wp), intent(in) :: slack                            !< how many times as far off it may be
-    type(branch_stepper_type), intent(inout) :: scout
+    type(branch_stepper_type), intent(inout) :: stepper
     logical, intent(out) :: ok
     type(error_type), allocatable, intent(out) :: err        !< a pair has no pose
     type(error_type), allocatable, intent(out) :: no_drive   !< a drive has no value
@@ -181,30 +181,30 @@ contains
     integer :: b
 
     ok = .false.
-    call way%evaluate(t, q, dq, ddq)
-    scout%state%t = t
-    scout%state%q = q
-    call set_inputs(mechanism, t, scout%state%q, scout%state%dq, scout%state%ddq, no_drive)
+    call polynomial%evaluate(t, q, dq, ddq)
+    stepper%state%t = t
+    stepper%state%q = q
+    call set_inputs(mechanism, t, stepper%state%q, stepper%state%dq, stepper%state%ddq, no_drive)
     if (allocated(no_drive)) then
-      scout%state%q = scout%predictor%q
+      stepper%state%q = stepper%predictor%q
       return
     end if
     do b = 1, size(plan%blocks)
-      associate (block => plan%blocks(b), work => scout%work(b), monitor => scout%monitors(b))
-        call close_block(plan, block, scout%state, work, newton, err, 1)
-        scout%iterations = scout%iterations + newton%iterations
+      associate (block => plan%blocks(b), work => stepper%work(b), monitor => stepper%monitors(b))
+        call close_block(plan, block, stepper%state, work, newton, err, 1)
+        stepper%iterations = stepper%iterations + newton%iterations
         if (allocated(err) .or. .not. newton%converged) return
-        call factorize_trial(plan, block, scout%state, work, monitor)
+        call factorize_trial(plan, block, stepper%state, work, monitor)
         if (size(block%unknowns) > 0 .and. newton%correction > slack*trusted_correction*monitor%trial_pivot) return
-        call solve_rates(plan, block, scout%state, work)
-        call solve_accelerations(plan, block, scout%state, work)
+        call solve_rates(plan, block, stepper%state, work)
+        call solve_accelerations(plan, block, stepper%state, work)
       end associate
     end do
-    ok = maxval(abs(scout%state%dq - dq)/plan%unit_of) <= slack*trusted_rates*maxval(abs(dq)/plan%unit_of)
+    ok = maxval(abs(stepper%state%dq - dq)/plan%unit_of) <= slack*trusted_rates*maxval(abs(dq)/plan%unit_of)
     if (.not. ok) return
-    scout%steps = scout%steps + 1
-    call settle(scout)
-  end subroutine land
+    stepper%steps = stepper%steps + 1
+    call accept_start(stepper)
+  end subroutine close_all_blocks
 
   !> Position, rates and accelerations at a time within a passage.
   subroutine position_within(mechanism, plan, crossing, t, state, work, monitors, err)
@@ -221,7 +221,7 @@ contains
     integer :: b
 
     state%t = t
-    call crossing%way%evaluate(t, state%q, dq, ddq)
+    call crossing%polynomial%evaluate(t, state%q, dq, ddq)
     state%dq = dq
     state%ddq = ddq
     call set_inputs(mechanism, t, state%q, state%dq, state%ddq, err)

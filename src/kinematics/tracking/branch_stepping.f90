@@ -14,12 +14,14 @@ module mech9_branch_stepping
   use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
   use mech9_block_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
     solve_rates, solve_motion
-  use mech9_predictor, only: predictor_type, new_predictor, begin_at, depart_from, aim_at, predict, &
-    know_accelerations
-  use mech9_singularity_monitor, only: singularity_monitor_type, new_singularity_monitor, monitor_step, keep, nearness, is_near
+  use mech9_predictor, only: predictor_type, new_predictor, begin_prediction, add_position, prepare_prediction, predict, &
+    set_accelerations
+  use mech9_singularity_monitor, only: singularity_monitor_type, new_singularity_monitor, monitor_step, accept_jacobians, &
+    nearness, is_near
   implicit none
   private
-  public :: branch_stepper_type, new_branch_stepper, settle, step_towards, set_inputs, go_back, add_accelerations
+  public :: branch_stepper_type, new_branch_stepper, accept_start, step_towards, set_inputs, restore_last_position, &
+    add_accelerations
 
   !> A driven coordinate moves no farther in a step than this [rad, lengths of the mechanism], ...
   real(wp), parameter :: longest_drive = 0.25_wp
@@ -29,7 +31,7 @@ module mech9_branch_stepping
   !> stays with the only solution near by while this is below about 1/2 over the curvature.
   real(wp), parameter :: trusted_correction = 0.05_wp
   !> Change of the rates in a step times its length, against the movement: beyond it the movement turned back.
-  real(wp), parameter :: trusted_bend = 1.0_wp
+  real(wp), parameter :: trusted_rate_change = 1.0_wp
   !> Newton must at least quarter its correction from the first to the second iteration, ...
   real(wp), parameter :: trusted_contraction = 0.25_wp
   !> ... unless that is small anyway, against the least pivot.
@@ -124,13 +126,13 @@ contains
 
   !> Take the state, complete with its accelerations, as the place of departure with nothing known before it.
   !> The Jacobians of all blocks must be on trial (see mech9_watch) or unchanged.
-  pure subroutine settle(stepper)
+  pure subroutine accept_start(stepper)
     type(branch_stepper_type), intent(inout) :: stepper
 
     stepper%state%known = acceleration_known
-    call begin_at(stepper%state, stepper%predictor)
-    call keep(stepper%work, stepper%monitors)
-  end subroutine settle
+    call begin_prediction(stepper%state, stepper%predictor)
+    call accept_jacobians(stepper%work, stepper%monitors)
+  end subroutine accept_start
 
   !> One accepted step towards time t, as far as it can be trusted. `stuck` tells that even the shortest one
   !> cannot, or that too many have led nearly nowhere, and `refused_by` because of which block. Fails where a
@@ -166,7 +168,7 @@ contains
         stepper%reach = min(2.0_wp*min(max(stepper%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
         if (h < creeping_step*abs(remaining) .and. .not. driven) &
           call count_creeping(plan, stepper, stuck, refused_by)
-        call accept(plan, stepper, complete)
+        call accept_step(plan, stepper, complete)
         return
       end if
       stepper%halvings = stepper%halvings + 1
@@ -242,7 +244,7 @@ contains
     no_drive = allocated(err)
     if (no_drive) return
     stepper%correction = 0.0_wp
-    call aim_at(stepper%state%t, stepper%predictor)
+    call prepare_prediction(stepper%state%t, stepper%predictor)
     do b = 1, min(size(plan%blocks), stepper%last_block)
       refused_by = b
       associate (block => plan%blocks(b), work => stepper%work(b))
@@ -262,15 +264,15 @@ contains
         else
           call solve_rates(plan, block, stepper%state, work, no_more=.true.)
         end if
-        call judge(block, stepper%per_unit, stepper%predictor, stepper%state, newton, stepper%monitors(b)%trial_pivot, &
-                   worst)
+        call judge_step(block, stepper%per_unit, stepper%predictor, stepper%state, newton, stepper%monitors(b)%trial_pivot, &
+                        worst)
         if (worst > 1.0_wp) return
       end associate
     end do
   end subroutine try_step
 
   !> Judge a block's prediction against its correction, and its movement against its rates.
-  pure subroutine judge(block, per_unit, predictor, state, newton, pivot, worst)
+  pure subroutine judge_step(block, per_unit, predictor, state, newton, pivot, worst)
     type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in), contiguous :: per_unit(:)
     type(predictor_type), intent(in) :: predictor
@@ -278,16 +280,16 @@ contains
     type(newton_outcome_type), intent(in) :: newton
     real(wp), intent(in) :: pivot
     real(wp), intent(inout) :: worst
-    real(wp) :: move, bend
+    real(wp) :: move, rate_change
 
     if (size(block%unknowns) == 0) return
     worst = max(worst, newton%correction/(trusted_correction*pivot))
     if (newton%correction > small_correction*pivot) worst = max(worst, newton%contraction/trusted_contraction)
     move = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%q, predictor%q)
-    bend = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%dq, predictor%dq)
-    bend = bend*abs(state%t - predictor%t)
-    worst = max(worst, move/longest_move, bend/(trusted_bend*max(move, trusted_correction*pivot)))
-  end subroutine judge
+    rate_change = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%dq, predictor%dq)
+    rate_change = rate_change*abs(state%t - predictor%t)
+    worst = max(worst, move/longest_move, rate_change/(trusted_rate_change*max(move, trusted_correction*pivot)))
+  end subroutine judge_step
 
   ! Over arrays of known shape: the compiler then keeps their addresses in registers.
 
@@ -305,16 +307,16 @@ contains
   end function largest_change
 
   !> The trial becomes the place of departure.
-  pure subroutine accept(plan, stepper, complete)
+  pure subroutine accept_step(plan, stepper, complete)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper
     logical, intent(in) :: complete             !< its accelerations are known
 
     stepper%steps = stepper%steps + 1
     stepper%state%known = merge(acceleration_known, velocity_known, complete)
-    call depart_from(stepper%state, plan%unit_of, complete, stepper%correction, stepper%predictor)
-    call keep(stepper%work, stepper%monitors)
-  end subroutine accept
+    call add_position(stepper%state, plan%unit_of, complete, stepper%correction, stepper%predictor)
+    call accept_jacobians(stepper%work, stepper%monitors)
+  end subroutine accept_step
 
   !> The accelerations at the place of departure, where the follower is, if it goes without them.
   subroutine add_accelerations(plan, stepper)
@@ -327,11 +329,11 @@ contains
       call solve_motion(plan, plan%blocks(b), stepper%state, stepper%work(b))
     end do
     stepper%state%known = acceleration_known
-    call know_accelerations(stepper%state%ddq, stepper%predictor)
+    call set_accelerations(stepper%state%ddq, stepper%predictor)
   end subroutine add_accelerations
 
   !> After a step that was given up: the coordinates of the last position again.
-  pure subroutine go_back(stepper)
+  pure subroutine restore_last_position(stepper)
     type(branch_stepper_type), intent(inout) :: stepper
 
     stepper%state%t = stepper%predictor%t
@@ -339,5 +341,5 @@ contains
     stepper%state%dq = stepper%predictor%dq
     stepper%state%ddq = stepper%predictor%ddq
     stepper%state%known = nothing_known
-  end subroutine go_back
+  end subroutine restore_last_position
 end module mech9_branch_stepping

@@ -11,10 +11,11 @@ module mech9_driven_motion
   use mech9_conditioning, only: conditioning_type
   use mech9_planning, only: chain_names
   use mech9_singularity_monitor, only: factorize_trial, is_near
-  use mech9_branch_stepping, only: branch_stepper_type, new_branch_stepper, settle, step_towards, set_inputs, go_back, &
-    add_accelerations
-  use mech9_special_position, only: finding_type, look_ahead, find_escape, nothing_special, dead_point, branch_point, lost, escape
-  use mech9_special_start, only: ways_type, find_ways, start_crossing
+  use mech9_branch_stepping, only: branch_stepper_type, new_branch_stepper, accept_start, step_towards, set_inputs, &
+    restore_last_position, add_accelerations
+  use mech9_special_position, only: finding_type, look_ahead, find_escape, nothing_special, dead_point, branch_point, &
+    uncertain, escape
+  use mech9_special_start, only: starting_rates_type, find_starting_rates, start_crossing
   use mech9_branch_crossing, only: branch_crossing_type, build_crossing, position_within
   use mech9_frame_motion, only: spread_velocities
   use mech9_block_equations, only: largest_gap
@@ -78,7 +79,7 @@ contains
       call begin_crossing(mechanism, plan, driven, err)
       if (allocated(err)) return
     else
-      call settle(driven%branch_stepper_type)
+      call accept_start(driven%branch_stepper_type)
     end if
     allocate (driven%clear_until(size(plan%blocks)), source=t)
     call record(plan, driven)
@@ -92,27 +93,27 @@ contains
     logical, intent(in) :: already                 !< a block before it does so too
     type(driven_motion_type), intent(inout) :: driven
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(ways_type) :: ways
+    type(starting_rates_type) :: starting
     character(len=:), allocatable :: text
     integer :: b
 
     do b = 1, size(plan%blocks)
       if (plan%blocks(b)%first_step == block%first_step) exit
     end do
-    call find_ways(plan, block, driven%state, driven%work(b), ways)
+    call find_starting_rates(plan, block, driven%state, driven%work(b), starting)
     text = 'the mechanism starts in a singular position of '//words_of_block(plan, block)
-    if (ways%dead) then
+    if (starting%dead) then
       text = text//', a dead point, where rates are not finite; start a little beside it'
-    else if (ways%count == 2) then
+    else if (starting%count == 2) then
       text = text//', where two branches meet: '
-      call append_rates(mechanism, block, ways, text)
+      call append_rates(mechanism, block, starting, text)
       text = text//'; start a little beside it, on the one that is meant'
-    else if (ways%unclear .or. already) then
+    else if (starting%undetermined .or. already) then
       text = text//', where it is not certain how it goes on; start a little beside it'
-    else if (ways%count == 0) then
+    else if (starting%count == 0) then
       text = text//', which it cannot leave'
     else
-      driven%state%dq(block%coordinates) = ways%rates(:, 1)
+      driven%state%dq(block%coordinates) = starting%rates(:, 1)
       call spread_velocities(plan, block, driven%state)
       return
     end if
@@ -120,19 +121,19 @@ contains
   end subroutine leave_special
 
   !> Append the rates by which it could go on: "dq2 = 1, dq3 = 0.5 or dq2 = 1, dq3 = -0.5 (rad/s, m/s)".
-  pure subroutine append_rates(mechanism, block, ways, text)
+  pure subroutine append_rates(mechanism, block, starting, text)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(block_type), intent(in) :: block   !< the block
-    type(ways_type), intent(in) :: ways
+    type(starting_rates_type), intent(in) :: starting
     character(len=:), allocatable, intent(inout) :: text
     integer :: way, i, k
 
-    do way = 1, ways%count
+    do way = 1, starting%count
       if (way > 1) text = text//' or '
       do i = 1, size(block%unknowns)
         if (i > 1) text = text//', '
         k = block%coordinates(i)
-        text = text//'dq'//to_text(k)//' = '//to_text(ways%rates(i, way)/unit_of(mechanism, k), 5)
+        text = text//'dq'//to_text(k)//' = '//to_text(starting%rates(i, way)/unit_of(mechanism, k), 5)
       end do
     end do
     text = text//merge(' (rad/s, m/s)', ' (deg/s, m/s)', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
@@ -155,7 +156,7 @@ contains
                  'with certainty; start a little beside it')
       return
     end if
-    driven%monitors = driven%crossing%beyond%monitors
+    driven%monitors = driven%crossing%stepper_beyond%monitors
     call position_within(mechanism, plan, driven%crossing, driven%predictor%t, driven%state, driven%work, &
                          driven%monitors, err)
   end subroutine begin_crossing
@@ -192,22 +193,22 @@ contains
       if (stuck) then
         ! but for a coordinate that was seen to escape
         if (driven%ahead%kind /= escape .or. driven%ahead%block /= refused_by) &
-          driven%ahead = finding_type(lost, refused_by, driven%predictor%t)
+          driven%ahead = finding_type(uncertain, refused_by, driven%predictor%t)
         call refuse(mechanism, plan, driven, err)
         exit
       end if
-      call look_out(mechanism, plan, driven, direction, err)
+      call look_ahead_if_near(mechanism, plan, driven, direction, err)
       if (allocated(err)) exit
     end do
     if (allocated(err)) then
-      call go_back(driven%branch_stepper_type)
+      call restore_last_position(driven%branch_stepper_type)
     else
       call record(plan, driven)
     end if
   end subroutine advance
 
   !> After a step: where a block came near a singular position, see what lies ahead.
-  subroutine look_out(mechanism, plan, driven, direction, err)
+  subroutine look_ahead_if_near(mechanism, plan, driven, direction, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven
@@ -236,13 +237,13 @@ contains
       if (ahead%kind == branch_point) then
         call build_crossing(mechanism, plan, driven%branch_stepper_type, ahead%t, driven%crossing, err)
         if (allocated(err)) return
-        if (.not. driven%crossing%exists) driven%ahead%kind = lost
+        if (.not. driven%crossing%exists) driven%ahead%kind = uncertain
       end if
       ! up to a dead point, or to where a coordinate that escapes is far away, it goes on
-      if (driven%ahead%kind == lost) call refuse(mechanism, plan, driven, err)
+      if (driven%ahead%kind == uncertain) call refuse(mechanism, plan, driven, err)
       if (allocated(err)) return
     end do
-  end subroutine look_out
+  end subroutine look_ahead_if_near
 
   !> Go on from the far end of a passage.
   pure subroutine leave_crossing(driven)
@@ -253,10 +254,11 @@ contains
 
     do b = 1, size(driven%monitors)
       largest = driven%monitors(b)%largest_pivot
-      driven%crossing%beyond%monitors(b)%largest_pivot = max(largest, driven%crossing%beyond%monitors(b)%largest_pivot)
+      driven%crossing%stepper_beyond%monitors(b)%largest_pivot = max(largest, &
+        driven%crossing%stepper_beyond%monitors(b)%largest_pivot)
     end do
     with_accelerations = driven%with_accelerations
-    driven%branch_stepper_type = driven%crossing%beyond
+    driven%branch_stepper_type = driven%crossing%stepper_beyond
     driven%with_accelerations = with_accelerations
     driven%crossing%exists = .false.
     driven%crossings = driven%crossings + 1

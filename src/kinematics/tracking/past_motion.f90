@@ -8,7 +8,7 @@ module mech9_past_motion
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: past_motion_type, new_past_motion, forget_motion, take_motion, judge_past, weigh_past, predict_from_past, &
+  public :: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, predict_from_past, &
     acceleration_from_past
 
   !> Times before the latest one that are kept, and those of them whose positions are used.
@@ -49,16 +49,16 @@ contains
   end function new_past_motion
 
   !> The past is not what comes now.
-  pure subroutine forget_motion(past)
+  pure subroutine clear_past(past)
     type(past_motion_type), intent(inout) :: past
 
     past%count = 0
     past%with_positions = .false.
     past%weighed = .false.
-  end subroutine forget_motion
+  end subroutine clear_past
 
   !> Take positions and rates at the next time. Where the motion turns back, only the turning point is kept of what was before.
-  pure subroutine take_motion(past, t, q, dq)
+  pure subroutine add_to_past(past, t, q, dq)
     type(past_motion_type), intent(inout) :: past
     real(wp), intent(in) :: t                 !< [s]
     real(wp), intent(in) :: q(:)              !< (M) [rad, m]
@@ -72,7 +72,7 @@ contains
     if (past%latest > most) past%latest = 0
     past%t(past%latest) = t
     call copy(size(q), q, dq, past%q(:, past%latest), past%dq(:, past%latest))
-  end subroutine take_motion
+  end subroutine add_to_past
 
   ! Of known shape: no strides.
   pure subroutine copy(m, q, dq, kept_q, kept_dq)
@@ -98,7 +98,7 @@ contains
 
   !> Whether positions should be used from now on: from a step on whose prediction by rates was far off, until steps are
   !> half as long.
-  pure subroutine judge_past(past, h, correction)
+  pure subroutine choose_formula(past, h, correction)
     type(past_motion_type), intent(inout) :: past
     real(wp), intent(in) :: h                 !< length of the step that was accepted [s]
     real(wp), intent(in) :: correction        !< of its prediction, in units of the coordinates
@@ -112,10 +112,10 @@ contains
       return
     end if
     past%weighed = .false.
-  end subroutine judge_past
+  end subroutine choose_formula
 
   !> Find the weights of a prediction, unless they are there.
-  pure subroutine weigh_past(past, h)
+  pure subroutine find_weights(past, h)
     type(past_motion_type), intent(inout) :: past
     real(wp), intent(in) :: h                 !< from the latest time [s], not 0
     real(wp) :: nodes(most), per_h
@@ -142,7 +142,7 @@ contains
     else
       call weigh_rates(n, nodes, past%of_rates)
     end if
-  end subroutine weigh_past
+  end subroutine find_weights
 
   !> How many times before the latest serve a prediction: far beyond two times that are close together their round-off
   !> would be all there is.

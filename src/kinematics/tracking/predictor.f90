@@ -4,11 +4,12 @@ module mech9_predictor
   use mech9_kinds, only: wp
   use mech9_plan, only: block_type
   use mech9_state, only: state_type
-  use mech9_past_motion, only: past_motion_type, new_past_motion, forget_motion, take_motion, judge_past, weigh_past, &
+  use mech9_past_motion, only: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, &
     predict_from_past, acceleration_from_past
   implicit none
   private
-  public :: predictor_type, new_predictor, begin_at, depart_from, aim_at, predict, know_accelerations, acceleration_of
+  public :: predictor_type, new_predictor, begin_prediction, add_position, prepare_prediction, predict, set_accelerations, &
+    acceleration_of
 
   !> A prediction uses the polynomial through two positions up to this many times their distance.
   real(wp), parameter :: longest_prediction = 3.0_wp
@@ -38,7 +39,7 @@ contains
   end function new_predictor
 
   !> A place with nothing known before it; its accelerations are.
-  pure subroutine begin_at(state, predictor)
+  pure subroutine begin_prediction(state, predictor)
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(predictor_type), intent(inout) :: predictor
 
@@ -50,11 +51,11 @@ contains
     predictor%uses_past = .false.
     predictor%before = 0.0_wp
     predictor%higher = 0.0_wp
-    call forget_motion(predictor%past)
-  end subroutine begin_at
+    call clear_past(predictor%past)
+  end subroutine begin_prediction
 
   !> The next place, after a step from the last one.
-  pure subroutine depart_from(state, unit_of, complete, correction, predictor)
+  pure subroutine add_position(state, unit_of, complete, correction, predictor)
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: unit_of(:)          !< (M)
     logical, intent(in) :: complete             !< its accelerations are known
@@ -68,28 +69,28 @@ contains
       do k = 1, size(predictor%q)
         predictor%ddq(k) = acceleration_of(predictor, k)
       end do
-      call forget_motion(predictor%past)
-      call extrapolate(size(state%q), h, unit_of, state%q, state%dq, state%ddq, predictor%q, predictor%dq, predictor%ddq, &
-                       predictor%higher)
+      call clear_past(predictor%past)
+      call fit_polynomial(size(state%q), h, unit_of, state%q, state%dq, state%ddq, predictor%q, predictor%dq, predictor%ddq, &
+                          predictor%higher)
     else
-      if (predictor%past%count == 0) call take_motion(predictor%past, predictor%t, predictor%q, predictor%dq)
-      call take_motion(predictor%past, state%t, state%q, state%dq)
-      if (predictor%uses_past) call judge_past(predictor%past, abs(h), correction)
-      call go_there(size(state%q), state%q, state%dq, predictor%q, predictor%dq)
+      if (predictor%past%count == 0) call add_to_past(predictor%past, predictor%t, predictor%q, predictor%dq)
+      call add_to_past(predictor%past, state%t, state%q, state%dq)
+      if (predictor%uses_past) call choose_formula(predictor%past, abs(h), correction)
+      call copy_motion(size(state%q), state%q, state%dq, predictor%q, predictor%dq)
     end if
     predictor%t = state%t
     predictor%complete = complete
     predictor%uses_past = .not. complete
     predictor%before = abs(h)
-  end subroutine depart_from
+  end subroutine add_position
 
   !> Prepare predictions for a time other than that of the departure.
-  pure subroutine aim_at(t, predictor)
+  pure subroutine prepare_prediction(t, predictor)
     real(wp), intent(in) :: t                   !< [s]
     type(predictor_type), intent(inout) :: predictor
 
-    if (predictor%uses_past) call weigh_past(predictor%past, t - predictor%t)
-  end subroutine aim_at
+    if (predictor%uses_past) call find_weights(predictor%past, t - predictor%t)
+  end subroutine prepare_prediction
 
   !> Polynomial prediction of a block's dependent coordinates, for the time that was aimed at.
   pure subroutine predict(block, predictor, state)
@@ -106,18 +107,18 @@ contains
     ! far beyond two positions that are close together their round-off would be all there is
     near = 0.0_wp
     if (abs(h) <= longest_prediction*predictor%before) near = h
-    call follow_polynomial(size(block%coordinates), block%coordinates, size(state%q), h, near, predictor%q, predictor%dq, &
-                           predictor%ddq, predictor%higher, state%q)
+    call evaluate_polynomial(size(block%coordinates), block%coordinates, size(state%q), h, near, predictor%q, predictor%dq, &
+                             predictor%ddq, predictor%higher, state%q)
   end subroutine predict
 
   !> The accelerations at the place have been found.
-  pure subroutine know_accelerations(ddq, predictor)
+  pure subroutine set_accelerations(ddq, predictor)
     real(wp), intent(in) :: ddq(:)              !< (M)
     type(predictor_type), intent(inout) :: predictor
 
     predictor%ddq = ddq
     predictor%complete = .true.
-  end subroutine know_accelerations
+  end subroutine set_accelerations
 
   !> Acceleration of a coordinate at the place: as found, or else by the polynomial through the last rates.
   pure real(wp) function acceleration_of(predictor, k) result(ddq)
@@ -134,7 +135,7 @@ contains
   ! Over arrays of known shape: the compiler then keeps their addresses in registers.
 
   !> Positions and rates of the place.
-  pure subroutine go_there(m, q, dq, place_q, place_dq)
+  pure subroutine copy_motion(m, q, dq, place_q, place_dq)
     integer, intent(in) :: m
     real(wp), intent(in) :: q(m), dq(m)
     real(wp), intent(out) :: place_q(m), place_dq(m)
@@ -144,10 +145,10 @@ contains
       place_q(k) = q(k)
       place_dq(k) = dq(k)
     end do
-  end subroutine go_there
+  end subroutine copy_motion
 
   !> The polynomial of some coordinates at time h, its higher terms at time `near`.
-  pure subroutine follow_polynomial(n, coordinates, m, h, near, q, dq, ddq, higher, q_then)
+  pure subroutine evaluate_polynomial(n, coordinates, m, h, near, q, dq, ddq, higher, q_then)
     integer, intent(in) :: n, coordinates(n), m
     real(wp), intent(in) :: h, near, q(m), dq(m), ddq(m), higher(m, 3)
     real(wp), intent(inout) :: q_then(m)
@@ -157,18 +158,18 @@ contains
       k = coordinates(i)
       q_then(k) = q(k) + h*(dq(k) + h*(0.5_wp*ddq(k) + near*(higher(k, 1) + near*(higher(k, 2) + near*higher(k, 3)))))
     end do
-  end subroutine follow_polynomial
+  end subroutine evaluate_polynomial
 
   !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
   !> order. The later position takes the place of the earlier one.
-  pure subroutine extrapolate(m, h, unit_of, q, dq, ddq, last_q, last_dq, last_ddq, higher)
+  pure subroutine fit_polynomial(m, h, unit_of, q, dq, ddq, last_q, last_dq, last_ddq, higher)
     integer, intent(in) :: m
     real(wp), intent(in) :: h
     real(wp), dimension(m), intent(in) :: unit_of, q, dq, ddq
     real(wp), dimension(m), intent(inout) :: last_q, last_dq, last_ddq
     real(wp), intent(out) :: higher(m, 3)
     real(wp) :: d0, d1, d2, x, y, z, per_h, per_cube
-    logical :: is_noise
+    logical :: is_round_off
     integer :: k
 
     per_h = 1.0_wp/h
@@ -182,10 +183,10 @@ contains
       z = x + d1 + 4.0_wp*d0
       y = d0 + x + z
       ! without the positions, where their round-off is all there is to the last term
-      is_noise = abs(z) <= only_round_off*max(unit_of(k), abs(q(k)))
-      x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_noise)
-      y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_noise)
-      z = merge(0.0_wp, z, is_noise)
+      is_round_off = abs(z) <= only_round_off*max(unit_of(k), abs(q(k)))
+      x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_round_off)
+      y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_round_off)
+      z = merge(0.0_wp, z, is_round_off)
       higher(k, 1) = x*per_cube
       higher(k, 2) = y*per_cube*per_h
       higher(k, 3) = z*per_cube*per_h**2
@@ -193,5 +194,5 @@ contains
       last_dq(k) = dq(k)
       last_ddq(k) = ddq(k)
     end do
-  end subroutine extrapolate
+  end subroutine fit_polynomial
 end module mech9_predictor

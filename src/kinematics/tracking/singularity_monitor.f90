@@ -7,7 +7,7 @@ module mech9_singularity_monitor
   use mech9_block_solver, only: block_work_type, factorize_block
   implicit none
   private
-  public :: singularity_monitor_type, new_singularity_monitor, factorize_trial, monitor_step, keep, nearness, is_near
+  public :: singularity_monitor_type, new_singularity_monitor, factorize_trial, monitor_step, accept_jacobians, nearness, is_near
 
   !> Change of the Jacobian against its least pivot, as a sum of squares, that needs no closer look.
   real(wp), parameter :: harmless_change = 0.25_wp
@@ -15,7 +15,7 @@ module mech9_singularity_monitor
   !> rest is room for what lies beside the straight way.
   real(wp), parameter :: trusted_change = 0.5_wp
   !> A measure of steps that are too long without a measure.
-  real(wp), parameter :: hopeless = 1.0e30_wp
+  real(wp), parameter :: unbounded = 1.0e30_wp
 
   !> Near a singular position: the least pivot is below this part of the largest it was.
   real(wp), parameter :: near = 0.03_wp
@@ -50,17 +50,17 @@ contains
 
     if (size(block%unknowns) == 0) return
     call factorize_block(plan, block, state, work)
-    call take_trial(work, monitor)
+    call read_factors(work, monitor)
   end subroutine factorize_trial
 
   !> Put the Jacobian that stands factorized in `work` on trial.
-  subroutine take_trial(work, monitor)
+  subroutine read_factors(work, monitor)
     type(block_work_type), intent(inout) :: work
     type(singularity_monitor_type), intent(inout) :: monitor
 
     monitor%trial_pivot = work%equations%least_pivot()
     monitor%trial_sign = work%equations%determinant_sign()
-  end subroutine take_trial
+  end subroutine read_factors
 
   !> Factorize the block's Jacobian at the end of a step, unless it is, and judge whether a singular one lies
   !> between.
@@ -75,9 +75,9 @@ contains
     real(wp) :: change
 
     if (.not. factorized) call factorize_block(plan, block, state, work)
-    call take_trial(work, monitor)
+    call read_factors(work, monitor)
     if (.not. monitor%trial_pivot > 0.0_wp) then
-      worst = hopeless
+      worst = unbounded
       return
     end if
     change = distance(size(monitor%jacobian), work%jacobian, monitor%jacobian)/(harmless_change*monitor%trial_pivot)
@@ -117,7 +117,7 @@ contains
     type(singularity_monitor_type), intent(inout) :: monitor
     integer :: j
 
-    change = hopeless
+    change = unbounded
     if (work%equations%rank() < work%equations%n) return
     do j = 1, work%equations%n
       work%right = work%jacobian(:, j) - monitor%jacobian(:, j)
@@ -129,7 +129,7 @@ contains
   end function relative_change
 
   !> The Jacobians on trial become those of the departure.
-  pure subroutine keep(work, monitors)
+  pure subroutine accept_jacobians(work, monitors)
     type(block_work_type), intent(in) :: work(:)
     type(singularity_monitor_type), intent(inout) :: monitors(:)
     integer :: b
@@ -142,7 +142,7 @@ contains
         monitor%largest_pivot = max(monitor%largest_pivot, monitor%pivot)
       end associate
     end do
-  end subroutine keep
+  end subroutine accept_jacobians
 
   !> Whether a block is near a singular position.
   pure elemental logical function is_near(monitor)

@@ -16,12 +16,12 @@ module mech9_special_position
   implicit none
   private
   public :: finding_type, look_ahead, find_escape
-  public :: nothing_special, dead_point, branch_point, lost, escape
+  public :: nothing_special, dead_point, branch_point, uncertain, escape
 
   integer, parameter :: nothing_special = 0
   integer, parameter :: dead_point = 1      !< the motion ends there
   integer, parameter :: branch_point = 2        !< branches cross: it can go through
-  integer, parameter :: lost = 3            !< neither; but no step goes on
+  integer, parameter :: uncertain = 3            !< neither; but no step goes on
   integer, parameter :: escape = 4          !< a sliding coordinate grows beyond all bounds
 
   !> What lies ahead.
@@ -44,7 +44,7 @@ module mech9_special_position
   !> Below this part round-off rules, and it must be decided.
   real(wp), parameter :: last_pivot = 3.0e-8_wp
   !> Steps of a scout: the movement of a driven or dependent coordinate [rad, lengths of the mechanism].
-  real(wp), parameter :: scout_move = 0.1_wp
+  real(wp), parameter :: probe_move = 0.1_wp
   integer, parameter :: most_steps = 2000
   !> A step of a scout against the one before it, and how often it is shortened for drives that end.
   real(wp), parameter :: longer = 4.0_wp
@@ -68,7 +68,7 @@ contains
     integer, intent(in) :: b
     real(wp), intent(in) :: direction          !< +1, or -1 backwards in time
     type(finding_type), intent(out) :: finding
-    type(branch_stepper_type) :: scout
+    type(branch_stepper_type) :: probe
     type(error_type), allocatable :: err
     real(wp) :: usual, speed, growth, part, pivot_before, t_before, t, step
     integer :: i, trial, refused_by
@@ -80,42 +80,42 @@ contains
     call find_speeds(plan, stepper, b, speed, usual)
     usual = max(usual, speed)
     if (.not. speed > 0.0_wp) return            ! at rest: no telling where it goes
-    scout = stepper
-    scout%with_accelerations = .true.
-    scout%last_block = b
+    probe = stepper
+    probe%with_accelerations = .true.
+    probe%last_block = b
     do i = 1, most_steps
       if (.not. speed > 0.0_wp) return
-      pivot_before = scout%monitors(b)%pivot
-      t_before = scout%predictor%t
-      step = min(scout%reach, scout_move/speed, longer*scout%predictor%before)
+      pivot_before = probe%monitors(b)%pivot
+      t_before = probe%predictor%t
+      step = min(probe%reach, probe_move/speed, longer*probe%predictor%before)
       do trial = 1, most_trials
         t = t_before + direction*step
-        call step_towards(mechanism, plan, scout, t, stuck, refused_by, err)
+        call step_towards(mechanism, plan, probe, t, stuck, refused_by, err)
         if (.not. allocated(err)) exit
         step = step/longer                      ! a drive may end before a special position, or just at it
       end do
       if (allocated(err)) return
       if (stuck .and. refused_by /= b) return   ! another block has its own turn
-      finding%t = scout%predictor%t
-      call find_speeds(plan, scout, b, speed, usual)
+      finding%t = probe%predictor%t
+      call find_speeds(plan, probe, b, speed, usual)
       growth = speed/max(usual, tiny(usual))
-      part = scout%monitors(b)%pivot/scout%monitors(b)%largest_pivot
+      part = probe%monitors(b)%pivot/probe%monitors(b)%largest_pivot
       if (part > clear) return
-      call find_escape(plan, scout, b, stuck, finding)
+      call find_escape(plan, probe, b, stuck, finding)
       if (finding%kind == escape) return
-      if (follows_power_law(plan, scout, b)) cycle
+      if (follows_power_law(plan, probe, b)) cycle
       if (growth > dead_growth .or. ((stuck .or. part < last_pivot) .and. growth > crossing_growth)) then
         finding%kind = dead_point
-        finding%t = time_of_dead_point(plan, scout, b)
+        finding%t = time_of_dead_point(plan, probe, b)
         return
       else if (part < last_pivot .or. (growth < crossing_growth .and. &
                                        (part < crossing_pivot .or. (stuck .and. part < stuck_pivot)))) then
         finding%kind = branch_point
-        if (scout%monitors(b)%pivot < pivot_before) finding%t = scout%predictor%t &
-          + (scout%predictor%t - t_before)*scout%monitors(b)%pivot/(pivot_before - scout%monitors(b)%pivot)
+        if (probe%monitors(b)%pivot < pivot_before) finding%t = probe%predictor%t &
+          + (probe%predictor%t - t_before)*probe%monitors(b)%pivot/(pivot_before - probe%monitors(b)%pivot)
         return
       else if (stuck) then
-        finding%kind = lost
+        finding%kind = uncertain
         return
       end if
     end do

@@ -13,20 +13,20 @@ module mech9_special_start
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
   use mech9_branch_stepping, only: branch_stepper_type
-  use mech9_branch_crossing, only: branch_crossing_type, land_near, walk
+  use mech9_branch_crossing, only: branch_crossing_type, close_from_rates, step_until
   use mech9_frame_motion, only: spread_velocities, spread_accelerations
   use mech9_block_equations, only: block_jacobian, block_rates
   implicit none
   private
-  public :: ways_type, find_ways, start_crossing
+  public :: starting_rates_type, find_starting_rates, start_crossing
 
   !> The rates with which a block can leave a singular position.
-  type :: ways_type
+  type :: starting_rates_type
     integer :: count = 0                     !< 0, 1 or 2
     logical :: dead = .false.                !< a dead point: the inputs' rates allow none
-    logical :: unclear = .false.             !< more than one direction is free, or all terms vanish
+    logical :: undetermined = .false.             !< more than one direction is free, or all terms vanish
     real(wp), allocatable :: rates(:, :)     !< (unknowns, 2) of the coordinates themselves
-  end type ways_type
+  end type starting_rates_type
 
   !> Singular values and terms below this part of the largest are zero.
   real(wp), parameter :: nothing = 1.0e-7_wp
@@ -39,12 +39,12 @@ module mech9_special_start
 contains
 
   !> The ways of a block whose position, and whose inputs with their rates and accelerations, are in `state`.
-  subroutine find_ways(plan, block, state, work, ways)
+  subroutine find_starting_rates(plan, block, state, work, starting)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work
-    type(ways_type), intent(out) :: ways
+    type(starting_rates_type), intent(out) :: starting
     real(wp), dimension(block%equations, block%equations) :: u
     real(wp), dimension(size(block%unknowns), size(block%unknowns)) :: vt
     real(wp) :: s(size(block%unknowns)), particular(size(block%unknowns)), right(block%equations)
@@ -53,28 +53,28 @@ contains
     integer :: rank, i, n
 
     n = size(block%unknowns)
-    allocate (ways%rates(n, 2), source=0.0_wp)
+    allocate (starting%rates(n, 2), source=0.0_wp)
     call decompose(plan, block, state, work, u, s, vt)
     rank = count(s > nothing*s(1))
-    ways%unclear = n - rank /= 1
-    if (ways%unclear) return
+    starting%undetermined = n - rank /= 1
+    if (starting%undetermined) return
     call set_rates(plan, block, 0.0_wp*s, state)
     call block_rates(plan, block, 1, state, right)
-    ways%dead = norm2(matmul(right, u(:, n:))) > nothing*max(norm2(right), tiny(s))
-    if (ways%dead) return
+    starting%dead = norm2(matmul(right, u(:, n:))) > nothing*max(norm2(right), tiny(s))
+    if (starting%dead) return
     particular = -matmul(matmul(right, u(:, :rank))/s(:rank), vt(:rank, :))
     ! the quadratic from three of its values: at -1, 0 and 1
     do i = 1, 3
       call set_rates(plan, block, particular + (i - 2)*vt(n, :), state)
       call block_rates(plan, block, 2, state, terms(:, i))
     end do
-    call find_roots(matmul(transpose(u(:, n:)), terms), ways%count, roots, ways%unclear)
-    do i = 1, ways%count
-      ways%rates(:, i) = particular + roots(i)*vt(n, :)
-      where (abs(ways%rates(:, i)) <= round_off*maxval(abs(ways%rates(:, i)))) ways%rates(:, i) = 0.0_wp
-      ways%rates(:, i) = ways%rates(:, i)*plan%unit_of(block%coordinates)
+    call find_roots(matmul(transpose(u(:, n:)), terms), starting%count, roots, starting%undetermined)
+    do i = 1, starting%count
+      starting%rates(:, i) = particular + roots(i)*vt(n, :)
+      where (abs(starting%rates(:, i)) <= round_off*maxval(abs(starting%rates(:, i)))) starting%rates(:, i) = 0.0_wp
+      starting%rates(:, i) = starting%rates(:, i)*plan%unit_of(block%coordinates)
     end do
-  end subroutine find_ways
+  end subroutine find_starting_rates
 
   !> Singular values and vectors of the block's Jacobian.
   subroutine decompose(plan, block, state, work, u, s, vt)
@@ -109,11 +109,11 @@ contains
 
   !> Real roots of the quadratic with these values at -1, 0 and 1, in the direction in which it is largest.
   !> Equations that hold always have nothing in any direction.
-  pure subroutine find_roots(values, n_roots, roots, unclear)
+  pure subroutine find_roots(values, n_roots, roots, undetermined)
     real(wp), intent(in) :: values(:, :)
     integer, intent(out) :: n_roots
     real(wp), intent(out) :: roots(2)
-    logical, intent(out) :: unclear
+    logical, intent(out) :: undetermined
     real(wp) :: square(size(values, 1)), linear(size(values, 1)), constant(size(values, 1)), a, b, c, root
 
     constant = values(:, 2)
@@ -121,8 +121,8 @@ contains
     square = 0.5_wp*(values(:, 3) + values(:, 1)) - constant
     n_roots = 0
     roots = 0.0_wp
-    unclear = .not. max(norm2(square), norm2(linear)) > tiny(a)
-    if (unclear) return
+    undetermined = .not. max(norm2(square), norm2(linear)) > tiny(a)
+    if (undetermined) return
     if (norm2(square) >= max(norm2(linear), nothing*norm2(constant))) then
       a = norm2(square)
       b = dot_product(linear, square)/a
@@ -132,8 +132,8 @@ contains
       a = dot_product(square, linear)/b
       c = dot_product(constant, linear)/b
     end if
-    unclear = max(abs(a), abs(b)) <= nothing*max(abs(c), nothing)
-    if (unclear) return
+    undetermined = max(abs(a), abs(b)) <= nothing*max(abs(c), nothing)
+    if (undetermined) return
     if (abs(a) <= nothing*abs(b)) then
       n_roots = 1
       roots(1) = -c/b
@@ -141,8 +141,8 @@ contains
     end if
     root = b**2 - 4.0_wp*a*c
     ! a double root: two branches that touch
-    unclear = abs(root) <= nothing*max(b**2, abs(a*c))
-    if (unclear .or. root < 0.0_wp) return
+    undetermined = abs(root) <= nothing*max(b**2, abs(a*c))
+    if (undetermined .or. root < 0.0_wp) return
     n_roots = 2
     root = -0.5_wp*(b + sign(sqrt(root), b))
     roots = [root/a, c/root]
@@ -150,43 +150,43 @@ contains
 
   !> The way on from a start in a special position whose rates are in `scout`: three regular positions beside
   !> it. It does not exist where they cannot be reached with certainty.
-  subroutine start_crossing(mechanism, plan, scout, crossing, err)
+  subroutine start_crossing(mechanism, plan, stepper, crossing, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: scout
+    type(branch_stepper_type), intent(in) :: stepper
     type(branch_crossing_type), intent(inout) :: crossing
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(branch_stepper_type) :: walker
+    type(branch_stepper_type) :: probe
     real(wp), dimension(plan%n_coordinates, 3) :: q, dq, ddq
     real(wp) :: times(3), step, speed
     integer :: trial, i
     logical :: ok
 
     crossing%exists = .false.
-    speed = maxval(abs(scout%state%dq)/plan%unit_of)
+    speed = maxval(abs(stepper%state%dq)/plan%unit_of)
     if (.not. speed > 0.0_wp) return
     step = first_move/speed
     do trial = 1, most_trials
-      walker = scout
-      times = scout%state%t + step*[1.0_wp, 2.0_wp, 3.0_wp]
+      probe = stepper
+      times = stepper%state%t + step*[1.0_wp, 2.0_wp, 3.0_wp]
       do i = 1, 3
         if (i == 1) then
-          call land_near(mechanism, plan, times(1), walker, ok, err)
+          call close_from_rates(mechanism, plan, times(1), probe, ok, err)
         else
-          call walk(mechanism, plan, walker, times(i), ok, err)
+          call step_until(mechanism, plan, probe, times(i), ok, err)
         end if
         if (allocated(err)) return
         if (.not. ok) exit
-        q(:, i) = walker%predictor%q
-        dq(:, i) = walker%predictor%dq
-        ddq(:, i) = walker%predictor%ddq
+        q(:, i) = probe%predictor%q
+        dq(:, i) = probe%predictor%dq
+        ddq(:, i) = probe%predictor%ddq
       end do
       if (ok) then
-        call build_hermite(times, q, dq, ddq, crossing%way)
+        call build_hermite(times, q, dq, ddq, crossing%polynomial)
         crossing%exists = .true.
-        crossing%from = scout%state%t
+        crossing%from = stepper%state%t
         crossing%to = times(3)
-        crossing%beyond = walker
+        crossing%stepper_beyond = probe
         return
       end if
       step = step/3.0_wp
