@@ -21,10 +21,10 @@ contains
 
   !> A frame of the film on the page.
   pure function draw_frame(scene, film, projection, frame) result(drawing)
-    type(scene_type), intent(in) :: scene
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: frame
+    type(scene_type), intent(in) :: scene            !< nodes and items of the picture
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: frame                     !< number of the frame in the film
     type(drawing_type) :: drawing
     real(wp), allocatable :: places(:, :)
     integer :: i
@@ -40,8 +40,8 @@ contains
   !> The items in the order in which they are drawn: bodies from the farthest to the nearest, each by the mean
   !> of its nodes, but none before those that it lies upon.
   pure function drawing_order(scene, drawing) result(order)
-    type(scene_type), intent(in) :: scene
-    type(drawing_type), intent(in) :: drawing
+    type(scene_type), intent(in) :: scene      !< nodes and items of the picture
+    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
     integer, allocatable :: order(:)
     integer :: keys(scene%n_items), i, j
 
@@ -61,8 +61,10 @@ contains
 
   !> Merge sort of the numbers order(first:last) by their keys; equal ones keep their order.
   pure recursive subroutine sort(keys, order, first, last)
-    integer, intent(in) :: keys(:), first, last
-    integer, intent(inout) :: order(:)
+    integer, intent(in) :: keys(:)      !< key of each item, by the number of the item
+    integer, intent(in) :: first        !< first place of the part of `order` that is sorted
+    integer, intent(in) :: last         !< last place of that part
+    integer, intent(inout) :: order(:)  !< numbers of the items
     integer :: merged(last - first + 1), middle, i, j, n
 
     if (last <= first) return
@@ -92,10 +94,10 @@ contains
   !> The corners of a path, of segments, or of the windings of a spring, on the page [px]. None where a facing
   !> path shows its back.
   pure function outline_of(item, drawing, symbol) result(corners)
-    type(item_type), intent(in) :: item
-    type(drawing_type), intent(in) :: drawing
-    real(wp), intent(in) :: symbol                !< size of symbols
-    real(wp), allocatable :: corners(:, :)        !< (2,n)
+    type(item_type), intent(in) :: item        !< one thing to draw
+    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
+    real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
+    real(wp), allocatable :: corners(:, :)     !< (2,n)
 
     if (item%shape == spring) then
       associate (from => drawing%xy(:, item%nodes(1)), to => drawing%xy(:, item%nodes(2)), aside => symbol*item%shift(1))
@@ -115,7 +117,7 @@ contains
   end function outline_of
 
   pure real(wp) function area(corners)
-    real(wp), intent(in) :: corners(:, :)
+    real(wp), intent(in) :: corners(:, :)  !< (2,n) corners of a closed path [px]
     integer :: i, next
 
     area = 0.0_wp
@@ -127,8 +129,9 @@ contains
 
   !> How many turns a spring has, or a thread of a given length [px].
   pure integer function coil_count(is_thread, length, symbol)
-    logical, intent(in) :: is_thread
-    real(wp), intent(in) :: length, symbol
+    logical, intent(in) :: is_thread  !< it is the thread of a helical pair, not a spring
+    real(wp), intent(in) :: length    !< distance between the ends [px]
+    real(wp), intent(in) :: symbol    !< scale of symbols, 1 at full size
 
     coil_count = 10
     if (is_thread) coil_count = max(3, min(60, nint(length/(6.0_wp*symbol))))
@@ -136,19 +139,20 @@ contains
 
   !> How far its turns reach to either side [px].
   pure real(wp) function coil_height(is_thread, symbol)
-    logical, intent(in) :: is_thread
-    real(wp), intent(in) :: symbol
+    logical, intent(in) :: is_thread  !< it is the thread of a helical pair, not a spring
+    real(wp), intent(in) :: symbol    !< scale of symbols, 1 at full size
 
     coil_height = merge(3.5_wp, 6.0_wp, is_thread)*symbol
   end function coil_height
 
   !> A zigzag from one place to another: straight ends of a fifth of its length, of a thread none.
   pure function windings(from, to, is_thread, aside, symbol) result(corners)
-    real(wp), intent(in) :: from(2), to(2)       !< its ends [px]
-    logical, intent(in) :: is_thread
-    real(wp), intent(in) :: aside                !< how far it lies to the side of the line between them [px]
-    real(wp), intent(in) :: symbol               !< size of symbols
-    real(wp), allocatable :: corners(:, :)       !< (2,n)
+    real(wp), intent(in) :: from(2)         !< first end [px]
+    real(wp), intent(in) :: to(2)           !< second end [px]
+    logical, intent(in) :: is_thread        !< it is the thread of a helical pair, not a spring
+    real(wp), intent(in) :: aside           !< how far it lies to the side of the line between them [px]
+    real(wp), intent(in) :: symbol          !< scale of symbols, 1 at full size
+    real(wp), allocatable :: corners(:, :)  !< (2,n)
     real(wp) :: along(2), across(2), length, lead, at, side
     integer :: n, i
 
@@ -170,9 +174,10 @@ contains
 
   !> A cup with a piston in it, each with its rod: lines by twos.
   pure function damper(from, to, aside, symbol) result(corners)
-    real(wp), intent(in) :: from(2), to(2)       !< its ends [px]
-    real(wp), intent(in) :: aside                !< how far it lies to the side of the line between them [px]
-    real(wp), intent(in) :: symbol               !< size of symbols
+    real(wp), intent(in) :: from(2)  !< first end [px]
+    real(wp), intent(in) :: to(2)    !< second end [px]
+    real(wp), intent(in) :: aside    !< how far it lies to the side of the line between them [px]
+    real(wp), intent(in) :: symbol   !< scale of symbols, 1 at full size
     real(wp) :: corners(2, 12)
     !> Bottom and rim of the cup, and the piston, along the line.
     real(wp), parameter :: bottom = 0.42_wp, rim = 0.66_wp, piston = 0.56_wp

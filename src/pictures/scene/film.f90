@@ -49,9 +49,9 @@ contains
 
   !> A film with room for the frames of a run, and for what they hold of its columns, if they are given.
   pure function new_film(mechanism, outputs, columns) result(film)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: outputs               !< expected number of outputs
-    type(columns_type), intent(in), optional :: columns   !< of the rows that are taken, the time first
+    type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+    integer, intent(in) :: outputs                       !< expected number of outputs
+    type(columns_type), intent(in), optional :: columns  !< columns of the rows that are taken, the time first
     type(film_type) :: film
     integer :: n, frames, points
 
@@ -76,11 +76,11 @@ contains
 
   !> The next output of the run; it is kept if its turn has come, or if it is the last.
   pure subroutine take(self, mechanism, plan, state, row)
-    class(film_type), intent(inout) :: self   !< the film
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state        !< positions known
-    real(wp), intent(in) :: row(:)               !< the columns at this output, as far as the film has room for them
+    class(film_type), intent(inout) :: self        !< the film
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(state_type), intent(in) :: state          !< positions known
+    real(wp), intent(in) :: row(:)                 !< the columns at this output, as far as the film has room for them
     logical :: last
 
     last = self%n_outputs + 1 == self%expected
@@ -92,10 +92,10 @@ contains
 
   !> Go on with the paths of the points.
   pure subroutine take_points(self, mechanism, plan, state)
-    class(film_type), intent(inout) :: self   !< the film
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
+    class(film_type), intent(inout) :: self        !< the film
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(state_type), intent(in) :: state          !< position and motion of the mechanism
     real(wp) :: now(3, size(mechanism%points), 3)
     integer :: i, n, new
 
@@ -120,9 +120,10 @@ contains
 
   !> Points of the way from one output to the next, evenly in time.
   pure subroutine curve_to(from, to, duration, way)
-    real(wp), intent(in) :: from(3, 3), to(3, 3) !< position, velocity, acceleration by columns
-    real(wp), intent(in) :: duration             !< [s]
-    real(wp), intent(out) :: way(:, :)           !< (3,points)
+    real(wp), intent(in) :: from(3, 3)  !< position [m], velocity [m/s], acceleration [m/s^2] at the first output, by columns
+    real(wp), intent(in) :: to(3, 3)    !< position [m], velocity [m/s], acceleration [m/s^2] at the second output, by columns
+    real(wp), intent(in) :: duration    !< time between the two outputs [s]
+    real(wp), intent(out) :: way(:, :)  !< (3,points) places between the two outputs, without these [m]
     type(hermite_type) :: hermite
     real(wp) :: chord(3), rate(3), rate2(3), part
     integer :: n
@@ -143,10 +144,10 @@ contains
   end subroutine curve_to
 
   pure subroutine take_frame(self, plan, state, row)
-    class(film_type), intent(inout) :: self   !< the film
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(in) :: row(:)
+    class(film_type), intent(inout) :: self  !< the film
+    type(plan_type), intent(in) :: plan      !< the plan of the mechanism
+    type(state_type), intent(in) :: state    !< position and motion of the mechanism
+    real(wp), intent(in) :: row(:)           !< (columns) values of the columns at this output, the time first
     real(wp) :: omega(3), v(3)
     integer :: i
 
@@ -160,9 +161,10 @@ contains
 
   !> Where a point of a link is in a frame of the film [m].
   pure function position(self, frame, link, point)
-    class(film_type), intent(in) :: self   !< the film
-    integer, intent(in) :: frame, link
-    real(wp), intent(in) :: point(3)             !< in the link's system [m]
+    class(film_type), intent(in) :: self  !< the film
+    integer, intent(in) :: frame          !< number of the frame in the film
+    integer, intent(in) :: link           !< number of the link
+    real(wp), intent(in) :: point(3)      !< the point, in the system of the link [m]
     real(wp) :: position(3)
 
     position = self%p(:, link, frame) + turn(self%r(:, :, link, frame), point)
@@ -170,9 +172,10 @@ contains
 
   !> A direction of a link, in fixed axes, in a frame of the film.
   pure function direction(self, frame, link, vector)
-    class(film_type), intent(in) :: self   !< the film
-    integer, intent(in) :: frame, link
-    real(wp), intent(in) :: vector(3)            !< in the link's axes
+    class(film_type), intent(in) :: self  !< the film
+    integer, intent(in) :: frame          !< number of the frame in the film
+    integer, intent(in) :: link           !< number of the link
+    real(wp), intent(in) :: vector(3)     !< the direction, in the axes of the link
     real(wp) :: direction(3)
 
     direction = turn(self%r(:, :, link, frame), vector)
@@ -180,9 +183,10 @@ contains
 
   !> Which point of a link is at a place of link 1 in a frame of the film [m].
   pure function local(self, frame, link, place)
-    class(film_type), intent(in) :: self   !< the film
-    integer, intent(in) :: frame, link
-    real(wp), intent(in) :: place(3)             !< in the system of link 1 [m]
+    class(film_type), intent(in) :: self  !< the film
+    integer, intent(in) :: frame          !< number of the frame in the film
+    integer, intent(in) :: link           !< number of the link
+    real(wp), intent(in) :: place(3)      !< the place, in the system of link 1 [m]
     real(wp) :: local(3)
 
     local = turn_back(self%r(:, :, link, frame), place - self%p(:, link, frame))

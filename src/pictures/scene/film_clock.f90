@@ -21,7 +21,7 @@ contains
   !> How many decimals the times of a film have: the fewest that all of them agree with, or those that tell the
   !> frames apart. None fit where this is negative.
   pure integer function clock_decimals(film) result(decimals)
-    type(film_type), intent(in) :: film
+    type(film_type), intent(in) :: film  !< poses and values at the outputs of the run
     real(wp) :: step, scaled(film%n_frames)
 
     associate (times => film%times(:film%n_frames))
@@ -40,8 +40,8 @@ contains
 
   !> The time of a frame as it stands below a picture.
   pure function clock_text(time, decimals) result(text)
-    real(wp), intent(in) :: time                 !< [s]
-    integer, intent(in) :: decimals              !< negative: four digits, and a power of ten where it needs one
+    real(wp), intent(in) :: time     !< time of the frame [s]
+    integer, intent(in) :: decimals  !< negative: four digits, and a power of ten where it needs one
     character(len=:), allocatable :: text
     character(len=24) :: number
     character(len=8) :: form

@@ -26,10 +26,10 @@ contains
 
   !> All lines and marks of a scene, and what stands around it on the page.
   pure subroutine find_obstacles(scene, drawing, projection, obstacles)
-    type(scene_type), intent(in) :: scene              !< without labels
-    type(drawing_type), intent(in) :: drawing          !< of the first frame
-    type(projection_type), intent(in) :: projection
-    type(obstacles_type), intent(out) :: obstacles
+    type(scene_type), intent(in) :: scene            !< without labels
+    type(drawing_type), intent(in) :: drawing        !< of the first frame
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(obstacles_type), intent(out) :: obstacles   !< lines that labels should not cover
     real(wp) :: foot(2), tip(2)
     integer :: i
 
@@ -47,10 +47,10 @@ contains
   end subroutine find_obstacles
 
   pure subroutine add_item(item, drawing, symbol, obstacles)
-    type(item_type), intent(in) :: item
-    type(drawing_type), intent(in) :: drawing
-    real(wp), intent(in) :: symbol                     !< size of symbols
-    type(obstacles_type), intent(inout) :: obstacles
+    type(item_type), intent(in) :: item               !< one thing to draw
+    type(drawing_type), intent(in) :: drawing         !< where the nodes stand on the page
+    real(wp), intent(in) :: symbol                    !< scale of symbols, 1 at full size
+    type(obstacles_type), intent(inout) :: obstacles  !< lines that labels should not cover
     real(wp) :: half, across(2)
     integer :: i, next
 
@@ -77,7 +77,8 @@ contains
 
   !> The direction across a line, of unit length; zero where it has no length.
   pure function across_of(from, to) result(across)
-    real(wp), intent(in) :: from(2), to(2)             !< its ends [px]
+    real(wp), intent(in) :: from(2)  !< first end of the line [px]
+    real(wp), intent(in) :: to(2)    !< second end of the line [px]
     real(wp) :: across(2)
 
     across = [from(2) - to(2), to(1) - from(1)]
@@ -86,10 +87,11 @@ contains
 
   !> A line of an item. The number of a link may stand on what it is made of.
   pure subroutine add_line(item, from, to, half, obstacles)
-    type(item_type), intent(in) :: item
-    real(wp), intent(in) :: from(2), to(2)             !< its ends [px]
-    real(wp), intent(in) :: half                       !< how far it reaches to each side [px]
-    type(obstacles_type), intent(inout) :: obstacles
+    type(item_type), intent(in) :: item               !< one thing to draw
+    real(wp), intent(in) :: from(2)                   !< first end of the line [px]
+    real(wp), intent(in) :: to(2)                     !< second end of the line [px]
+    real(wp), intent(in) :: half                      !< how far it reaches to each side [px]
+    type(obstacles_type), intent(inout) :: obstacles  !< lines that labels should not cover
     integer :: owner
 
     owner = 0
@@ -99,9 +101,9 @@ contains
 
   !> A stand: from the joint to the ground, and the hatched ground.
   pure subroutine add_stand(at, symbol, obstacles)
-    real(wp), intent(in) :: at(2)                      !< the joint [px]
-    real(wp), intent(in) :: symbol                     !< size of symbols; negative where it stands on its head
-    type(obstacles_type), intent(inout) :: obstacles
+    real(wp), intent(in) :: at(2)                     !< place of the joint [px]
+    real(wp), intent(in) :: symbol                    !< scale of symbols, 1 at full size; negative for a stand above its joint
+    type(obstacles_type), intent(inout) :: obstacles  !< lines that labels should not cover
     real(wp) :: ground(2)
 
     ground = at + [0.0_wp, 15.0_wp*symbol]
@@ -113,10 +115,10 @@ contains
 
   !> The radius of the largest symbol at a place [px].
   pure real(wp) function clear_radius(scene, drawing, symbol, at) result(radius)
-    type(scene_type), intent(in) :: scene              !< without labels
-    type(drawing_type), intent(in) :: drawing          !< of the first frame
-    real(wp), intent(in) :: symbol                     !< size of symbols
-    real(wp), intent(in) :: at(2)                      !< the place [px]
+    type(scene_type), intent(in) :: scene      !< without labels
+    type(drawing_type), intent(in) :: drawing  !< of the first frame
+    real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
+    real(wp), intent(in) :: at(2)              !< the place on the page [px]
     integer, parameter :: solid(*) = [in_block, in_pin, in_cross, as_ring, as_ball, as_dot, as_centre, as_free, &
                                    as_coil, as_cup]
     real(wp), parameter :: radii(*) = [12.0_wp, 11.0_wp, 8.0_wp, 6.0_wp, 8.5_wp, 4.0_wp, 5.5_wp, 7.5_wp, 13.0_wp, 17.0_wp]

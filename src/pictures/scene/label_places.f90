@@ -47,11 +47,12 @@ contains
 
   !> One more line that labels should not cover.
   pure subroutine add_obstacle(self, from, to, half, weight, owner)
-    class(obstacles_type), intent(inout) :: self   !< the obstacles
-    real(wp), intent(in) :: from(2), to(2)       !< its ends [px]
-    real(wp), intent(in) :: half                 !< how far it reaches to each side [px]
-    real(wp), intent(in) :: weight               !< 1 for a bar
-    integer, intent(in), optional :: owner       !< link whose number may stand on it
+    class(obstacles_type), intent(inout) :: self  !< the obstacles
+    real(wp), intent(in) :: from(2)               !< first end of the line [px]
+    real(wp), intent(in) :: to(2)                 !< second end of the line [px]
+    real(wp), intent(in) :: half                  !< how far it reaches to each side [px]
+    real(wp), intent(in) :: weight                !< cost of covering the line; 1 for a bar
+    integer, intent(in), optional :: owner        !< link whose number may stand on the line
     type(obstacles_type) :: grown
 
     if (.not. allocated(self%half)) &
@@ -79,10 +80,10 @@ contains
 
   !> Spots of a box around a place: beside it on eight sides, then on rings farther off, the far ones with a leading line.
   pure function spots_around(at, clear, size_of_box, to_left) result(spots)
-    real(wp), intent(in) :: at(2)                !< the place [px]
-    real(wp), intent(in) :: clear                !< radius of what is drawn there [px]
-    real(wp), intent(in) :: size_of_box(2)       !< of the label [px]
-    logical, intent(in) :: to_left               !< it likes best to stand to the left and above, else to the right
+    real(wp), intent(in) :: at(2)           !< the place [px]
+    real(wp), intent(in) :: clear           !< radius of what is drawn there [px]
+    real(wp), intent(in) :: size_of_box(2)  !< width and height of the label [px]
+    logical, intent(in) :: to_left          !< the label stands preferably to the left and above, else to the right
     type(spot_type), allocatable :: spots(:)
     integer, parameter :: sides(2, 8) = reshape([1, -1, -1, -1, 1, 1, -1, 1, 0, -1, 0, 1, 1, 0, -1, 0], [2, 8])
     real(wp), parameter :: rings(4) = [7.0_wp, 20.0_wp, 36.0_wp, 56.0_wp], pi = acos(-1.0_wp)
@@ -115,8 +116,9 @@ contains
   end function spots_around
 
   pure function box_at(centre, size_of_box, cost) result(spot)
-    real(wp), intent(in) :: centre(2), size_of_box(2)   !< [px]
-    real(wp), intent(in) :: cost
+    real(wp), intent(in) :: centre(2)       !< middle of the box [px]
+    real(wp), intent(in) :: size_of_box(2)  !< width and height of the box [px]
+    real(wp), intent(in) :: cost            !< cost of the spot, in px of a covered bar
     type(spot_type) :: spot
 
     spot%low = centre - 0.5_wp*size_of_box
@@ -127,9 +129,9 @@ contains
   !> Choose a spot for every label: first each for itself, then again in view of where the others stand, until none moves.
   !> The order of the labels decides where two could give way.
   pure subroutine place_labels(obstacles, page, labels)
-    type(obstacles_type), intent(in) :: obstacles
-    real(wp), intent(in) :: page(2)              !< its width and height [px]
-    type(label_type), intent(inout) :: labels(:)
+    type(obstacles_type), intent(in) :: obstacles  !< lines that labels should not cover
+    real(wp), intent(in) :: page(2)                !< width and height of the page [px]
+    type(label_type), intent(inout) :: labels(:)   !< labels with their possible spots
     real(wp) :: cost, least
     integer :: round, i, j, best
     logical :: moved
@@ -164,9 +166,9 @@ contains
 
   !> What it costs that a label would be taken for that of another place, which is as near.
   pure real(wp) function mistakable(labels, own, spot)
-    type(label_type), intent(in) :: labels(:)
-    integer, intent(in) :: own                   !< the label that would stand there
-    type(spot_type), intent(in) :: spot
+    type(label_type), intent(in) :: labels(:)  !< labels with their possible spots
+    integer, intent(in) :: own                 !< number of the label that would stand there
+    type(spot_type), intent(in) :: spot        !< the spot that is judged
     real(wp), parameter :: mistaken = 16.0_wp, with_line = 4.0_wp, nearer = 4.0_wp, same = 3.0_wp
     integer :: i
 
@@ -183,18 +185,18 @@ contains
 
   !> The distance of a place from a label [px].
   pure real(wp) function distance(place, spot)
-    real(wp), intent(in) :: place(2)             !< [px]
-    type(spot_type), intent(in) :: spot
+    real(wp), intent(in) :: place(2)     !< place on the page [px]
+    type(spot_type), intent(in) :: spot  !< box and leading line of the label
 
     distance = norm2(max(0.0_wp, spot%low - place, place - spot%high))
   end function distance
 
   !> How much of what is drawn a spot covers, in px of a bar.
   pure real(wp) function covered(obstacles, page, spot, owner)
-    type(obstacles_type), intent(in) :: obstacles
-    real(wp), intent(in) :: page(2)
-    type(spot_type), intent(in) :: spot
-    integer, intent(in) :: owner
+    type(obstacles_type), intent(in) :: obstacles  !< lines that labels should not cover
+    real(wp), intent(in) :: page(2)                !< width and height of the page [px]
+    type(spot_type), intent(in) :: spot            !< box and leading line of the label
+    integer, intent(in) :: owner                   !< link whose own lines do not count; 0: all lines count
     real(wp), parameter :: outside = 50.0_wp
     real(wp) :: low(2), high(2), length
     logical :: meets
@@ -222,9 +224,9 @@ contains
 
   !> What it costs that a label stands where other labels and their leading lines are.
   pure real(wp) function clashes(labels, own, spot)
-    type(label_type), intent(in) :: labels(:)
-    integer, intent(in) :: own                   !< the label that would stand there
-    type(spot_type), intent(in) :: spot
+    type(label_type), intent(in) :: labels(:)  !< labels with their possible spots
+    integer, intent(in) :: own                 !< number of the label that would stand there
+    type(spot_type), intent(in) :: spot        !< the spot that is judged
     real(wp) :: overlap(2), length
     logical :: meets
     integer :: i
@@ -251,17 +253,19 @@ contains
   end function clashes
 
   pure logical function leads(spot)
-    type(spot_type), intent(in) :: spot
+    type(spot_type), intent(in) :: spot  !< box and leading line of the label
 
     leads = any(abs(spot%to - spot%from) > 0.0_wp)
   end function leads
 
   !> Whether a line meets a box, and the length of the part that lies within [px].
   pure subroutine look_within(from, to, low, high, length, meets)
-    real(wp), intent(in) :: from(2), to(2)       !< ends of the line [px]
-    real(wp), intent(in) :: low(2), high(2)      !< corners of the box [px]
-    real(wp), intent(out) :: length
-    logical, intent(out) :: meets
+    real(wp), intent(in) :: from(2)  !< first end of the line [px]
+    real(wp), intent(in) :: to(2)    !< second end of the line [px]
+    real(wp), intent(in) :: low(2)   !< corner of the box with the smallest coordinates [px]
+    real(wp), intent(in) :: high(2)  !< corner of the box with the largest coordinates [px]
+    real(wp), intent(out) :: length  !< length of the part of the line inside the box [px]
+    logical, intent(out) :: meets    !< the line and the box have a point in common
     real(wp) :: first, last, ends(2)
     integer :: i
 
@@ -284,14 +288,19 @@ contains
 
   !> Whether two lines have a point in common that is no end of them.
   pure logical function cross_each_other(a, b, c, d)
-    real(wp), intent(in) :: a(2), b(2), c(2), d(2)   !< the ends of one and of the other [px]
+    real(wp), intent(in) :: a(2)  !< first end of the first line [px]
+    real(wp), intent(in) :: b(2)  !< second end of the first line [px]
+    real(wp), intent(in) :: c(2)  !< first end of the second line [px]
+    real(wp), intent(in) :: d(2)  !< second end of the second line [px]
 
     cross_each_other = side(a, b, c)*side(a, b, d) < 0.0_wp .and. side(c, d, a)*side(c, d, b) < 0.0_wp
   end function cross_each_other
 
   !> On which side of a line a point lies: the sign.
   pure real(wp) function side(from, to, point)
-    real(wp), intent(in) :: from(2), to(2), point(2)
+    real(wp), intent(in) :: from(2)   !< first point of the line [px]
+    real(wp), intent(in) :: to(2)     !< second point of the line [px]
+    real(wp), intent(in) :: point(2)  !< the point [px]
 
     side = (to(1) - from(1))*(point(2) - from(2)) - (to(2) - from(2))*(point(1) - from(1))
   end function side

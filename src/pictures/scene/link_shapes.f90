@@ -10,8 +10,8 @@ contains
 
   !> Which of the points are not the same as one before them.
   pure function distinct_points(points, tolerance) result(chosen)
-    real(wp), intent(in) :: points(:, :)          !< (3,n)
-    real(wp), intent(in) :: tolerance
+    real(wp), intent(in) :: points(:, :)  !< (3,n) points in the system of the link [m]
+    real(wp), intent(in) :: tolerance     !< distance up to which points are the same [m]
     integer, allocatable :: chosen(:)
     logical :: new(size(points, 2))
     integer :: i, j
@@ -30,11 +30,11 @@ contains
   !> The outline of points, no two of which are the same: `closed` around a plate, where they lie in one
   !> plane; else, or where all but one lie on a rail, pairs of points that bars join.
   pure subroutine find_shape(points, tolerance, rails, order, closed)
-    real(wp), intent(in) :: points(:, :)          !< (3,n)
-    real(wp), intent(in) :: tolerance
-    integer, intent(in) :: rails(:, :)            !< (2,n) points that a bar must join
-    integer, allocatable, intent(out) :: order(:) !< numbers of points
-    logical, intent(out) :: closed
+    real(wp), intent(in) :: points(:, :)           !< (3,n) points in the system of the link, all different [m]
+    real(wp), intent(in) :: tolerance              !< distance up to which a point lies on a line or in a plane [m]
+    integer, intent(in) :: rails(:, :)             !< (2,rails) numbers of the points that a bar must join
+    integer, allocatable, intent(out) :: order(:)  !< numbers of the points: corners of the plate in turn, or two ends for each bar
+    logical, intent(out) :: closed                 !< the outline is that of a plate
     real(wp) :: normal(3), along(3), off(size(points, 2)), x(2, size(points, 2))
     integer :: first, second, third, i
 
@@ -68,9 +68,9 @@ contains
 
   !> How many points do not lie on the first rail; none where there is no rail.
   pure integer function beside(points, rails, tolerance)
-    real(wp), intent(in) :: points(:, :)
-    integer, intent(in) :: rails(:, :)
-    real(wp), intent(in) :: tolerance
+    real(wp), intent(in) :: points(:, :)  !< (3,n) points in the system of the link [m]
+    integer, intent(in) :: rails(:, :)    !< (2,rails) numbers of the two points at the ends of each rail
+    real(wp), intent(in) :: tolerance     !< distance up to which a point lies on a line or in a plane [m]
     real(wp) :: along(3)
     integer :: i
 
@@ -83,7 +83,8 @@ contains
   end function beside
 
   pure integer function farthest(points, from)
-    real(wp), intent(in) :: points(:, :), from(3)
+    real(wp), intent(in) :: points(:, :)  !< (3,n) points in the system of the link [m]
+    real(wp), intent(in) :: from(3)       !< place from which distances are measured [m]
     integer :: i
 
     farthest = maxloc([(norm2(points(:, i) - from), i=1, size(points, 2))], dim=1)
@@ -91,7 +92,7 @@ contains
 
   !> The points around a set in a plane, counterclockwise: from each one to the next so that none lies outside.
   pure function hull(x) result(around)
-    real(wp), intent(in) :: x(:, :)               !< (2,n)
+    real(wp), intent(in) :: x(:, :)  !< (2,n) coordinates in the plane [m]
     integer, allocatable :: around(:)
     real(wp) :: side
     integer :: found(size(x, 2)), n, i, next
@@ -117,9 +118,9 @@ contains
   !> The shortest bars that hold points in space together: each point is joined to the nearest one that is;
   !> the ends of a rail are joined to each other.
   pure function spanning_bars(points, rails) result(ends)
-    real(wp), intent(in) :: points(:, :)
-    integer, intent(in) :: rails(:, :)            !< without common points
-    integer, allocatable :: ends(:)               !< two for each bar
+    real(wp), intent(in) :: points(:, :)  !< (3,n) points in the system of the link [m]
+    integer, intent(in) :: rails(:, :)    !< (2,rails) numbers of the two ends of each rail; rails have no common points
+    integer, allocatable :: ends(:)       !< two for each bar
     real(wp) :: distance(size(points, 2))
     integer :: nearest(size(points, 2)), i, n, new
     logical :: joined(size(points, 2))

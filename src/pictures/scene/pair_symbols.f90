@@ -38,12 +38,12 @@ contains
 
   !> The nodes of all pairs, and the joints that they make.
   subroutine prepare_symbols(film, skeleton, projection, planar, scene, symbols)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    logical, intent(in) :: planar
-    type(scene_type), intent(inout) :: scene
-    type(symbols_type), intent(out) :: symbols
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    type(symbols_type), intent(out) :: symbols       !< nodes and joints of the pairs
     real(wp) :: more, ends(3, 2)
     integer :: k, i, side, links(2)
 
@@ -75,8 +75,8 @@ contains
 
   !> The first pair of the joint of each pair: pairs that share a link and stand at one place of it.
   pure function joints_of(film, skeleton) result(joint)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
+    type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
     integer, allocatable :: joint(:)
     real(wp) :: at(3, size(skeleton%places))
     integer :: link, i, j, a, b, k
@@ -104,8 +104,8 @@ contains
 
   !> Whether a pair only passes along this link, which guides it.
   pure logical function at_guide(place, link)
-    type(place_type), intent(in) :: place
-    integer, intent(in) :: link
+    type(place_type), intent(in) :: place  !< where the pair is drawn
+    integer, intent(in) :: link            !< number of the link
 
     at_guide = (place%kind == sliding .or. place%kind == screwing .or. place%kind == free) &
                .and. place%links(place%carrier) /= link
@@ -113,10 +113,10 @@ contains
 
   !> Guides on the frame: a centre line, and hatched ground beside it.
   subroutine add_guides(skeleton, projection, scene, symbols)
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    type(scene_type), intent(inout) :: scene
-    type(symbols_type), intent(in) :: symbols
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     real(wp) :: ends(3, 2), axis(3), down(3)
     integer :: k
 
@@ -138,12 +138,12 @@ contains
 
   !> A hatched line of the frame, beside a guide or where a spring ends.
   subroutine add_ground(projection, ends, axis, down, aside, scene)
-    type(projection_type), intent(in) :: projection
-    real(wp), intent(in) :: ends(3, 2)              !< of the guide, in the system of link 1 [m]
-    real(wp), intent(in) :: axis(3)                 !< from the first to the second one, of unit length
-    real(wp), intent(in) :: down(3)                 !< across it, where the ground is, of unit length
-    real(wp), intent(in) :: aside                   !< distance of the line from the guide [px]
-    type(scene_type), intent(inout) :: scene
+    type(projection_type), intent(in) :: projection !< from space to the page
+    real(wp), intent(in) :: ends(3, 2)      !< (3,2) ends of the guide, in the system of link 1 [m]
+    real(wp), intent(in) :: axis(3)         !< direction from the first end to the second one, in the axes of link 1, of unit length
+    real(wp), intent(in) :: down(3)         !< direction across the guide to the ground, in the axes of link 1, of unit length
+    real(wp), intent(in) :: aside           !< distance of the line from the guide [px]
+    type(scene_type), intent(inout) :: scene !< nodes and items of the picture
     integer, parameter :: most_hatches = 200
     integer :: from, to, n, i
     integer, allocatable :: hatches(:)
@@ -165,11 +165,11 @@ contains
 
   !> Stands of the joints that turn on the frame. They stand below, unless what they hold hangs from them.
   subroutine add_stands(film, skeleton, projection, scene, symbols)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    type(scene_type), intent(inout) :: scene
-    type(symbols_type), intent(inout) :: symbols
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    type(symbols_type), intent(inout) :: symbols     !< nodes and joints of the pairs
     logical :: done(size(skeleton%places))
     real(wp) :: direction(2)
     integer :: k
@@ -189,10 +189,10 @@ contains
 
   !> Whether the links at a joint of the frame are below it all the time.
   pure logical function hangs(film, skeleton, projection, k)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: k
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: k                         !< number of the pair
     real(wp) :: below, apart(3)
     integer :: frame, i, j, other
 
@@ -219,12 +219,12 @@ contains
 
   !> Symbols of all joints.
   subroutine add_symbols(film, skeleton, projection, shapes, scene, symbols)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: shapes(:)              !< items of the links
-    type(scene_type), intent(inout) :: scene
-    type(symbols_type), intent(in) :: symbols
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: shapes(:)                 !< (links) number of the item that shows each link; 0: none
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     integer, allocatable :: pairs(:)
     integer :: joint, k
 
@@ -236,12 +236,13 @@ contains
   end subroutine add_symbols
 
   subroutine add_joint(film, skeleton, projection, shapes, pairs, scene, symbols)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: shapes(:), pairs(:)
-    type(scene_type), intent(inout) :: scene
-    type(symbols_type), intent(in) :: symbols
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: shapes(:)                 !< (links) number of the item that shows each link; 0: none
+    integer, intent(in) :: pairs(:)                  !< numbers of the pairs of the joint
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     integer, allocatable :: turns(:)
     integer :: i, above(4)
     character(len=:), allocatable :: names
@@ -272,7 +273,7 @@ contains
 
   !> The names of the coordinates of some pairs.
   pure function names_of(pairs) result(names)
-    integer, intent(in) :: pairs(:)
+    integer, intent(in) :: pairs(:)  !< numbers of the pairs of the joint
     character(len=:), allocatable :: names
     integer :: i
 
@@ -284,9 +285,9 @@ contains
 
   !> The turning pairs of a joint with axes of their own: neither along one before, nor along one that slides.
   pure function turning_axes(film, skeleton, pairs) result(chosen)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    integer, intent(in) :: pairs(:)
+    type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    integer, intent(in) :: pairs(:)              !< numbers of the pairs of the joint
     integer, allocatable :: chosen(:)
     real(wp) :: axes(3, size(pairs))
     logical :: new(size(pairs))
@@ -311,13 +312,13 @@ contains
 
   !> The block of a pair that slides, or the nut of a helical one with the thread it runs on.
   subroutine add_block(place, k, projection, above, names, scene, symbols)
-    type(place_type), intent(in) :: place
-    integer, intent(in) :: k
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: above(4)
-    character(len=*), intent(in) :: names
-    type(scene_type), intent(inout) :: scene
-    type(symbols_type), intent(in) :: symbols
+    type(place_type), intent(in) :: place            !< where the pair is drawn
+    integer, intent(in) :: k                         !< number of the pair
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: above(4)                  !< numbers of the items that the symbol lies upon; 0: none
+    character(len=*), intent(in) :: names            !< names of the coordinates of the joint
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     integer :: from, to
 
     if (place%telescopic) return
@@ -332,12 +333,12 @@ contains
 
   !> A pin: a short cylinder along the axis. Of its ends the one that is turned to the viewer is drawn.
   subroutine add_pin(place, px, crossed, above, names, scene)
-    type(place_type), intent(in) :: place
-    real(wp), intent(in) :: px                    !< length of 1 px in the mechanism [m]
-    logical, intent(in) :: crossed                !< it is one of two: a bar of the cross that they make
-    integer, intent(in) :: above(4)
-    character(len=*), intent(in) :: names
-    type(scene_type), intent(inout) :: scene
+    type(place_type), intent(in) :: place     !< where the pair is drawn
+    real(wp), intent(in) :: px                !< length of 1 px in the mechanism [m]
+    logical, intent(in) :: crossed            !< the pin is one of two, a bar of the cross that they make
+    integer, intent(in) :: above(4)           !< numbers of the items that the symbol lies upon; 0: none
+    character(len=*), intent(in) :: names     !< names of the coordinates of the joint
+    type(scene_type), intent(inout) :: scene  !< nodes and items of the picture
     real(wp) :: across(3), third(3), angle
     integer :: ends(2), around(corners), i, j
 

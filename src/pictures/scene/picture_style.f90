@@ -55,14 +55,14 @@ contains
 
   !> Number of a link's colour.
   pure integer function colour_of(link)
-    integer, intent(in) :: link
+    integer, intent(in) :: link  !< number of the link
 
     colour_of = 1 + modulo(link - 2, size(dark_colours))
   end function colour_of
 
   !> The style sheet of a picture.
   pure function style_sheet(symbol) result(css)
-    real(wp), intent(in) :: symbol                !< size of symbols
+    real(wp), intent(in) :: symbol  !< scale of symbols, 1 at full size
     character(len=:), allocatable :: css
     character(len=*), parameter :: nl = new_line('a')
     integer :: i
@@ -91,8 +91,8 @@ contains
 
   !> The rule of a style: of a band the edge, which is drawn first, and the inside.
   pure function rule_of(style, symbol) result(rule)
-    type(style_type), intent(in) :: style
-    real(wp), intent(in) :: symbol
+    type(style_type), intent(in) :: style  !< how items of one kind are drawn
+    real(wp), intent(in) :: symbol         !< scale of symbols, 1 at full size
     character(len=:), allocatable :: rule
 
     rule = '.mech9 .'//trim(style%name)//' path{stroke-width:'
@@ -110,7 +110,9 @@ contains
   end function rule_of
 
   pure function colour_rules(class, dark, light) result(rules)
-    character(len=*), intent(in) :: class, dark, light
+    character(len=*), intent(in) :: class  !< selector of the class, with its point
+    character(len=*), intent(in) :: dark   !< colour of lines and texts
+    character(len=*), intent(in) :: light  !< colour of surfaces
     character(len=:), allocatable :: rules
 
     rules = '.mech9 '//class//' path{stroke:'//dark//'}.mech9 '//class//' path.i{stroke:'//light//'}'// &
@@ -120,8 +122,8 @@ contains
 
   !> A mark as SVG around the place (0, 0).
   pure function mark_svg(style, direction) result(svg)
-    integer, intent(in) :: style
-    real(wp), intent(in) :: direction(2)          !< of a stand: from the joint to the ground; of a leading line: its end
+    integer, intent(in) :: style          !< number of the mark, one of the as_ numbers of mech9_scene
+    real(wp), intent(in) :: direction(2)  !< for a stand, direction from the joint to the ground; for a leading line, its end [px]
     character(len=:), allocatable :: svg
 
     select case (style)
@@ -182,7 +184,7 @@ contains
 
   !> The data of a path through corners.
   pure function line_through(corners) result(path)
-    real(wp), intent(in) :: corners(:, :)         !< (2,n) [px]
+    real(wp), intent(in) :: corners(:, :)  !< (2,n) corners of the path [px]
     character(len=:), allocatable :: path
     integer :: i
 

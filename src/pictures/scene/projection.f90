@@ -44,12 +44,12 @@ contains
   !> The projection in which the whole motion fits the page. One that may be `turned` has room for the
   !> mechanism seen from everywhere.
   subroutine fit_projection(mechanism, film, skeleton, view, turned, projection)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(view_type), intent(in) :: view
-    logical, intent(in) :: turned
-    type(projection_type), intent(out) :: projection
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    type(film_type), intent(in) :: film               !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton       !< where each pair is drawn
+    type(view_type), intent(in) :: view               !< direction from which the mechanism is seen
+    logical, intent(in) :: turned                     !< the reader of the picture can turn the mechanism
+    type(projection_type), intent(out) :: projection  !< from space to the page
     type(box_type) :: box
     real(wp) :: middle(3), extent(2), diagonal
 
@@ -76,11 +76,11 @@ contains
 
   !> The box around pairs, points, springs and paths, in frames that stand for the film.
   subroutine enclose_motion(mechanism, film, skeleton, view, box)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(view_type), intent(in) :: view
-    type(box_type), intent(out) :: box
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
+    type(view_type), intent(in) :: view            !< direction from which the mechanism is seen
+    type(box_type), intent(out) :: box             !< bounds of what is seen, in the directions of the view [m]
     integer :: frame, k, side, i
 
     do frame = 1, film%n_frames, max(1, film%n_frames/most_looked_at)
@@ -121,10 +121,11 @@ contains
 
   !> The curve on which the first link guides the origin of the second one, where it is in a frame.
   pure subroutine enclose_curve(film, view, links, frame, box)
-    type(film_type), intent(in) :: film
-    type(view_type), intent(in) :: view
-    integer, intent(in) :: links(2), frame
-    type(box_type), intent(inout) :: box
+    type(film_type), intent(in) :: film   !< poses and values at the outputs of the run
+    type(view_type), intent(in) :: view   !< direction from which the mechanism is seen
+    integer, intent(in) :: links(2)       !< the link that guides and the link that is guided
+    integer, intent(in) :: frame          !< number of the frame in the film
+    type(box_type), intent(inout) :: box  !< bounds of what is seen, in the directions of the view [m]
     integer :: other
 
     do other = 1, film%n_frames, max(1, film%n_frames/most_looked_at)
@@ -133,9 +134,9 @@ contains
   end subroutine enclose_curve
 
   pure subroutine enclose(view, place, box)
-    type(view_type), intent(in) :: view
-    real(wp), intent(in) :: place(3)
-    type(box_type), intent(inout) :: box
+    type(view_type), intent(in) :: view   !< direction from which the mechanism is seen
+    real(wp), intent(in) :: place(3)      !< place in the system of link 1 [m]
+    type(box_type), intent(inout) :: box  !< bounds of what is seen, in the directions of the view [m]
 
     box%low = min(box%low, view%seen(place))
     box%high = max(box%high, view%seen(place))
@@ -143,9 +144,9 @@ contains
 
   !> The usual distance between the pairs of a link that are farthest apart, as seen [m]: half of the links have no more.
   pure real(wp) function usual_distance(film, skeleton, view)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(view_type), intent(in) :: view
+    type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(view_type), intent(in) :: view          !< direction from which the mechanism is seen
     real(wp), allocatable :: largest(:)
     real(wp) :: apart(3)
     logical, allocatable :: left(:)
@@ -175,8 +176,8 @@ contains
   end function usual_distance
 
   pure function place_of(film, place) result(at)
-    type(film_type), intent(in) :: film
-    class(place_type), intent(in) :: place
+    type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
+    class(place_type), intent(in) :: place  !< where the pair is drawn
     real(wp) :: at(3)
 
     at = film%position(1, place%links(place%carrier), place%points(:, place%carrier))
@@ -184,9 +185,10 @@ contains
 
   !> Where a place of link 1 stands on the page [px], and how near to the viewer it is [m].
   pure subroutine on_page(self, place, xy, depth)
-    class(projection_type), intent(in) :: self   !< the projection
-    real(wp), intent(in) :: place(3)           !< [m]
-    real(wp), intent(out) :: xy(2), depth
+    class(projection_type), intent(in) :: self  !< the projection
+    real(wp), intent(in) :: place(3)            !< place in the system of link 1 [m]
+    real(wp), intent(out) :: xy(2)              !< place on the page, to the right and down [px]
+    real(wp), intent(out) :: depth              !< distance from the centre towards the viewer [m]
     real(wp) :: seen(3)
 
     seen = self%view%seen(place - self%centre)
@@ -196,8 +198,8 @@ contains
 
   !> The length in the mechanism that is so long on the page, for symbols in space [m].
   pure real(wp) function metres(self, length)
-    class(projection_type), intent(in) :: self   !< the projection
-    real(wp), intent(in) :: length             !< [px] at full size of symbols
+    class(projection_type), intent(in) :: self  !< the projection
+    real(wp), intent(in) :: length              !< length on the page at full size of symbols [px]
 
     metres = length*self%symbol/self%scale
   end function metres

@@ -53,17 +53,17 @@ contains
 
   !> Whether the corners of an item belong together by twos, each pair a line of its own.
   pure logical function in_pairs(item)
-    type(item_type), intent(in) :: item
+    type(item_type), intent(in) :: item  !< one thing to draw
 
     in_pairs = item%shape == segments .or. item%style == in_damper
   end function in_pairs
 
   !> One more point of a link.
   pure subroutine add_node(self, link, at, node)
-    class(scene_type), intent(inout) :: self   !< the scene
-    integer, intent(in) :: link
-    real(wp), intent(in) :: at(3)             !< in the link's system [m]
-    integer, intent(out) :: node              !< its number
+    class(scene_type), intent(inout) :: self  !< the scene
+    integer, intent(in) :: link               !< number of the link that carries the point
+    real(wp), intent(in) :: at(3)             !< the point, in the system of the link [m]
+    integer, intent(out) :: node              !< number of the new node
     integer, allocatable :: links(:)
     real(wp), allocatable :: places(:, :)
 
@@ -83,13 +83,14 @@ contains
 
   !> One more thing to draw, above those that are there.
   pure subroutine add_item(self, shape, style, nodes, link, above, text, shift)
-    class(scene_type), intent(inout) :: self   !< the scene
-    integer, intent(in) :: shape, style
-    integer, intent(in) :: nodes(:)
-    integer, intent(in), optional :: link
-    integer, intent(in), optional :: above(:)      !< items; at most four count, zeros do not
-    character(len=*), intent(in), optional :: text
-    real(wp), intent(in), optional :: shift(2)
+    class(scene_type), intent(inout) :: self        !< the scene
+    integer, intent(in) :: shape                    !< what the item is made of, one of the numbers from open_path to label
+    integer, intent(in) :: style                    !< what the item stands for, one of the in_ and as_ numbers
+    integer, intent(in) :: nodes(:)                 !< numbers of the nodes
+    integer, intent(in), optional :: link           !< number of the link whose colour the item has; none unless given
+    integer, intent(in), optional :: above(:)       !< numbers of items below this one; the first four count, and zeros do not
+    character(len=*), intent(in), optional :: text  !< text of a label, or names of the coordinates of a joint
+    real(wp), intent(in), optional :: shift(2)      !< displacement from the node, to the right and down [px]; see item_type
     type(item_type), allocatable :: grown(:)
     integer :: i
 
@@ -114,7 +115,8 @@ contains
   end subroutine add_item
 
   pure subroutine move_item(from, to)
-    type(item_type), intent(inout) :: from, to
+    type(item_type), intent(inout) :: from  !< loses its nodes and its text
+    type(item_type), intent(inout) :: to    !< receives them
 
     to%shape = from%shape
     to%style = from%style
@@ -127,10 +129,10 @@ contains
 
   !> Where all nodes are in a frame of the film, in the system of link 1 [m].
   pure function places_at(self, film, frame) result(places)
-    class(scene_type), intent(in) :: self   !< the scene
-    type(film_type), intent(in) :: film
-    integer, intent(in) :: frame
-    real(wp), allocatable :: places(:, :)     !< (3,n)
+    class(scene_type), intent(in) :: self  !< the scene
+    type(film_type), intent(in) :: film    !< poses and values at the outputs of the run
+    integer, intent(in) :: frame           !< number of the frame in the film
+    real(wp), allocatable :: places(:, :)  !< (3,n)
     integer :: i
 
     allocate (places(3, self%n_nodes))

@@ -41,13 +41,13 @@ contains
 
   !> Add the labels to a scene that is whole but for them.
   subroutine add_labels(mechanism, film, projection, symbols, nodes, shapes, scene)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    type(symbols_type), intent(in) :: symbols
-    integer, intent(in) :: nodes(:)              !< of the points
-    integer, intent(in) :: shapes(:, :)          !< (2,links) item that shows a link, and a node of it; 0: none
-    type(scene_type), intent(inout) :: scene
+    type(mechanism_type), intent(in) :: mechanism !< the mechanism
+    type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection !< from space to the page
+    type(symbols_type), intent(in) :: symbols !< nodes and joints of the pairs
+    integer, intent(in) :: nodes(:)         !< (points) number of the node of each point
+    integer, intent(in) :: shapes(:, :)     !< (2,links) number of the item that shows each link, and of a node of the link; 0: none
+    type(scene_type), intent(inout) :: scene !< nodes and items of the picture
     type(obstacles_type) :: obstacles
     type(drawing_type) :: drawing
     type(label_type), allocatable :: labels(:)
@@ -85,13 +85,13 @@ contains
 
   !> The name of a point.
   subroutine enter_name(name, node, scene, drawing, projection, entry, label)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: node                  !< where the point is
-    type(scene_type), intent(in) :: scene
-    type(drawing_type), intent(in) :: drawing
-    type(projection_type), intent(in) :: projection
-    type(entry_type), intent(out) :: entry
-    type(label_type), intent(out) :: label
+    character(len=*), intent(in) :: name             !< name of the point
+    integer, intent(in) :: node                      !< number of the node of the point
+    type(scene_type), intent(in) :: scene            !< nodes and items of the picture
+    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(entry_type), intent(out) :: entry           !< what the label says and where its node is
+    type(label_type), intent(out) :: label           !< spots where the label can stand
 
     entry%style = as_name
     entry%node = node
@@ -105,14 +105,14 @@ contains
 
   !> The names of the coordinates of a joint, in a row or one below the other.
   subroutine enter_coordinates(joint, independent, symbols, scene, drawing, projection, entry, label)
-    integer, intent(in) :: joint                 !< the first pair of it
-    logical, intent(in) :: independent(:)        !< coordinates
-    type(symbols_type), intent(in) :: symbols
-    type(scene_type), intent(in) :: scene
-    type(drawing_type), intent(in) :: drawing
-    type(projection_type), intent(in) :: projection
-    type(entry_type), intent(out) :: entry
-    type(label_type), intent(out) :: label
+    integer, intent(in) :: joint                     !< number of the first pair of the joint
+    logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
+    type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
+    type(scene_type), intent(in) :: scene            !< nodes and items of the picture
+    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(entry_type), intent(out) :: entry           !< what the label says and where its node is
+    type(label_type), intent(out) :: label           !< spots where the label can stand
     type(spot_type), allocatable :: stacked(:)
     real(wp), parameter :: dislike = 2.0_wp
     real(wp) :: widths(most_labelled), clear
@@ -143,14 +143,14 @@ contains
   !> The number of a link: on its bars or its plate, beside them, or with a line that leads there; of a link that is
   !> drawn at one place only, beside that.
   subroutine enter_number(link, shape, film, scene, drawing, projection, entry, label)
-    integer, intent(in) :: link
-    integer, intent(in) :: shape(2)              !< item that shows the link, and a node of it; 0: none
-    type(film_type), intent(in) :: film
-    type(scene_type), intent(in) :: scene
-    type(drawing_type), intent(in) :: drawing
-    type(projection_type), intent(in) :: projection
-    type(entry_type), intent(out) :: entry
-    type(label_type), intent(out) :: label
+    integer, intent(in) :: link                      !< number of the link
+    integer, intent(in) :: shape(2)                  !< number of the item that shows the link, and of a node of the link; 0: none
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(scene_type), intent(in) :: scene            !< nodes and items of the picture
+    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(entry_type), intent(out) :: entry           !< what the label says and where its node is
+    type(label_type), intent(out) :: label           !< spots where the label can stand
     real(wp) :: size_of_box(2)
     real(wp), allocatable :: places(:, :)
 
@@ -180,11 +180,11 @@ contains
 
   !> Spots within a plate: in its middle, and from there towards its corners.
   subroutine look_in_plate(corners, projection, size_of_box, places, spots)
-    real(wp), intent(in) :: corners(:, :)                 !< (3,n) in the system of link 1 [m]
-    type(projection_type), intent(in) :: projection
-    real(wp), intent(in) :: size_of_box(2)                !< of the number [px]
-    real(wp), allocatable, intent(out) :: places(:, :)    !< (3,spots) in the system of link 1 [m]
-    type(spot_type), allocatable, intent(out) :: spots(:)
+    real(wp), intent(in) :: corners(:, :)                  !< (3,n) corners in the system of link 1 [m]
+    type(projection_type), intent(in) :: projection        !< from space to the page
+    real(wp), intent(in) :: size_of_box(2)                 !< width and height of the number [px]
+    real(wp), allocatable, intent(out) :: places(:, :)     !< (3,spots) in the system of link 1 [m]
+    type(spot_type), allocatable, intent(out) :: spots(:)  !< the spots, in order of preference
     integer, parameter :: most_corners = 24
     real(wp), parameter :: parts(3) = [0.25_wp, 0.5_wp, 0.7_wp]
     real(wp) :: middle(3)
@@ -210,12 +210,12 @@ contains
 
   !> Spots on bars, beside them, and at the end of a leading line.
   subroutine look_on_bars(ends, apart, projection, size_of_box, places, spots)
-    real(wp), intent(in) :: ends(:, :)                    !< (3,n) in the system of link 1 [m]
-    logical, intent(in) :: apart                          !< two for each bar, else one bar goes on to the next end
-    type(projection_type), intent(in) :: projection
-    real(wp), intent(in) :: size_of_box(2)                !< of the number [px]
-    real(wp), allocatable, intent(out) :: places(:, :)    !< (3,spots) in the system of link 1 [m]
-    type(spot_type), allocatable, intent(out) :: spots(:)
+    real(wp), intent(in) :: ends(:, :)     !< (3,n) ends of the bars in the system of link 1 [m]
+    logical, intent(in) :: apart           !< each bar has two ends of its own; else each bar goes on from the end of the one before
+    type(projection_type), intent(in) :: projection !< from space to the page
+    real(wp), intent(in) :: size_of_box(2) !< width and height of the number [px]
+    real(wp), allocatable, intent(out) :: places(:, :) !< (3,spots) in the system of link 1 [m]
+    type(spot_type), allocatable, intent(out) :: spots(:) !< the spots, in order of preference
     !> Not quite in the middle first, where the mass centre is often.
     real(wp), parameter :: parts(11) = [0.4_wp, 0.6_wp, 0.5_wp, 0.33_wp, 0.67_wp, 0.25_wp, 0.75_wp, 0.18_wp, 0.82_wp, 0.12_wp, &
                                         0.88_wp]
@@ -252,10 +252,11 @@ contains
 
   !> A spot beside a place; a line leads to one that is far.
   pure function spot_at(place, offset, projection, size_of_box, cost) result(spot)
-    real(wp), intent(in) :: place(3)             !< in the system of link 1 [m]
-    real(wp), intent(in) :: offset(2)            !< of the middle of the box [px]
-    type(projection_type), intent(in) :: projection
-    real(wp), intent(in) :: size_of_box(2), cost
+    real(wp), intent(in) :: place(3)                 !< place in the system of link 1 [m]
+    real(wp), intent(in) :: offset(2)                !< from that place to the middle of the box, to the right and down [px]
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    real(wp), intent(in) :: size_of_box(2)           !< width and height of the label [px]
+    real(wp), intent(in) :: cost                     !< cost of the spot, in px of a covered bar
     type(spot_type) :: spot
     real(wp), parameter :: near = 15.0_wp
     real(wp) :: at(2), depth
@@ -271,13 +272,13 @@ contains
 
   !> Add a label where it has been placed, with the line that leads to it.
   subroutine add_entry(entry, placed, independent, film, drawing, projection, scene)
-    type(entry_type), intent(in) :: entry
-    type(label_type), intent(in) :: placed
-    logical, intent(in) :: independent(:)
-    type(film_type), intent(in) :: film
-    type(drawing_type), intent(in) :: drawing
-    type(projection_type), intent(in) :: projection
-    type(scene_type), intent(inout) :: scene
+    type(entry_type), intent(in) :: entry            !< what the label says and where its node is
+    type(label_type), intent(in) :: placed           !< the label with its chosen spot
+    logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     real(wp) :: at(2), depth
     integer :: node
 
@@ -304,13 +305,13 @@ contains
 
   !> The names of coordinates within their common box, each a label of its own: only independent ones have their colour.
   subroutine add_coordinates(entry, node, spot, stacked, at, independent, scene)
-    type(entry_type), intent(in) :: entry
-    integer, intent(in) :: node
-    type(spot_type), intent(in) :: spot
-    logical, intent(in) :: stacked               !< one below the other
-    real(wp), intent(in) :: at(2)                !< the joint [px]
-    logical, intent(in) :: independent(:)
-    type(scene_type), intent(inout) :: scene
+    type(entry_type), intent(in) :: entry     !< what the label says and where its node is
+    integer, intent(in) :: node               !< number of the node at the joint
+    type(spot_type), intent(in) :: spot       !< box and leading line of the label
+    logical, intent(in) :: stacked            !< the names stand one below the other
+    real(wp), intent(in) :: at(2)             !< place of the joint on the page [px]
+    logical, intent(in) :: independent(:)     !< (M) which coordinates are independent
+    type(scene_type), intent(inout) :: scene  !< nodes and items of the picture
     real(wp) :: last(2)
     integer :: i, k
 
@@ -331,8 +332,8 @@ contains
 
   !> The width of a coordinate's name [px].
   pure real(wp) function width_of(k, independent)
-    integer, intent(in) :: k                     !< number of the coordinate
-    logical, intent(in) :: independent(:)
+    integer, intent(in) :: k               !< number of the coordinate
+    logical, intent(in) :: independent(:)  !< (M) which coordinates are independent
 
     width_of = merge(input_letter, coordinate_letter, independent(k))*(1 + len(to_text(k)))
   end function width_of

@@ -32,13 +32,13 @@ contains
 
   !> The scene of a film. It is drawn for one projection: symbols have their size on the page.
   subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, scene)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    logical, intent(in) :: planar               !< seen along the normal of its plane
-    logical, intent(in) :: with_masses          !< mark the mass centres
-    type(scene_type), intent(out) :: scene
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
+    logical, intent(in) :: with_masses               !< mark the mass centres
+    type(scene_type), intent(out) :: scene           !< nodes and items of the picture
     type(symbols_type) :: symbols
     type(outline_type) :: outlines(skeleton%graph%n_links)
     integer :: shapes(skeleton%graph%n_links)   !< item of each link, 0: none
@@ -71,12 +71,12 @@ contains
   !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
   !> mass centre besides.
   subroutine find_outline(mechanism, skeleton, symbols, link, scene, outline)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(skeleton_type), intent(in) :: skeleton
-    type(symbols_type), intent(in) :: symbols
-    integer, intent(in) :: link
-    type(scene_type), intent(inout) :: scene
-    type(outline_type), intent(out) :: outline
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
+    type(symbols_type), intent(in) :: symbols      !< nodes and joints of the pairs
+    integer, intent(in) :: link                    !< number of the link
+    type(scene_type), intent(inout) :: scene       !< nodes and items of the picture
+    type(outline_type), intent(out) :: outline     !< points that give the link its shape
     integer :: i, k, side
 
     associate (graph => skeleton%graph)
@@ -113,10 +113,10 @@ contains
   end subroutine find_outline
 
   subroutine add_place(scene, link, at, outline)
-    type(scene_type), intent(inout) :: scene
-    integer, intent(in) :: link
-    real(wp), intent(in) :: at(3)
-    type(outline_type), intent(inout) :: outline
+    type(scene_type), intent(inout) :: scene      !< nodes and items of the picture
+    integer, intent(in) :: link                   !< number of the link
+    real(wp), intent(in) :: at(3)                 !< the point, in the system of the link [m]
+    type(outline_type), intent(inout) :: outline  !< points that give the link its shape
     integer :: node
 
     call scene%add_node(link, at, node)
@@ -124,9 +124,9 @@ contains
   end subroutine add_place
 
   pure subroutine add_to_outline(outline, point, node)
-    type(outline_type), intent(inout) :: outline
-    real(wp), intent(in) :: point(3)
-    integer, intent(in) :: node
+    type(outline_type), intent(inout) :: outline  !< points that give the link its shape
+    real(wp), intent(in) :: point(3)              !< the point, in the system of the link [m]
+    integer, intent(in) :: node                   !< number of the node at that point
     real(wp), allocatable :: points(:, :)
     integer, allocatable :: nodes(:)
 
@@ -145,13 +145,13 @@ contains
 
   !> The plate of a link, or its bars.
   subroutine add_shape(skeleton, symbols, link, plates, scene, outline, shape)
-    type(skeleton_type), intent(in) :: skeleton
-    type(symbols_type), intent(in) :: symbols
-    integer, intent(in) :: link
-    logical, intent(in) :: plates               !< only a plate, or only bars
-    type(scene_type), intent(inout) :: scene
-    type(outline_type), intent(inout) :: outline
-    integer, intent(inout) :: shape             !< item of the link, where it gets one
+    type(skeleton_type), intent(in) :: skeleton   !< where each pair is drawn
+    type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
+    integer, intent(in) :: link                   !< number of the link
+    logical, intent(in) :: plates                 !< draw a plate and no bars, else bars and no plate
+    type(scene_type), intent(inout) :: scene      !< nodes and items of the picture
+    type(outline_type), intent(inout) :: outline  !< points that give the link its shape
+    integer, intent(inout) :: shape               !< number of the item of the link, set where the link gets one
     integer, allocatable :: chosen(:), order(:)
     logical :: closed
 
@@ -169,11 +169,11 @@ contains
 
   !> Which points of an outline are the ends of a guide that is part of the link.
   pure function rails_of(skeleton, symbols, link, outline) result(rails)
-    type(skeleton_type), intent(in) :: skeleton
-    type(symbols_type), intent(in) :: symbols
-    integer, intent(in) :: link
-    type(outline_type), intent(in) :: outline
-    integer, allocatable :: rails(:, :)         !< (2,n) numbers of points
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(symbols_type), intent(in) :: symbols    !< nodes and joints of the pairs
+    integer, intent(in) :: link                  !< number of the link
+    type(outline_type), intent(in) :: outline    !< points that give the link its shape
+    integer, allocatable :: rails(:, :)          !< (2,n) numbers of points
     integer :: ends(2), i, n
 
     allocate (rails(2, 0))
@@ -190,13 +190,13 @@ contains
 
   !> What reaches from a link to pairs that move along it.
   subroutine add_reach(skeleton, symbols, cams, link, scene, outline, shape)
-    type(skeleton_type), intent(in) :: skeleton
-    type(symbols_type), intent(in) :: symbols
-    logical, intent(in) :: cams(:)
-    integer, intent(in) :: link
-    type(scene_type), intent(inout) :: scene
-    type(outline_type), intent(inout) :: outline
-    integer, intent(inout) :: shape
+    type(skeleton_type), intent(in) :: skeleton   !< where each pair is drawn
+    type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
+    logical, intent(in) :: cams(:)                !< (M) the pair runs around a cam
+    integer, intent(in) :: link                   !< number of the link
+    type(scene_type), intent(inout) :: scene      !< nodes and items of the picture
+    type(outline_type), intent(inout) :: outline  !< points that give the link its shape
+    integer, intent(inout) :: shape               !< number of the item that shows the link; 0: none so far
     integer :: i, k, side
 
     associate (graph => skeleton%graph)
@@ -222,10 +222,10 @@ contains
 
   !> Points and mass centres.
   subroutine add_points(mechanism, with_masses, nodes, scene)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    logical, intent(in) :: with_masses
-    integer, intent(out) :: nodes(:)              !< of the points
-    type(scene_type), intent(inout) :: scene
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    logical, intent(in) :: with_masses             !< mark the mass centres
+    integer, intent(out) :: nodes(:)               !< (points) number of the node of each point
+    type(scene_type), intent(inout) :: scene       !< nodes and items of the picture
     integer :: i, node
 
     if (with_masses) then
@@ -243,9 +243,9 @@ contains
 
   !> The item that shows each link, and a node of it; a cam has an item of its own; 0: none.
   pure function shown_by(outlines, shapes, scene) result(shown)
-    type(outline_type), intent(in) :: outlines(:)
-    integer, intent(in) :: shapes(:)              !< item of each link, 0: none
-    type(scene_type), intent(in) :: scene
+    type(outline_type), intent(in) :: outlines(:)  !< (links) points that give each link its shape
+    integer, intent(in) :: shapes(:)               !< (links) number of the item of each link; 0: none
+    type(scene_type), intent(in) :: scene          !< nodes and items of the picture
     integer :: shown(2, size(shapes))
     integer :: i
 

@@ -18,10 +18,10 @@ contains
 
   !> Where the points have been.
   subroutine add_paths(mechanism, film, px, scene)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    real(wp), intent(in) :: px                  !< length of 1 px in the mechanism [m]
-    type(scene_type), intent(inout) :: scene
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
+    real(wp), intent(in) :: px                     !< length of 1 px in the mechanism [m]
+    type(scene_type), intent(inout) :: scene       !< nodes and items of the picture
     integer, allocatable :: chosen(:), nodes(:)
     integer :: i, n
 
@@ -40,8 +40,8 @@ contains
 
   !> Which points of a path have to be kept so that none of the others lies farther than `tolerance` from the line.
   pure function bends_of(path, tolerance) result(kept)
-    real(wp), intent(in) :: path(:, :)          !< (3,n)
-    real(wp), intent(in) :: tolerance           !< [m]
+    real(wp), intent(in) :: path(:, :)  !< (3,n) points of the path, in the system of link 1 [m]
+    real(wp), intent(in) :: tolerance   !< largest distance of a point that is left out from the line [m]
     integer, allocatable :: kept(:)
     logical :: keep(size(path, 2))
     integer :: from, to, i
@@ -62,7 +62,9 @@ contains
 
   !> Distance of a point from a line between two others [m].
   pure real(wp) function distance(point, from, to)
-    real(wp), intent(in) :: point(3), from(3), to(3)
+    real(wp), intent(in) :: point(3)  !< the point [m]
+    real(wp), intent(in) :: from(3)   !< first end of the line [m]
+    real(wp), intent(in) :: to(3)     !< second end of the line [m]
     real(wp) :: along(3), part
 
     along = to - from
@@ -74,10 +76,10 @@ contains
 
   !> The curves on which users' pairs guide the origins of their moving links; one that closes is the edge of a cam.
   subroutine add_curves(film, skeleton, scene, cams)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(scene_type), intent(inout) :: scene
-    logical, intent(out) :: cams(:)             !< (M) the pair runs around a cam
+    type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(scene_type), intent(inout) :: scene     !< nodes and items of the picture
+    logical, intent(out) :: cams(:)              !< (M) the pair runs around a cam
     integer :: nodes(film%n_frames), k, frame
 
     cams = .false.
@@ -101,7 +103,7 @@ contains
 
   !> Whether a curve comes back to where it began, up to two of its steps.
   pure logical function closes(curve)
-    real(wp), intent(in) :: curve(:, :)         !< (3,n)
+    real(wp), intent(in) :: curve(:, :)  !< (3,n) points of the curve, in one system [m]
     real(wp) :: length
     integer :: i
 

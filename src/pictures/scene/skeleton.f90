@@ -43,9 +43,9 @@ contains
 
   !> Places of all pairs but the sliding ones, which follow from these.
   subroutine make_skeleton(mechanism, film, skeleton)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film          !< its first frame is looked at
-    type(skeleton_type), intent(out) :: skeleton
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(film_type), intent(in) :: film            !< poses of the run; only the first frame is used
+    type(skeleton_type), intent(out) :: skeleton   !< where each pair is drawn
     type(pair_axes_type), allocatable :: axes(:)
 
     axes = pair_axes(mechanism%pairs)
@@ -59,8 +59,8 @@ contains
 
   !> Move points that are far off along their axes.
   subroutine draw_near(film, skeleton)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(inout) :: skeleton
+    type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
+    type(skeleton_type), intent(inout) :: skeleton  !< where each pair is drawn
     real(wp), dimension(3, size(skeleton%places)) :: given, directions
     real(wp) :: shift(size(skeleton%places)), widest, allowed
     integer :: k
@@ -87,11 +87,12 @@ contains
   !> How far along the axis of a turning pair the nearest pair of its links is, in that sense. `widest` grows to the
   !> distance of the axis from one of them.
   pure subroutine look_along(skeleton, given, axis, k, along, widest)
-    type(skeleton_type), intent(in) :: skeleton
-    real(wp), intent(in) :: given(:, :), axis(3)
-    integer, intent(in) :: k
-    real(wp), intent(inout) :: along             !< zero where there is none [m]
-    real(wp), intent(inout) :: widest            !< [m]
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    real(wp), intent(in) :: given(:, :)          !< (3,M) given point of each axis, in the system of link 1 [m]
+    real(wp), intent(in) :: axis(3)              !< direction of the axis of the pair, in the axes of link 1
+    integer, intent(in) :: k                     !< number of the pair
+    real(wp), intent(inout) :: along             !< distance along the axis to the nearest pair; unchanged where there is none [m]
+    real(wp), intent(inout) :: widest            !< largest distance of a pair from the axis so far [m]
     real(wp) :: apart(3), part
     integer :: side, link, i, j
     logical :: first
@@ -112,7 +113,7 @@ contains
   end subroutine look_along
 
   pure real(wp) function median(values)
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)  !< the values, one at least
     real(wp) :: least
     integer :: i
 
@@ -126,9 +127,9 @@ contains
 
   !> Diagonal of the box around everything of the mechanism that has a place.
   pure real(wp) function size_of(mechanism, film, places)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(place_type), intent(in) :: places(:)
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
+    type(place_type), intent(in) :: places(:)      !< (M) where each pair is drawn
     real(wp) :: low(3), high(3)
     integer :: i, side
 
@@ -157,8 +158,9 @@ contains
   end function size_of
 
   pure subroutine enclose(place, low, high)
-    real(wp), intent(in) :: place(3)
-    real(wp), intent(inout) :: low(3), high(3)
+    real(wp), intent(in) :: place(3)    !< place in the system of link 1 [m]
+    real(wp), intent(inout) :: low(3)   !< smallest coordinates so far [m]
+    real(wp), intent(inout) :: high(3)  !< largest coordinates so far [m]
 
     low = min(low, place)
     high = max(high, place)

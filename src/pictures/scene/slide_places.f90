@@ -29,8 +29,8 @@ contains
   !> Places of all pairs that slide; the others have theirs.
   subroutine place_slides(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(inout) :: skeleton
+    type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
+    type(skeleton_type), intent(inout) :: skeleton  !< where each pair is drawn
     type(pins_type) :: pins(2)
     integer :: k, side
 
@@ -50,10 +50,11 @@ contains
 
   !> The places of a link's other pairs that turn or are the user's; without any, its points.
   subroutine find_pins(mechanism, skeleton, k, link, pins)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(skeleton_type), intent(in) :: skeleton
-    integer, intent(in) :: k, link
-    type(pins_type), intent(out) :: pins
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
+    integer, intent(in) :: k                       !< number of the sliding pair
+    integer, intent(in) :: link                    !< number of one of its links
+    type(pins_type), intent(out) :: pins           !< places of the other pairs of the link
     integer :: i, j, side, own
 
     associate (graph => skeleton%graph)
@@ -78,8 +79,8 @@ contains
   end subroutine find_pins
 
   pure subroutine add_pin(pins, point)
-    type(pins_type), intent(inout) :: pins
-    real(wp), intent(in) :: point(3)
+    type(pins_type), intent(inout) :: pins  !< places of the other pairs of the link
+    real(wp), intent(in) :: point(3)        !< the point, in the system of the link [m]
 
     pins%count = pins%count + 1
     pins%at(:, pins%count) = point
@@ -87,9 +88,10 @@ contains
 
   !> Whether a link has pins, all at one place, on a line.
   pure logical function all_at_one_place(self, point, axis, tolerance)
-    class(pins_type), intent(in) :: self   !< the pins
-    real(wp), intent(in) :: point(3), axis(3)    !< of the line
-    real(wp), intent(in) :: tolerance            !< [m]
+    class(pins_type), intent(in) :: self  !< the pins
+    real(wp), intent(in) :: point(3)      !< a point of the line, in the system of the link [m]
+    real(wp), intent(in) :: axis(3)       !< direction of the line, in the axes of the link, of unit length
+    real(wp), intent(in) :: tolerance     !< distance up to which places are the same [m]
     integer :: i
 
     all_at_one_place = self%count > 0
@@ -101,7 +103,9 @@ contains
 
   !> From a line to a point, across the line.
   pure function off_line(place, point, axis) result(across)
-    real(wp), intent(in) :: place(3), point(3), axis(3)
+    real(wp), intent(in) :: place(3)  !< the point [m]
+    real(wp), intent(in) :: point(3)  !< a point of the line [m]
+    real(wp), intent(in) :: axis(3)   !< direction of the line, of unit length
     real(wp) :: across(3)
 
     across = place - point
@@ -111,10 +115,10 @@ contains
   !> A tube and a rod: each of the two moving links has its pins at one place of the axis, and these two never
   !> come together.
   subroutine judge_telescopic(film, pins, size, place)
-    type(film_type), intent(in) :: film
-    type(pins_type), intent(in) :: pins(2)
-    real(wp), intent(in) :: size
-    type(place_type), intent(inout) :: place
+    type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
+    type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
+    real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
+    type(place_type), intent(inout) :: place  !< where the sliding pair is drawn
     real(wp) :: apart, least, most
     integer :: frame, side
 
@@ -140,9 +144,9 @@ contains
 
   !> The frame guides; else the link whose only pin is on the axis is a block; else the moving link is.
   subroutine choose_carrier(pins, size, place)
-    type(pins_type), intent(in) :: pins(2)
-    real(wp), intent(in) :: size
-    type(place_type), intent(inout) :: place
+    type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
+    real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
+    type(place_type), intent(inout) :: place  !< where the sliding pair is drawn
     logical :: is_block(2)
     integer :: side
 
@@ -160,9 +164,9 @@ contains
   !> Put the block to the nearest pin of its link if that is on the axis; else beside that pin, unless the given
   !> point is near that place.
   subroutine seat_block(pins, size, place)
-    type(pins_type), intent(in) :: pins
-    real(wp), intent(in) :: size
-    type(place_type), intent(inout) :: place
+    type(pins_type), intent(in) :: pins       !< pins of the link that carries the block
+    real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
+    type(place_type), intent(inout) :: place  !< where the sliding pair is drawn
     real(wp) :: across(3), foot(3), distance, nearest
     integer :: i
 
@@ -185,8 +189,8 @@ contains
 
   !> How far the carrier's point travels in the other link.
   subroutine find_travel(film, place)
-    type(film_type), intent(in) :: film
-    type(place_type), intent(inout) :: place
+    type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
+    type(place_type), intent(inout) :: place  !< where the sliding pair is drawn
     real(wp) :: at(3), along
     integer :: frame, guide
 

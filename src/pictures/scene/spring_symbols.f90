@@ -24,13 +24,13 @@ contains
 
   !> All springs and dampers. A load that has neither, such as a constant force on a coordinate, is not drawn.
   subroutine add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: shapes(:)              !< items of the links; 0: none
-    type(scene_type), intent(inout) :: scene
-    type(symbols_type), intent(in) :: symbols
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: shapes(:)                 !< (links) number of the item that shows each link; 0: none
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     integer :: nodes(2), above(4), i, side
 
     do i = 1, size(mechanism%loads)
@@ -54,10 +54,11 @@ contains
 
   !> A spring, a damper, or both side by side.
   subroutine add_between(nodes, is_spring, is_damper, above, scene)
-    integer, intent(in) :: nodes(2)               !< its ends
-    logical, intent(in) :: is_spring, is_damper
-    integer, intent(in) :: above(4)               !< items that it lies upon
-    type(scene_type), intent(inout) :: scene
+    integer, intent(in) :: nodes(2)           !< numbers of the nodes at its ends
+    logical, intent(in) :: is_spring          !< there is a spring
+    logical, intent(in) :: is_damper          !< there is a damper
+    integer, intent(in) :: above(4)           !< numbers of the items that it lies upon; 0: none
+    type(scene_type), intent(inout) :: scene  !< nodes and items of the picture
     real(wp) :: aside(2)
 
     aside = 0.0_wp
@@ -69,13 +70,13 @@ contains
   !> A spring and damper on a coordinate: around a joint that turns, along the guide of one that slides, between the
   !> block and a place beyond an end of the guide, or in a tube from end to end.
   subroutine add_on_coordinate(load, film, skeleton, projection, above, scene, symbols)
-    type(coordinate_load_type), intent(in) :: load
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: above(4)               !< items of the links of the pair
-    type(scene_type), intent(inout) :: scene
-    type(symbols_type), intent(in) :: symbols
+    type(coordinate_load_type), intent(in) :: load   !< stiffness and damping on the coordinate
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: above(4)                  !< numbers of the items of the links of the pair; 0: none
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     integer :: nodes(2), k
     logical :: is_spring, is_damper
 
@@ -103,10 +104,10 @@ contains
   !> A place beyond an end of a guide, with the guide lengthened to there, so that a spring to the block is seen: beyond
   !> the first end, or the other one where the page ends before.
   subroutine add_support(guide, projection, node, scene)
-    integer, intent(in) :: guide(2)               !< nodes of its ends
-    type(projection_type), intent(in) :: projection
-    integer, intent(out) :: node
-    type(scene_type), intent(inout) :: scene
+    integer, intent(in) :: guide(2)                  !< numbers of the nodes at the ends of the guide
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(out) :: node                     !< number of the new node at the support
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     real(wp), parameter :: beyond = 34.0_wp, edge = 14.0_wp   ! [px]
     real(wp) :: at(3), along(3), xy(2), depth
     integer :: side
@@ -127,11 +128,12 @@ contains
   !> The hatched wall that holds the fixed end of a spring, across it as it is seen in the first frame. A joint of the
   !> frame at the same place has a stand already.
   subroutine add_wall(film, skeleton, projection, fixed, other, scene)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: fixed, other           !< nodes of the ends
-    type(scene_type), intent(inout) :: scene
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: fixed                     !< number of the node at the fixed end
+    integer, intent(in) :: other                     !< number of the node at the other end
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     real(wp) :: at(3), away(3), across(3), ends(3, 2)
     integer :: k
 

@@ -29,13 +29,13 @@ contains
 
   !> Write a frame of the film as a picture of its own. Errors are exit_file.
   subroutine save_sketch(path, title, scene, film, projection, frame, err)
-    character(len=*), intent(in) :: path
-    character(len=*), intent(in) :: title          !< any text
-    type(scene_type), intent(in) :: scene
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: frame
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path               !< name of the file
+    character(len=*), intent(in) :: title              !< any text
+    type(scene_type), intent(in) :: scene              !< nodes and items of the picture
+    type(film_type), intent(in) :: film                !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection    !< from space to the page
+    integer, intent(in) :: frame                       !< number of the frame in the film
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(page_type) :: page
 
     call page%line('<?xml version="1.0" encoding="UTF-8"?>')
@@ -45,13 +45,13 @@ contains
 
   !> The picture of a frame, into a page.
   subroutine put_picture(title, scene, film, projection, frame, all_axes, page)
-    character(len=*), intent(in) :: title
-    type(scene_type), intent(in) :: scene
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: frame
-    logical, intent(in) :: all_axes                !< also one that points to the viewer: the picture can be turned
-    type(page_type), intent(inout) :: page
+    character(len=*), intent(in) :: title           !< title of the mechanism, any text
+    type(scene_type), intent(in) :: scene           !< nodes and items of the picture
+    type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection !< from space to the page
+    integer, intent(in) :: frame                    !< number of the frame in the film
+    logical, intent(in) :: all_axes                 !< draw also an axis that points to the viewer, for a picture that can be turned
+    type(page_type), intent(inout) :: page          !< text to which the picture is appended
     type(drawing_type) :: drawing
     integer, allocatable :: order(:)
     integer :: i
@@ -73,9 +73,9 @@ contains
 
   !> The beginning of a picture, up to what it shows.
   subroutine put_opening(title, projection, page)
-    character(len=*), intent(in) :: title
-    type(projection_type), intent(in) :: projection
-    type(page_type), intent(inout) :: page
+    character(len=*), intent(in) :: title            !< title of the mechanism, any text
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(page_type), intent(inout) :: page           !< text to which the picture is appended
 
     call page%line('<svg xmlns="http://www.w3.org/2000/svg" class="mech9" viewBox="0 0 '//decimal(projection%width)//' '// &
                    decimal(projection%height)//'" width="'//decimal(projection%width)//'" height="'// &
@@ -88,11 +88,11 @@ contains
 
   !> One item of the scene; `number` tells a script which.
   subroutine put_item(item, number, drawing, symbol, page)
-    type(item_type), intent(in) :: item
-    integer, intent(in) :: number
-    type(drawing_type), intent(in) :: drawing
-    real(wp), intent(in) :: symbol
-    type(page_type), intent(inout) :: page
+    type(item_type), intent(in) :: item        !< one thing to draw
+    integer, intent(in) :: number              !< number of the item in the scene
+    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
+    real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
+    type(page_type), intent(inout) :: page     !< text to which the picture is appended
     character(len=:), allocatable :: path
 
     call page%put(opening_of(item, number))
@@ -113,8 +113,8 @@ contains
 
   !> The opening tag of an item, still open: its classes, its number, of a joint its coordinates.
   pure function opening_of(item, number) result(tag)
-    type(item_type), intent(in) :: item
-    integer, intent(in) :: number
+    type(item_type), intent(in) :: item  !< one thing to draw
+    integer, intent(in) :: number        !< number of the item in the scene
     character(len=:), allocatable :: tag
 
     tag = '<g class="'//classes_of(item)//'" data-i="'//to_text(number)//'"'
@@ -124,14 +124,14 @@ contains
 
   !> A label as SVG at the place (0, 0).
   pure function label_svg(item) result(svg)
-    type(item_type), intent(in) :: item
+    type(item_type), intent(in) :: item  !< one thing to draw
     character(len=:), allocatable :: svg
 
     svg = '<text class="'//classes_of(item)//'">'//xml_text(item%text)//'</text>'
   end function label_svg
 
   pure function classes_of(item) result(classes)
-    type(item_type), intent(in) :: item
+    type(item_type), intent(in) :: item  !< one thing to draw
     character(len=:), allocatable :: classes
 
     classes = trim(styles(item%style)%name)
@@ -142,8 +142,8 @@ contains
 
   !> Where a mark or a label stands.
   pure function place_of(item, drawing) result(text)
-    type(item_type), intent(in) :: item
-    type(drawing_type), intent(in) :: drawing
+    type(item_type), intent(in) :: item        !< one thing to draw
+    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
     character(len=:), allocatable :: text
     real(wp) :: at(2)
 
@@ -154,8 +154,8 @@ contains
 
   !> Corners as the data of a path.
   pure function path_of(item, corners) result(path)
-    type(item_type), intent(in) :: item
-    real(wp), intent(in) :: corners(:, :)        !< (2,n) [px]
+    type(item_type), intent(in) :: item    !< one thing to draw
+    real(wp), intent(in) :: corners(:, :)  !< (2,n) corners of the path [px]
     character(len=:), allocatable :: path
     character(len=24) :: corner
     integer :: i, used, length
@@ -180,10 +180,10 @@ contains
 
   !> Title, scale and the directions of the axes.
   subroutine put_surroundings(title, projection, all_axes, page)
-    character(len=*), intent(in) :: title
-    type(projection_type), intent(in) :: projection
-    logical, intent(in) :: all_axes
-    type(page_type), intent(inout) :: page
+    character(len=*), intent(in) :: title            !< title of the mechanism, any text
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    logical, intent(in) :: all_axes                  !< draw also an axis that points to the viewer
+    type(page_type), intent(inout) :: page           !< text to which the picture is appended
     real(wp) :: bar, foot
 
     foot = projection%height - 14.0_wp
@@ -198,9 +198,9 @@ contains
 
   !> The title: in one line if it fits, else smaller in up to three.
   subroutine put_title(title, projection, page)
-    character(len=*), intent(in) :: title        !< any text
-    type(projection_type), intent(in) :: projection
-    type(page_type), intent(inout) :: page
+    character(len=*), intent(in) :: title            !< any text
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(page_type), intent(inout) :: page           !< text to which the picture is appended
     type(string_type), allocatable :: lines(:)
     integer :: i
 
@@ -217,14 +217,14 @@ contains
 
   !> The length that the bar of a picture's scale stands for [m].
   pure real(wp) function scale_length(projection)
-    type(projection_type), intent(in) :: projection
+    type(projection_type), intent(in) :: projection  !< from space to the page
 
     scale_length = round_length(90.0_wp/projection%scale)
   end function scale_length
 
   !> The largest of 1, 2, 5, 10, ... that is not longer.
   pure real(wp) function round_length(length)
-    real(wp), intent(in) :: length
+    real(wp), intent(in) :: length  !< the length, positive [m]
     real(wp) :: power
 
     power = 10.0_wp**floor(log10(length))
@@ -238,9 +238,9 @@ contains
 
   !> The axes of link 1, as they are seen; one that points to the viewer is not drawn.
   subroutine put_axes(projection, all_axes, page)
-    type(projection_type), intent(in) :: projection
-    logical, intent(in) :: all_axes
-    type(page_type), intent(inout) :: page
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    logical, intent(in) :: all_axes                  !< draw also an axis that points to the viewer
+    type(page_type), intent(inout) :: page           !< text to which the picture is appended
     character, parameter :: names(3) = ['x', 'y', 'z']
     real(wp) :: tip(2)
     integer :: i

@@ -24,8 +24,8 @@ contains
 
   !> What is seen of a vector: its parts to the right, upwards, and towards the viewer.
   pure function seen(self, vector)
-    class(view_type), intent(in) :: self   !< the view
-    real(wp), intent(in) :: vector(3)
+    class(view_type), intent(in) :: self  !< the view
+    real(wp), intent(in) :: vector(3)     !< the vector, in the axes of link 1
     real(wp) :: seen(3)
 
     seen = [dot_product(self%right, vector), dot_product(self%up, vector), dot_product(self%toward, vector)]
@@ -34,8 +34,8 @@ contains
   !> The view of somebody who stands in a direction from the mechanism; `upward` points up in the picture
   !> as far as it can.
   pure function view_from(direction, upward) result(view)
-    real(wp), intent(in) :: direction(3)         !< not zero
-    real(wp), intent(in) :: upward(3)            !< not zero
+    real(wp), intent(in) :: direction(3)  !< direction from the mechanism to the viewer, in the axes of link 1, not zero
+    real(wp), intent(in) :: upward(3)     !< direction that points up in the picture, in the axes of link 1, not zero
     type(view_type) :: view
     real(wp) :: helper(3)
 
@@ -50,7 +50,8 @@ contains
 
   !> The view in which one axis of link 1 points to the right and another one up.
   pure function view_of_axes(right, up) result(view)
-    integer, intent(in) :: right, up             !< two of 1, 2, 3, not the same
+    integer, intent(in) :: right  !< number of the axis to the right: 1, 2 or 3
+    integer, intent(in) :: up     !< number of the axis upwards, another one than `right`
     type(view_type) :: view
 
     view%right = 0.0_wp
@@ -63,10 +64,10 @@ contains
   !> A view as it is written: two axes, the first to the right and the second up (xy, xz, zy ...); `iso`;
   !> or a direction towards the viewer as three numbers with commas. An error has the code asked for.
   pure subroutine read_view(text, code, view, err)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: code                  !< of the error, one of the exit_ codes
-    type(view_type), intent(out) :: view
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: text               !< the view as the user wrote it
+    integer, intent(in) :: code                        !< exit code of the error, one of the exit_ codes
+    type(view_type), intent(out) :: view               !< direction from which the mechanism is seen
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: word
     real(wp) :: direction(3)
     integer :: right, up
@@ -96,9 +97,9 @@ contains
 
   !> Three numbers with commas between, not all zero.
   pure subroutine read_direction(text, direction, known)
-    character(len=*), intent(in) :: text
-    real(wp), intent(out) :: direction(3)
-    logical, intent(out) :: known
+    character(len=*), intent(in) :: text   !< the text, in small letters
+    real(wp), intent(out) :: direction(3)  !< the direction, in the axes of link 1
+    logical, intent(out) :: known          !< the text is a direction
     type(numeral_type) :: numeral
     integer :: i, first, last
 

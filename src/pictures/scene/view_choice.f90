@@ -23,11 +23,11 @@ contains
 
   !> The view unless the user asks for another one.
   pure subroutine choose_view(mechanism, film, skeleton, view, planar)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(view_type), intent(out) :: view
-    logical, intent(out) :: planar
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
+    type(view_type), intent(out) :: view           !< direction from which the mechanism is seen
+    logical, intent(out) :: planar                 !< all links move parallel to one plane
     real(wp) :: normal(3), upward(3)
 
     upward = [0.0_wp, 0.0_wp, 1.0_wp]
@@ -50,10 +50,10 @@ contains
   !> Whether all links move parallel to one plane: every pair turns about its normal, or slides across it; a user's
   !> pair does so in all frames of the film.
   pure subroutine is_planar(film, skeleton, planar, normal)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    logical, intent(out) :: planar
-    real(wp), intent(out) :: normal(3)           !< where planar
+    type(film_type), intent(in) :: film      !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton !< where each pair is drawn
+    logical, intent(out) :: planar           !< all links move parallel to one plane
+    real(wp), intent(out) :: normal(3)       !< normal of the plane in the axes of link 1, of unit length; zero where none was found
     real(wp) :: axis(3)
     integer :: k
 
@@ -79,9 +79,9 @@ contains
 
   !> The axis of a turning pair; without any, the normal of two sliding directions; zero where there is none.
   pure subroutine find_normal(film, skeleton, normal)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    real(wp), intent(out) :: normal(3)
+    type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    real(wp), intent(out) :: normal(3)           !< possible normal in the axes of link 1, of unit length; zero where there is none
     real(wp) :: axis(3), first(3)
     integer :: k
 
@@ -106,10 +106,10 @@ contains
 
   !> Whether the second link moves in the first one parallel to a plane, in all frames.
   pure logical function moves_in_plane(film, links, normal, size) result(planar)
-    type(film_type), intent(in) :: film
-    integer, intent(in) :: links(2)
-    real(wp), intent(in) :: normal(3)            !< in fixed axes
-    real(wp), intent(in) :: size
+    type(film_type), intent(in) :: film  !< poses and values at the outputs of the run
+    integer, intent(in) :: links(2)      !< the reference link and the moving link
+    real(wp), intent(in) :: normal(3)    !< normal of the plane, in the axes of link 1 in the first frame
+    real(wp), intent(in) :: size         !< size of the mechanism at the start [m]
     real(wp) :: in_first(3), in_second(3), start(3), now(3)
     integer :: frame
 
@@ -127,9 +127,9 @@ contains
 
   !> Of some views from around and a little above, the one with the best score.
   pure function best_view(film, skeleton, upward) result(best)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    real(wp), intent(in) :: upward(3)
+    type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    real(wp), intent(in) :: upward(3)            !< direction that points up in the picture, in the axes of link 1, of unit length
     type(view_type) :: best
     type(view_type) :: view
     real(wp) :: ahead(3), aside(3), azimuth, elevation, score, highest
@@ -161,10 +161,10 @@ contains
   !> How well a view shows the mechanism: how much of the links' length is seen, and how far apart the pairs
   !> are that lie nearest to each other.
   pure real(wp) function score_of(film, skeleton, view, frame) result(score)
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(view_type), intent(in) :: view
-    integer, intent(in) :: frame
+    type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
+    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(view_type), intent(in) :: view          !< direction from which the mechanism is seen
+    integer, intent(in) :: frame                 !< number of the frame in the film
     real(wp) :: at(3, most_looked_at), apart(3), seen(3), length, seen_length, least
     integer :: n, i, j
 
@@ -193,7 +193,8 @@ contains
 
   !> Whether two pairs share a link other than the frame.
   pure logical function share_link(a, b)
-    integer, intent(in) :: a(2), b(2)
+    integer, intent(in) :: a(2)  !< links of the first pair
+    integer, intent(in) :: b(2)  !< links of the second pair
 
     share_link = (any(a(1) == b) .and. a(1) /= 1) .or. (any(a(2) == b) .and. a(2) /= 1)
   end function share_link

@@ -11,7 +11,7 @@ contains
 
   !> Any text as text of an XML document: nothing in it is taken for markup.
   pure function xml_text(text) result(xml)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: xml
 
     xml = with_escapes(printable(text), '&<>"''', [character(len=6) :: '&amp;', '&lt;', '&gt;', '&quot;', '&#39;'])
@@ -19,7 +19,7 @@ contains
 
   !> A number with at most two decimals and no more letters than it needs: 12.5, -0.25, 7.
   pure function decimal(number) result(text)
-    real(wp), intent(in) :: number               !< of a size that a picture has
+    real(wp), intent(in) :: number  !< the number, of a size that a picture has
     character(len=:), allocatable :: text
     integer :: hundredths, whole, rest
 
