@@ -8,7 +8,7 @@ import re
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from mech9_cases import TREE, Checks
+from mech9_cases import TREE, Checks, text_of
 
 FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model', 'user',
           'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
@@ -32,8 +32,22 @@ def sources(source_folder):
                     yield os.path.relpath(where, source_folder).replace(os.sep, '/'), path, file.read()
 
 
-def check(checks, source_folder):
-    found = list(sources(source_folder))
+def used_modules(text):
+    """(module, its only list or '') of every `use` statement, the parent of a submodule among them."""
+    return [(module.lower(), only) for module, only in USE.findall(text)] + [(name.lower(), 'only') for name in PARENT.findall(text)]
+
+
+def used_floors(found):
+    """The other floors that each floor uses: sets by floor."""
+    home = {module.lower(): floor for floor, _, text in found for module in MODULE.findall(text)}
+    uses = {}
+    for floor, _, text in found:
+        below = {home[module] for module, _ in used_modules(text) if module in home} - {floor}
+        uses.setdefault(floor, set()).update(below)
+    return uses
+
+
+def check(checks, found):
     home = {}
     for floor, path, text in found:
         checks.true(floor in FLOORS, f'{path}: {floor} is one of the floors')
@@ -42,22 +56,20 @@ def check(checks, source_folder):
             checks.true(module.startswith('mech9_'), f'{path}: module {module} begins with mech9_')
             home[module.lower()] = floor
     for floor, path, text in found:
-        uses = USE.findall(text) + [(parent, 'only') for parent in PARENT.findall(text)]
-        for module, only in uses:
-            module = module.lower()
+        for module, only in used_modules(text):
             if module in home:
                 checks.true(FLOORS.index(home[module]) <= FLOORS.index(floor),
                             f'{path}: {floor} may not use {module}, which is of {home[module]}, a floor above')
             checks.true(bool(only) or (floor, module) in WITHOUT_ONLY, f'{path}: use {module} has an only list')
-    return found
 
 
 def main():
     checks = Checks()
-    found = check(checks, os.path.join(TREE, 'src'))
+    found = list(sources(os.path.join(TREE, 'src')))
+    check(checks, found)
     checks.true(len(found) > 10, 'the sources were found')
-    with open(os.path.join(TREE, 'docs', 'architecture.md'), encoding='utf-8') as file:
-        checks.equal(re.findall(r'^   ([\w/]+) {2,}\w', file.read(), re.M)[::-1], FLOORS, 'the architecture tells the same floors')
+    told = re.findall(r'^   ([\w/]+) {2,}\w', text_of(os.path.join(TREE, 'docs', 'architecture.md')), re.M)
+    checks.equal(told[::-1], FLOORS, 'the architecture tells the same floors')
     for floor in FLOORS:
         files = [path for where, path, _ in found if where == floor]
         checks.true(0 < len(files) <= MOST_FILES, f'{floor}: at most {MOST_FILES} files', f'it has {len(files)}')
