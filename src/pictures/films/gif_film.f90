@@ -48,12 +48,12 @@ contains
 
   !> Let gnuplot draw the film. Errors are exit_file; one of them is that there is no gnuplot.
   subroutine save_gif_film(path, title, scene, film, projection, err)
-    character(len=*), intent(in) :: path
-    character(len=*), intent(in) :: title          !< any text
-    type(scene_type), intent(in) :: scene
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path               !< name of the file
+    character(len=*), intent(in) :: title              !< title of the mechanism, any text
+    type(scene_type), intent(in) :: scene              !< nodes and items of the picture
+    type(film_type), intent(in) :: film                !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection    !< from space to the page
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(script_type) :: script
     character(len=:), allocatable :: size
     logical :: found
@@ -82,13 +82,13 @@ contains
   end subroutine save_gif_film
 
   subroutine put_frame(title, scene, film, projection, frame, decimals, script)
-    character(len=*), intent(in) :: title
-    type(scene_type), intent(in) :: scene
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    integer, intent(in) :: frame
-    integer, intent(in) :: decimals                !< of the clock
-    type(script_type), intent(inout) :: script
+    character(len=*), intent(in) :: title            !< title of the mechanism, any text
+    type(scene_type), intent(in) :: scene            !< nodes and items of the picture
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: frame                     !< number of the frame in the film
+    integer, intent(in) :: decimals                  !< decimals of the clock
+    type(script_type), intent(inout) :: script       !< script to which the commands are appended
     type(drawing_type) :: drawing
     integer, allocatable :: order(:)
     integer :: i
@@ -118,8 +118,8 @@ contains
 
   !> The bar that tells how long things are.
   subroutine put_scale(projection, script)
-    type(projection_type), intent(in) :: projection
-    type(script_type), intent(inout) :: script
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(script_type), intent(inout) :: script       !< script to which the commands are appended
     real(wp) :: right, left, foot
 
     right = projection%width - 90.0_wp
@@ -131,8 +131,8 @@ contains
 
   !> The axes of link 1, but one that points to the viewer.
   subroutine put_axes(projection, script)
-    type(projection_type), intent(in) :: projection
-    type(script_type), intent(inout) :: script
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(script_type), intent(inout) :: script       !< script to which the commands are appended
     character, parameter :: names(3) = ['x', 'y', 'z']
     real(wp) :: foot(2), tip(2)
     integer :: i
@@ -148,9 +148,9 @@ contains
 
   !> The title, in two lines where one has no room for it: fonts of GIFs have one size.
   subroutine put_title(title, width, script)
-    character(len=*), intent(in) :: title          !< any text
-    real(wp), intent(in) :: width                  !< of the picture [px]
-    type(script_type), intent(inout) :: script
+    character(len=*), intent(in) :: title       !< title of the mechanism, any text
+    real(wp), intent(in) :: width               !< width of the picture [px]
+    type(script_type), intent(inout) :: script  !< script to which the commands are appended
     real(wp), parameter :: letter = 7.0_wp, line = 16.0_wp
     type(string_type), allocatable :: lines(:)
     integer :: i
@@ -163,10 +163,11 @@ contains
 
   !> A polygon; an empty colour fills nothing.
   subroutine polygon(self, corners, fill, line, width)
-    class(script_type), intent(inout) :: self   !< the script
-    real(wp), intent(in) :: corners(:, :)          !< (2,n) [px]
-    character(len=*), intent(in) :: fill, line
-    real(wp), intent(in) :: width                  !< of the line [px]
+    class(script_type), intent(inout) :: self  !< the script
+    real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the polygon [px]
+    character(len=*), intent(in) :: fill       !< colour of the inside; empty: not filled
+    character(len=*), intent(in) :: line       !< colour of the line
+    real(wp), intent(in) :: width              !< width of the border [px]
     integer :: i
 
     if (size(corners, 2) < 2) return
@@ -186,10 +187,10 @@ contains
 
   !> A line from corner to corner: a polygon that comes back the way it went.
   subroutine polyline(self, corners, line, width)
-    class(script_type), intent(inout) :: self   !< the script
-    real(wp), intent(in) :: corners(:, :)
-    character(len=*), intent(in) :: line
-    real(wp), intent(in) :: width
+    class(script_type), intent(inout) :: self  !< the script
+    real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the line [px]
+    character(len=*), intent(in) :: line       !< colour of the line
+    real(wp), intent(in) :: width              !< width of the line [px]
     integer :: n
 
     n = size(corners, 2)
@@ -197,7 +198,7 @@ contains
   end subroutine polyline
 
   pure function forth_and_back(n) result(numbers)
-    integer, intent(in) :: n
+    integer, intent(in) :: n  !< number of corners
     integer :: numbers(max(0, 2*n - 1))
     integer :: i
 
@@ -205,10 +206,12 @@ contains
   end function forth_and_back
 
   subroutine circle(self, centre, radius, fill, line, width)
-    class(script_type), intent(inout) :: self   !< the script
-    real(wp), intent(in) :: centre(2), radius      !< [px]
-    character(len=*), intent(in) :: fill, line
-    real(wp), intent(in) :: width
+    class(script_type), intent(inout) :: self  !< the script
+    real(wp), intent(in) :: centre(2)          !< centre of the circle [px]
+    real(wp), intent(in) :: radius             !< radius of the circle [px]
+    character(len=*), intent(in) :: fill       !< colour of the inside; empty: not filled
+    character(len=*), intent(in) :: line       !< colour of the line
+    real(wp), intent(in) :: width              !< width of the line [px]
 
     self%objects = self%objects + 1
     call self%page%line('set object '//to_text(self%objects)//' circle at '//decimal(centre(1))//','//decimal(centre(2))// &
@@ -218,9 +221,9 @@ contains
 
   !> Paths, plates, bands and springs.
   subroutine put_path(item, corners, script)
-    type(item_type), intent(in) :: item
-    real(wp), intent(in) :: corners(:, :)
-    type(script_type), intent(inout) :: script
+    type(item_type), intent(in) :: item         !< one thing to draw
+    real(wp), intent(in) :: corners(:, :)       !< (2,n) corners of the item [px]
+    type(script_type), intent(inout) :: script  !< script to which the commands are appended
     character(len=7) :: dark, light
     integer :: i
 
@@ -246,10 +249,11 @@ contains
   end subroutine put_path
 
   subroutine put_segment(style, ends, light, dark, script)
-    type(style_type), intent(in) :: style
-    real(wp), intent(in) :: ends(2, 2)
-    character(len=*), intent(in) :: light, dark
-    type(script_type), intent(inout) :: script
+    type(style_type), intent(in) :: style       !< how the item is drawn
+    real(wp), intent(in) :: ends(2, 2)          !< (2,2) the two ends [px]
+    character(len=*), intent(in) :: light       !< colour of the inside
+    character(len=*), intent(in) :: dark        !< colour of the edge
+    type(script_type), intent(inout) :: script  !< script to which the commands are appended
     real(wp) :: half(2)
 
     if (.not. style%has_edge) then
@@ -266,7 +270,8 @@ contains
 
   !> The outline at a distance around a convex plate, or around a bar with two corners.
   pure function band(corners, radius) result(around)
-    real(wp), intent(in) :: corners(:, :), radius
+    real(wp), intent(in) :: corners(:, :)  !< (2,n) corners of the plate, or the two ends of the bar [px]
+    real(wp), intent(in) :: radius         !< distance of the outline from the corners [px]
     real(wp), allocatable :: around(:, :)
     real(wp) :: before(2), after(2), from, sweep, sense
     integer :: n, i, j
@@ -290,9 +295,9 @@ contains
 
   !> The marks of mech9_picture_style, for gnuplot.
   subroutine put_mark(item, at, script)
-    type(item_type), intent(in) :: item
-    real(wp), intent(in) :: at(2)
-    type(script_type), intent(inout) :: script
+    type(item_type), intent(in) :: item         !< one thing to draw
+    real(wp), intent(in) :: at(2)               !< place on the page [px]
+    type(script_type), intent(inout) :: script  !< script to which the commands are appended
     real(wp) :: s, down
     integer :: i
 
@@ -328,9 +333,9 @@ contains
   end subroutine put_mark
 
   subroutine put_label(item, at, script)
-    type(item_type), intent(in) :: item
-    real(wp), intent(in) :: at(2)
-    type(script_type), intent(inout) :: script
+    type(item_type), intent(in) :: item         !< one thing to draw
+    real(wp), intent(in) :: at(2)               !< place on the page [px]
+    type(script_type), intent(inout) :: script  !< script to which the commands are appended
     !> gnuplot puts the middle of a text at its place, other pictures its line.
     real(wp), parameter :: to_middle(2) = [0.0_wp, -3.5_wp]
     character(len=7) :: colour
@@ -349,10 +354,11 @@ contains
   end subroutine put_label
 
   subroutine put_text(text, at, side, colour, script)
-    character(len=*), intent(in) :: text
-    real(wp), intent(in) :: at(2)
-    character(len=*), intent(in) :: side, colour
-    type(script_type), intent(inout) :: script
+    character(len=*), intent(in) :: text        !< any text
+    real(wp), intent(in) :: at(2)               !< place on the page [px]
+    character(len=*), intent(in) :: side        !< alignment: left, center or right
+    character(len=*), intent(in) :: colour      !< colour of the text
+    type(script_type), intent(inout) :: script  !< script to which the commands are appended
 
     call script%page%line('set label '//quoted(text)//' at '//decimal(at(1))//','//decimal(at(2))//' '//side// &
                           ' noenhanced front textcolor rgb "'//colour//'"')

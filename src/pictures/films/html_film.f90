@@ -28,13 +28,13 @@ contains
 
   !> Write the page. Errors are exit_file.
   subroutine save_html_film(path, title, scene, film, projection, planar, err)
-    character(len=*), intent(in) :: path
-    character(len=*), intent(in) :: title          !< any text
-    type(scene_type), intent(in) :: scene
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    logical, intent(in) :: planar                  !< seen along the normal of its plane: dragging moves it at first
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path  !< name of the file
+    character(len=*), intent(in) :: title !< title of the mechanism, any text
+    type(scene_type), intent(in) :: scene !< nodes and items of the picture
+    type(film_type), intent(in) :: film   !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection !< from space to the page
+    logical, intent(in) :: planar         !< the mechanism is seen along the normal of its plane, so that dragging moves it at first
+    type(error_type), allocatable, intent(out) :: err !< allocated if it failed
     type(page_type) :: page
 
     call page%line('<!DOCTYPE html>')
@@ -63,12 +63,12 @@ contains
 
   !> What the script has to know, as one constant.
   subroutine put_film(scene, film, projection, planar, page)
-    type(scene_type), intent(in) :: scene
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    logical, intent(in) :: planar
-    type(page_type), intent(inout) :: page
-    integer :: numbers(size(film%p, 2))            !< of the links that have nodes; 0: the others, and link 1
+    type(scene_type), intent(in) :: scene            !< nodes and items of the picture
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
+    type(page_type), intent(inout) :: page           !< text to which the page is appended
+    integer :: numbers(size(film%p, 2))              !< of the links that have nodes; 0: the others, and link 1
     real(wp) :: unit
     integer :: i, count
 
@@ -103,10 +103,11 @@ contains
 
   !> Nodes: number of the link, and place in it; those of link 1 from the middle of the picture.
   subroutine put_nodes(scene, numbers, centre, unit, page)
-    type(scene_type), intent(in) :: scene
-    integer, intent(in) :: numbers(:)
-    real(wp), intent(in) :: centre(3), unit
-    type(page_type), intent(inout) :: page
+    type(scene_type), intent(in) :: scene   !< nodes and items of the picture
+    integer, intent(in) :: numbers(:)       !< (links) number of each link in the script; 0: the link has no nodes, or is link 1
+    real(wp), intent(in) :: centre(3)       !< place in the middle of the picture, in the system of link 1 [m]
+    real(wp), intent(in) :: unit            !< length that 1 stands for in the script [m]
+    type(page_type), intent(inout) :: page  !< text to which the page is appended
     integer :: i
 
     call page%put('links: [')
@@ -126,8 +127,8 @@ contains
 
   !> Whole numbers, each with a comma behind it.
   subroutine put_steps(values, page)
-    real(wp), intent(in) :: values(:)
-    type(page_type), intent(inout) :: page
+    real(wp), intent(in) :: values(:)       !< the numbers, rounded here
+    type(page_type), intent(inout) :: page  !< text to which the page is appended
     integer :: i
 
     do i = 1, size(values)
@@ -137,8 +138,8 @@ contains
 
   !> Items; the numbers of nodes begin with 0. Items of link 1 alone stand still.
   subroutine put_items(scene, page)
-    type(scene_type), intent(in) :: scene
-    type(page_type), intent(inout) :: page
+    type(scene_type), intent(in) :: scene   !< nodes and items of the picture
+    type(page_type), intent(inout) :: page  !< text to which the page is appended
     integer :: i
 
     call page%line('items: [')
@@ -162,10 +163,12 @@ contains
 
   !> Times, and for each frame the place and the quaternion of each link.
   subroutine put_frames(film, numbers, count, centre, unit, page)
-    type(film_type), intent(in) :: film
-    integer, intent(in) :: numbers(:), count
-    real(wp), intent(in) :: centre(3), unit
-    type(page_type), intent(inout) :: page
+    type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
+    integer, intent(in) :: numbers(:)       !< (links) number of each link in the script; 0: the link has no nodes, or is link 1
+    integer, intent(in) :: count            !< number of links that have a number
+    real(wp), intent(in) :: centre(3)       !< place in the middle of the picture, in the system of link 1 [m]
+    real(wp), intent(in) :: unit            !< length that 1 stands for in the script [m]
+    type(page_type), intent(inout) :: page  !< text to which the page is appended
     integer :: links(count), frame, i
 
     do i = 1, size(numbers)
@@ -190,8 +193,8 @@ contains
 
   !> Names and units of the recorded columns, and what they hold in each frame.
   subroutine put_values(film, page)
-    type(film_type), intent(in) :: film
-    type(page_type), intent(inout) :: page
+    type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
+    type(page_type), intent(inout) :: page  !< text to which the page is appended
     integer :: frame, i
 
     call put_words('names', film%names, page)
@@ -209,9 +212,9 @@ contains
 
   !> A list of words without quotes in them, such as names of columns and units.
   subroutine put_words(name, words, page)
-    character(len=*), intent(in) :: name           !< of the list
-    type(string_type), intent(in) :: words(:)
-    type(page_type), intent(inout) :: page
+    character(len=*), intent(in) :: name       !< name of the list
+    type(string_type), intent(in) :: words(:)  !< the words, without quotes in them
+    type(page_type), intent(inout) :: page     !< text to which the page is appended
     integer :: i
 
     call page%put(name//': [')

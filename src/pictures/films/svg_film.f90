@@ -23,12 +23,12 @@ contains
 
   !> Write the picture. Errors are exit_file.
   subroutine save_svg_film(path, title, scene, film, projection, err)
-    character(len=*), intent(in) :: path
-    character(len=*), intent(in) :: title          !< any text
-    type(scene_type), intent(in) :: scene
-    type(film_type), intent(in) :: film
-    type(projection_type), intent(in) :: projection
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path               !< name of the file
+    character(len=*), intent(in) :: title              !< title of the mechanism, any text
+    type(scene_type), intent(in) :: scene              !< nodes and items of the picture
+    type(film_type), intent(in) :: film                !< poses and values at the outputs of the run
+    type(projection_type), intent(in) :: projection    !< from space to the page
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(page_type) :: page
     type(drawing_type), allocatable :: drawings(:)
     integer, allocatable :: order(:)
@@ -60,9 +60,9 @@ contains
 
   !> The clock: the times of all frames stand below each other on a strip that is moved behind a window.
   subroutine put_clock(film, foot, page)
-    type(film_type), intent(in) :: film
-    real(wp), intent(in) :: foot                   !< where the time stands on the page [px]
-    type(page_type), intent(inout) :: page
+    type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
+    real(wp), intent(in) :: foot            !< height at which the time stands on the page, downwards [px]
+    type(page_type), intent(inout) :: page  !< text to which the page is appended
     integer, parameter :: line = 20                ! height of a line [px]
     integer :: i, decimals
 
@@ -84,19 +84,19 @@ contains
 
   !> How long a film plays: as long as it takes, or less or more where nobody could watch it [s].
   pure real(wp) function duration_of(film) result(duration)
-    type(film_type), intent(in) :: film
+    type(film_type), intent(in) :: film  !< poses and values at the outputs of the run
 
     duration = max(shortest, min(longest, abs(film%times(film%n_frames) - film%times(1))))
   end function duration_of
 
   !> An item with what it is in each frame. Where nothing moves, in a viewer or a print, the first frame stands.
   subroutine put_moving(item, number, drawings, symbol, duration, page)
-    type(item_type), intent(in) :: item
-    integer, intent(in) :: number
-    type(drawing_type), intent(in) :: drawings(:)
-    real(wp), intent(in) :: symbol
-    real(wp), intent(in) :: duration               !< [s]
-    type(page_type), intent(inout) :: page
+    type(item_type), intent(in) :: item            !< one thing to draw
+    integer, intent(in) :: number                  !< number of the item in the scene
+    type(drawing_type), intent(in) :: drawings(:)  !< (frames) where the nodes stand on the page in each frame
+    real(wp), intent(in) :: symbol                 !< scale of symbols, 1 at full size
+    real(wp), intent(in) :: duration               !< time that the film takes to play [s]
+    type(page_type), intent(inout) :: page         !< text to which the page is appended
 
     call page%put(opening_of(item, number))
     select case (item%shape)
@@ -119,11 +119,12 @@ contains
   end subroutine put_moving
 
   subroutine put_moving_path(item, drawings, symbol, duration, class, page)
-    type(item_type), intent(in) :: item
-    type(drawing_type), intent(in) :: drawings(:)
-    real(wp), intent(in) :: symbol, duration
-    character(len=*), intent(in) :: class
-    type(page_type), intent(inout) :: page
+    type(item_type), intent(in) :: item            !< one thing to draw
+    type(drawing_type), intent(in) :: drawings(:)  !< (frames) where the nodes stand on the page in each frame
+    real(wp), intent(in) :: symbol                 !< scale of symbols, 1 at full size
+    real(wp), intent(in) :: duration               !< time that the film takes to play [s]
+    character(len=*), intent(in) :: class          !< attribute with the class of the path; empty: none
+    type(page_type), intent(inout) :: page         !< text to which the page is appended
 
     call page%put('<path'//class//' d="'//path_in(item, drawings(1), symbol)//'">')
     call page%put('<animate attributeName="d"'//timing(duration))
@@ -133,17 +134,17 @@ contains
 
   !> The beginning of an animation, up to its values. Frame after frame: there are enough of them.
   pure function timing(duration) result(text)
-    real(wp), intent(in) :: duration
+    real(wp), intent(in) :: duration  !< time that the film takes to play [s]
     character(len=:), allocatable :: text
 
     text = ' calcMode="discrete" repeatCount="indefinite" dur="'//decimal(duration)//'s" values="'
   end function timing
 
   subroutine put_values(item, drawings, symbol, page)
-    type(item_type), intent(in) :: item
-    type(drawing_type), intent(in) :: drawings(:)
-    real(wp), intent(in) :: symbol
-    type(page_type), intent(inout) :: page
+    type(item_type), intent(in) :: item            !< one thing to draw
+    type(drawing_type), intent(in) :: drawings(:)  !< (frames) where the nodes stand on the page in each frame
+    real(wp), intent(in) :: symbol                 !< scale of symbols, 1 at full size
+    type(page_type), intent(inout) :: page         !< text to which the page is appended
     integer :: i
 
     do i = 1, size(drawings)
@@ -158,9 +159,9 @@ contains
 
   !> The path of an item in a frame; where it is not seen, one without length, as an animation needs one.
   pure function path_in(item, drawing, symbol) result(path)
-    type(item_type), intent(in) :: item
-    type(drawing_type), intent(in) :: drawing
-    real(wp), intent(in) :: symbol
+    type(item_type), intent(in) :: item        !< one thing to draw
+    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
+    real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
     character(len=:), allocatable :: path
 
     path = path_of(item, outline_of(item, drawing, symbol))

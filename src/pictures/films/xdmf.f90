@@ -39,9 +39,9 @@ contains
 
   !> The description of an HDF5 file that is going to be written; it gets its name, with the ending .xdmf.
   pure function new_xdmf(hdf5_path, mechanism, poses) result(sink)
-    character(len=*), intent(in) :: hdf5_path
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(poses_type), intent(in) :: poses
+    character(len=*), intent(in) :: hdf5_path      !< name of the HDF5 file
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(poses_type), intent(in) :: poses          !< vertices and lines that show the links
     type(xdmf_type) :: sink
 
     sink%data_name = name_of(hdf5_path)
@@ -55,23 +55,23 @@ contains
 
   !> The file of the description; it stands beside the HDF5 file.
   pure function xdmf_path(hdf5_path) result(path)
-    character(len=*), intent(in) :: hdf5_path
+    character(len=*), intent(in) :: hdf5_path  !< name of the HDF5 file
     character(len=:), allocatable :: path
 
     path = with_ending(hdf5_path, 'xdmf')
   end function xdmf_path
 
   subroutine write_rows(self, rows, err)
-    class(xdmf_type), intent(inout) :: self   !< the xdmf
-    real(wp), intent(in) :: rows(:, :)
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(xdmf_type), intent(inout) :: self            !< the description in XDMF
+    real(wp), intent(in) :: rows(:, :)                 !< (columns,rows) rows of the results, which are only counted
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     self%rows = self%rows + size(rows, 2)
   end subroutine write_rows
 
   subroutine save_description(self, err)
-    class(xdmf_type), intent(inout) :: self   !< the xdmf
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(xdmf_type), intent(inout) :: self            !< the description in XDMF
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(page_type) :: page
     integer :: i
 
@@ -92,9 +92,9 @@ contains
 
   !> One output: lines between vertices, and which link each line belongs to.
   subroutine put_step(self, row, page)
-    type(xdmf_type), intent(in) :: self   !< the xdmf
-    integer, intent(in) :: row                    !< of the HDF5 file, from 0
-    type(page_type), intent(inout) :: page
+    type(xdmf_type), intent(in) :: self     !< the description in XDMF
+    integer, intent(in) :: row              !< number of the row in the HDF5 file, from 0
+    type(page_type), intent(inout) :: page  !< text to which the page is appended
     character(len=:), allocatable :: vertices, lines
 
     vertices = to_text(self%n_vertices)//' 3'
@@ -112,8 +112,10 @@ contains
 
   !> Numbers in the HDF5 file.
   pure function item(self, dimensions, type, data_set) result(text)
-    type(xdmf_type), intent(in) :: self   !< the xdmf
-    character(len=*), intent(in) :: dimensions, type, data_set
+    type(xdmf_type), intent(in) :: self         !< the description in XDMF
+    character(len=*), intent(in) :: dimensions  !< numbers of entries along each dimension
+    character(len=*), intent(in) :: type        !< Int or Float
+    character(len=*), intent(in) :: data_set    !< path of the data set in the HDF5 file
     character(len=:), allocatable :: text
 
     text = '<DataItem Dimensions="'//dimensions//'" NumberType="'//type//'" Precision="'// &
@@ -121,7 +123,7 @@ contains
   end function item
 
   function words(self)
-    class(xdmf_type), intent(in) :: self   !< the xdmf
+    class(xdmf_type), intent(in) :: self  !< the description in XDMF
     character(len=:), allocatable :: words
 
     words = 'for ParaView: '//self%path

@@ -25,7 +25,7 @@ contains
   !> takes two single quotes for one, but not at the beginning of a string, nor four of them.) Control characters, which
   !> could end the line, become blanks.
   pure function quoted(text) result(string)
-    character(len=*), intent(in) :: text      !< any bytes
+    character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: string
 
     if (index(text, '''') == 0) then
@@ -37,7 +37,7 @@ contains
 
   !> Several lines as one string of gnuplot.
   pure function quoted_lines(lines) result(string)
-    type(string_type), intent(in) :: lines(:)    !< of any bytes, one at least
+    type(string_type), intent(in) :: lines(:)  !< of any bytes, one at least
     character(len=:), allocatable :: string
     integer :: i
 
@@ -52,7 +52,7 @@ contains
 
   !> Any text as it stands between double quotes.
   pure function escaped(text) result(safe)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: safe
 
     safe = with_escapes(printable(text), '"\`', ['\042', '\134', '\140'])
@@ -62,7 +62,7 @@ contains
   !> `|`, `$`, `+` or `-` at the beginning mean other things. Bytes that cannot stand in a line are written
   !> as octal numbers, for which double quotes are needed, and hence for all that has a meaning there.
   pure function quoted_path(path) result(string)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path  !< name of the file
     character(len=:), allocatable :: string, place
     character(len=3) :: octal
     integer :: i
@@ -88,11 +88,11 @@ contains
   !> Let gnuplot carry out a script. Where it is not there, `found` is false; where it fails, the error
   !> says why. Where gnuplot cannot open the picture it draws on standard output: with `picture` that is dropped.
   subroutine run_gnuplot(script, found, err, folder, picture)
-    character(len=*), intent(in) :: script
-    logical, intent(out) :: found
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    character(len=*), intent(in), optional :: folder   !< where it works; here unless given
-    character(len=*), intent(in), optional :: picture  !< the file that the script makes, seen from here
+    character(len=*), intent(in) :: script             !< commands of gnuplot
+    logical, intent(out) :: found                      !< gnuplot is there
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    character(len=*), intent(in), optional :: folder   !< folder in which gnuplot works; the current one unless given
+    character(len=*), intent(in), optional :: picture  !< file that the script makes, from the current folder
     type(child_outcome_type) :: outcome
     type(string_type) :: words(1)
 
@@ -109,9 +109,9 @@ contains
 
   !> Whether a picture can be written, and was written to its end: gnuplot does not notice that a disk is full.
   subroutine check_picture(path, failed, err)
-    character(len=*), intent(in) :: path
-    logical, intent(in) :: failed                      !< gnuplot ended with an error: only why is asked
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path               !< file of the picture
+    logical, intent(in) :: failed                      !< gnuplot ended with an error, so that only the reason is sought
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(text_file_type) :: file
     character(len=longest_end) :: last
     logical :: whole
@@ -138,8 +138,8 @@ contains
 
   !> The last bytes of a file; blanks where there are none, as of a device.
   subroutine read_end(path, last)
-    character(len=*), intent(in) :: path
-    character(len=longest_end), intent(out) :: last
+    character(len=*), intent(in) :: path             !< name of the file
+    character(len=longest_end), intent(out) :: last  !< last bytes of the file, or blanks
     character(len=longest_end) :: bytes
     integer(int64) :: length
     integer :: unit, status

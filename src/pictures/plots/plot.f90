@@ -40,15 +40,15 @@ contains
 
   !> Read what is asked for; before the run, so that a wrong name costs no time (exit_usage).
   subroutine open_plot(self, text, title, names, units, expected, picture, table, err)
-    class(plot_type), intent(inout) :: self   !< the plot
-    character(len=*), intent(in) :: text          !< the argument of --plot
-    character(len=*), intent(in) :: title         !< of the mechanism
-    type(string_type), intent(in) :: names(:)     !< of the columns of the results, time first
-    type(string_type), intent(in) :: units(:)     !< of the columns
-    integer, intent(in) :: expected               !< rows that will come at most
-    character(len=*), intent(in) :: picture       !< its file, unless the text names one
-    character(len=*), intent(in) :: table         !< file with the whole results; empty or '-': none
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(plot_type), intent(inout) :: self            !< the plot
+    character(len=*), intent(in) :: text               !< the argument of --plot
+    character(len=*), intent(in) :: title              !< title of the mechanism
+    type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
+    type(string_type), intent(in) :: units(:)          !< units of the columns of the results
+    integer, intent(in) :: expected                    !< largest number of rows that will come
+    character(len=*), intent(in) :: picture            !< file of the picture, unless `text` names one
+    character(len=*), intent(in) :: table              !< file with the whole results; empty or '-': none
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call read_plot_request(text, names, self%request, err)
     if (allocated(err)) return
@@ -63,9 +63,9 @@ contains
 
   !> Take rows.
   subroutine write_rows(self, rows, err)
-    class(plot_type), intent(inout) :: self   !< the plot
-    real(wp), intent(in) :: rows(:, :)   !< (columns, rows)
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(plot_type), intent(inout) :: self            !< the plot
+    real(wp), intent(in) :: rows(:, :)                 !< (columns,rows) rows of the results
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: i
 
     do i = 1, size(rows, 2)
@@ -76,8 +76,8 @@ contains
   !> Draw what was taken: in the terminal, or into a picture with its script beside it. Where gnuplot is not
   !> there a picture's script is kept all the same.
   subroutine close_plot(self, err)
-    class(plot_type), intent(inout) :: self   !< the plot
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(plot_type), intent(inout) :: self            !< the plot
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     if (self%is_open .and. self%data%count > 0) then
       if (self%request%in_terminal) then
@@ -91,7 +91,7 @@ contains
 
   !> What to tell the user after it is closed.
   function words(self)
-    class(plot_type), intent(in) :: self   !< the plot
+    class(plot_type), intent(in) :: self  !< the plot
     character(len=:), allocatable :: words
 
     words = ''
@@ -99,8 +99,8 @@ contains
   end function words
 
   subroutine draw_in_terminal(self, err)
-    class(plot_type), intent(in) :: self   !< the plot
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(plot_type), intent(in) :: self               !< the plot
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: columns, rows
     logical :: found
 
@@ -114,8 +114,8 @@ contains
   end subroutine draw_in_terminal
 
   subroutine draw_picture(self, err)
-    class(plot_type), intent(inout) :: self   !< the plot
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(plot_type), intent(inout) :: self            !< the plot
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: script_path, script, source, folder
     logical :: found
 
@@ -143,7 +143,7 @@ contains
 
   !> Whether gnuplot reads a table of this name as it is: a file of columns between blanks.
   pure logical function can_be_read(table)
-    character(len=*), intent(in) :: table
+    character(len=*), intent(in) :: table  !< file of the table; empty or '-': none
 
     can_be_read = table /= '' .and. table /= '-' .and. ending_of(table) /= 'csv'
   end function can_be_read
@@ -151,11 +151,11 @@ contains
   !> The file of the picture that a plot makes. Where no name is given it stands beside the table, or else in this
   !> folder with the name of the data file.
   pure subroutine picture_of_plot(text, table, data_file, i, picture)
-    character(len=*), intent(in) :: text                     !< the argument of --plot
-    character(len=*), intent(in) :: table                    !< file with the whole results; empty or '-': none
-    character(len=*), intent(in) :: data_file
-    integer, intent(in) :: i                                 !< number of the plot in the run
-    character(len=:), allocatable, intent(out) :: picture    !< '-': it is drawn in the terminal
+    character(len=*), intent(in) :: text                   !< the argument of --plot
+    character(len=*), intent(in) :: table                  !< file with the whole results; empty or '-': none
+    character(len=*), intent(in) :: data_file              !< name of the data file
+    integer, intent(in) :: i                               !< number of the plot in the run, from 1
+    character(len=:), allocatable, intent(out) :: picture  !< file of the picture; '-': the plot is drawn in the terminal
 
     call target_of_plot(text, picture)
     if (picture /= '') return
@@ -170,7 +170,7 @@ contains
 
   !> The file of the script that draws a picture; it stands beside the picture.
   pure function script_of_plot(picture) result(script)
-    character(len=*), intent(in) :: picture
+    character(len=*), intent(in) :: picture  !< file of the picture
     character(len=:), allocatable :: script
 
     script = with_ending(picture, script_ending)
@@ -178,12 +178,13 @@ contains
 
   !> Plot rows that are in memory.
   subroutine plot_columns(text, title, names, units, rows, picture, said, err)
-    character(len=*), intent(in) :: text                  !< what to plot, as the argument of --plot
-    character(len=*), intent(in) :: title                 !< of the mechanism
-    type(string_type), intent(in) :: names(:), units(:)   !< of the columns, time first
-    real(wp), intent(in) :: rows(:, :)                    !< rows(:, i): row i of the results
-    character(len=*), intent(in) :: picture               !< its file, unless the text names one
-    character(len=:), allocatable, intent(out) :: said    !< a line for the user; empty: nothing to say
+    character(len=*), intent(in) :: text                !< what to plot, as the argument of --plot
+    character(len=*), intent(in) :: title               !< title of the mechanism
+    type(string_type), intent(in) :: names(:)           !< names of the columns of the results, the time first
+    type(string_type), intent(in) :: units(:)           !< units of the columns of the results
+    real(wp), intent(in) :: rows(:, :)                  !< (columns,rows) rows of the results
+    character(len=*), intent(in) :: picture             !< file of the picture, unless `text` names one
+    character(len=:), allocatable, intent(out) :: said  !< a line for the user; empty: nothing to say
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plot_type) :: plot
 

@@ -28,9 +28,10 @@ contains
 
   !> Empty data for curves.
   pure function new_plot_data(names, units, curves, expected) result(data)
-    type(string_type), intent(in) :: names(:), units(:)   !< of all columns of the results
-    type(curve_type), intent(in) :: curves(:)
-    integer, intent(in) :: expected                       !< how many rows will come at most
+    type(string_type), intent(in) :: names(:)  !< names of all columns of the results
+    type(string_type), intent(in) :: units(:)  !< units of all columns of the results
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    integer, intent(in) :: expected            !< largest number of rows that will come
     type(plot_data_type) :: data
     integer :: i
 
@@ -43,8 +44,8 @@ contains
 
   !> Keep what is needed of the next row.
   pure subroutine take(self, row)
-    class(plot_data_type), intent(inout) :: self   !< the plot data
-    real(wp), intent(in) :: row(:)   !< all columns of the results
+    class(plot_data_type), intent(inout) :: self  !< the plot data
+    real(wp), intent(in) :: row(:)                !< all columns of the results
 
     if (modulo(self%seen, self%stride) == 0 .and. self%count < size(self%values, 2)) then
       self%count = self%count + 1
@@ -55,16 +56,16 @@ contains
 
   !> Where a column of the results stands among those that are kept.
   pure integer function place_of(self, column)
-    class(plot_data_type), intent(in) :: self   !< the plot data
-    integer, intent(in) :: column
+    class(plot_data_type), intent(in) :: self  !< the plot data
+    integer, intent(in) :: column              !< number of the column in the results, one that is kept
 
     place_of = count(self%columns <= column)
   end function place_of
 
   !> Least and greatest value of some columns; [0, 0] where there is none that is finite.
   pure function extent(self, columns) result(ends)
-    class(plot_data_type), intent(in) :: self   !< the plot data
-    integer, intent(in) :: columns(:)
+    class(plot_data_type), intent(in) :: self  !< the plot data
+    integer, intent(in) :: columns(:)          !< numbers of the columns in the results, all of them kept
     real(wp) :: ends(2), value
     integer :: i, j
 

@@ -12,8 +12,9 @@ contains
   !> over the same column, or over columns of the same unit where none is the time. The closure, a length near
   !> zero, stands alone.
   pure function panels_of(curves, names, units) result(panels)
-    type(curve_type), intent(in) :: curves(:)
-    type(string_type), intent(in) :: names(:), units(:)   !< of all columns
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(string_type), intent(in) :: names(:)  !< names of all columns of the results
+    type(string_type), intent(in) :: units(:)  !< units of all columns of the results
     integer :: panels(size(curves))
     integer :: i, j, last
 
@@ -38,15 +39,16 @@ contains
 
   !> Whether a curve is drawn over the time, the first column.
   pure elemental logical function over_time(curve)
-    type(curve_type), intent(in) :: curve
+    type(curve_type), intent(in) :: curve  !< the curve with its two columns
 
     over_time = curve%x == 1
   end function over_time
 
   !> The label of an axis: the column's name where there is one column only, otherwise what the unit measures.
   pure function axis_label(columns, names, units) result(label)
-    integer, intent(in) :: columns(:)                     !< all of one unit
-    type(string_type), intent(in) :: names(:), units(:)   !< of all columns
+    integer, intent(in) :: columns(:)          !< numbers of the columns on the axis, all of one unit
+    type(string_type), intent(in) :: names(:)  !< names of all columns of the results
+    type(string_type), intent(in) :: units(:)  !< units of all columns of the results
     character(len=:), allocatable :: label
 
     if (all(columns == columns(1))) then
@@ -60,7 +62,7 @@ contains
 
   !> What has this unit in the results.
   pure function quantity(unit)
-    character(len=*), intent(in) :: unit
+    character(len=*), intent(in) :: unit  !< the unit as the results name it
     character(len=:), allocatable :: quantity
 
     select case (unit)
@@ -85,7 +87,7 @@ contains
 
   !> A unit as it is written by hand: with a raised two.
   pure function written(unit)
-    character(len=*), intent(in) :: unit
+    character(len=*), intent(in) :: unit  !< the unit as the results name it
     character(len=:), allocatable :: written
     character(len=*), parameter :: raised_two = char(194)//char(178)   ! in UTF-8
     integer :: i

@@ -35,10 +35,10 @@ contains
 
   !> Read a request. An unknown name is a wrong command line (exit_usage).
   pure subroutine read_plot_request(text, names, request, err)
-    character(len=*), intent(in) :: text
-    type(string_type), intent(in) :: names(:)         !< of the columns, the first is the time
-    type(plot_request_type), intent(out) :: request
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: text               !< the argument of --plot
+    type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
+    type(plot_request_type), intent(out) :: request    !< what is to be plotted
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(curve_type) :: curve
     integer :: at
 
@@ -63,8 +63,8 @@ contains
 
   !> Where a plot is to be drawn: the file of a picture, '-' for the terminal, or empty where nothing is said.
   pure subroutine target_of_plot(text, target)
-    character(len=*), intent(in) :: text                    !< the argument of --plot
-    character(len=:), allocatable, intent(out) :: target
+    character(len=*), intent(in) :: text                  !< the argument of --plot
+    character(len=:), allocatable, intent(out) :: target  !< file of the picture; '-': the terminal; empty: not said
     type(plot_request_type) :: request
     integer :: at
 
@@ -75,7 +75,7 @@ contains
 
   !> Whether a file of this name can be a picture that gnuplot makes.
   pure logical function is_picture(path)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path  !< name of the file
 
     select case (ending_of(path))
     case ('svg', 'png', 'pdf')
@@ -87,9 +87,9 @@ contains
 
   !> What stands before the names: a picture or the terminal. `at` is where the names begin.
   pure subroutine take_target(text, request, at)
-    character(len=*), intent(in) :: text
-    type(plot_request_type), intent(inout) :: request
-    integer, intent(out) :: at
+    character(len=*), intent(in) :: text               !< the argument of --plot
+    type(plot_request_type), intent(inout) :: request  !< what is to be plotted
+    integer, intent(out) :: at                         !< place in `text` where the names begin
     integer :: colon
 
     request%target = ''
@@ -112,8 +112,8 @@ contains
 
   !> The coordinates q1, q2, ..., or as many of them as can be told apart.
   pure subroutine take_coordinates(names, request)
-    type(string_type), intent(in) :: names(:)
-    type(plot_request_type), intent(inout) :: request
+    type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
+    type(plot_request_type), intent(inout) :: request  !< what is to be plotted
     integer :: i
 
     do i = 1, size(names)
@@ -126,11 +126,11 @@ contains
 
   !> NAME or NAME:NAME, and step over it.
   pure subroutine take_curve(text, names, at, curve, err)
-    character(len=*), intent(in) :: text
-    type(string_type), intent(in) :: names(:)
-    integer, intent(inout) :: at
-    type(curve_type), intent(out) :: curve
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: text               !< the argument of --plot
+    type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
+    integer, intent(inout) :: at                       !< place in `text` where the curve begins; afterwards the place behind it
+    type(curve_type), intent(out) :: curve             !< numbers of the two columns
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call take_name(text, names, at, curve%y, err)
     if (allocated(err) .or. text(at:min(at, len(text))) /= ':') return
@@ -142,11 +142,11 @@ contains
   !> The name that begins at a place, and step over it. Names may hold commas and colons: the longest that
   !> fits and ends where an item can end is meant.
   pure subroutine take_name(text, names, at, column, err)
-    character(len=*), intent(in) :: text
-    type(string_type), intent(in) :: names(:)
-    integer, intent(inout) :: at
-    integer, intent(out) :: column
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: text               !< the argument of --plot
+    type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
+    integer, intent(inout) :: at                       !< place in `text` where the name begins; afterwards the place behind it
+    integer, intent(out) :: column                     !< number of the column
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=*), parameter :: ends = ' ,:'
     integer :: i, length, after
 
@@ -166,8 +166,8 @@ contains
   end subroutine take_name
 
   pure subroutine skip_blanks(text, at)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: at
+    character(len=*), intent(in) :: text  !< the argument of --plot
+    integer, intent(inout) :: at          !< place in `text`; afterwards the next place without a blank
 
     do while (text(at:min(at, len(text))) == ' ' .and. at <= len(text))
       at = at + 1
@@ -176,9 +176,9 @@ contains
 
   !> An unknown name: which one is near, or which there are.
   pure subroutine refuse_name(word, names, err)
-    character(len=*), intent(in) :: word
-    type(string_type), intent(in) :: names(:)
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: word               !< the unknown name
+    type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: nearest, hint
     character(len=longest_name) :: known(size(names))
     integer :: i

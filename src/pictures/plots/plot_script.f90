@@ -31,12 +31,12 @@ contains
 
   !> The script of a picture. It can be used again: its first line says how.
   pure function picture_script(title, curves, data, picture, script, table) result(text)
-    character(len=*), intent(in) :: title            !< of the mechanism
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
-    character(len=*), intent(in) :: picture          !< name of the file
-    character(len=*), intent(in) :: script           !< name of the script's own file
-    character(len=*), intent(in) :: table            !< file with the results; empty: the script holds the data
+    character(len=*), intent(in) :: title      !< title of the mechanism
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
+    character(len=*), intent(in) :: picture    !< name of the file of the picture, without its folder
+    character(len=*), intent(in) :: script     !< name of the file of the script, without its folder
+    character(len=*), intent(in) :: table      !< file with the results, without its folder; empty: the script holds the data
     character(len=:), allocatable :: text, source
     type(string_type), allocatable :: lines(:)
     integer :: panels(size(curves)), i
@@ -67,9 +67,10 @@ contains
 
   !> The script of a plot in letters, a panel below the other.
   pure function terminal_script(curves, data, columns, rows) result(text)
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
-    integer, intent(in) :: columns, rows   !< of each panel
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
+    integer, intent(in) :: columns             !< width of each panel in letters
+    integer, intent(in) :: rows                !< height of each panel in lines
     character(len=:), allocatable :: text
     type(curve_type), allocatable :: own(:)
     integer :: panels(size(curves)), i
@@ -88,10 +89,11 @@ contains
   !> The title in lines that fit above the plot. gnuplot leaves `]]>` as it is in an SVG, where it must not stand: a
   !> space without width comes between.
   pure function drawn_title(title, picture, curves, panels, data) result(lines)
-    character(len=*), intent(in) :: title, picture
-    type(curve_type), intent(in) :: curves(:)
-    integer, intent(in) :: panels(:)
-    type(plot_data_type), intent(in) :: data
+    character(len=*), intent(in) :: title      !< title of the mechanism
+    character(len=*), intent(in) :: picture    !< name of the file of the picture
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    integer, intent(in) :: panels(:)           !< number of the panel of each curve
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
     type(string_type), allocatable :: lines(:)
     integer, parameter :: letter = 10, most = 3
     integer :: width, height, i, at
@@ -110,10 +112,10 @@ contains
 
   !> The terminal of gnuplot for the ending of a picture, in its size.
   pure function terminal_of(picture, curves, panels, data) result(text)
-    character(len=*), intent(in) :: picture
-    type(curve_type), intent(in) :: curves(:)
-    integer, intent(in) :: panels(:)
-    type(plot_data_type), intent(in) :: data
+    character(len=*), intent(in) :: picture    !< name of the file of the picture
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    integer, intent(in) :: panels(:)           !< number of the panel of each curve
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
     character(len=:), allocatable :: text
     integer :: width, height
 
@@ -132,10 +134,11 @@ contains
 
   !> The size of a picture.
   pure subroutine find_size(curves, panels, data, width, height)
-    type(curve_type), intent(in) :: curves(:)
-    integer, intent(in) :: panels(:)        !< of the curves
-    type(plot_data_type), intent(in) :: data
-    integer, intent(out) :: width, height   !< [pixels]
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    integer, intent(in) :: panels(:)           !< number of the panel of each curve
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
+    integer, intent(out) :: width              !< width of the picture [px]
+    integer, intent(out) :: height             !< height of the picture [px]
 
     width = 960
     height = 540
@@ -148,9 +151,10 @@ contains
 
   !> The size of a picture with equal scales, around an area of the shape of its ranges.
   pure subroutine true_shape(curves, data, width, height)
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
-    integer, intent(out) :: width, height   !< [pixels]
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
+    integer, intent(out) :: width              !< width of the picture [px]
+    integer, intent(out) :: height             !< height of the picture [px]
     integer, parameter :: longer_side = 700, letter = 9
     real(wp) :: sides(2)
 
@@ -163,8 +167,8 @@ contains
 
   !> What the axes with equal scales take, without margins. A straight path along an axis gets some room across.
   pure function spans(curves, data) result(sides)
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
     real(wp) :: sides(2), ends(2)
 
     ends = data%extent(curves%x)
@@ -190,7 +194,7 @@ contains
 
   !> The rows as a block of data within the script: names, then numbers.
   pure function inline_data(data) result(text)
-    type(plot_data_type), intent(in) :: data
+    type(plot_data_type), intent(in) :: data  !< rows and columns that are plotted
     character(len=:), allocatable :: text, rows
     type(number_format_type) :: format
     integer :: i, j, at
@@ -215,10 +219,10 @@ contains
 
   !> Panels above each other, their axes of one length whatever their labels are.
   pure function stack(lines, curves, panels, data) result(text)
-    type(string_type), intent(in) :: lines(:)   !< of the title
-    type(curve_type), intent(in) :: curves(:)
-    integer, intent(in) :: panels(:)
-    type(plot_data_type), intent(in) :: data
+    type(string_type), intent(in) :: lines(:)  !< lines of the title
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    integer, intent(in) :: panels(:)           !< number of the panel of each curve
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
     character(len=:), allocatable :: text
     type(curve_type), allocatable :: own(:)
     integer :: i, left, right
@@ -236,8 +240,8 @@ contains
   end function stack
 
   pure integer function longest_name(curves, data)
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
     integer :: i
 
     longest_name = 0
@@ -248,10 +252,11 @@ contains
 
   !> One panel: its axes and its curves.
   pure function panel(curves, data, source, stacked, last) result(text)
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
-    character(len=*), intent(in) :: source   !< of the data, as a word of the script
-    logical, intent(in) :: stacked, last
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
+    character(len=*), intent(in) :: source     !< the data as a word of the script: a block of data or a file
+    logical, intent(in) :: stacked             !< the picture has several panels
+    logical, intent(in) :: last                !< the panel is the lowest one
     character(len=:), allocatable :: text
 
     text = axes(curves, data, axis_label(curves%y, data%names, data%units))
@@ -264,9 +269,9 @@ contains
 
   !> Labels and ranges. Numbers are written with as many digits as tell them apart.
   pure function axes(curves, data, label) result(text)
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
-    character(len=*), intent(in) :: label   !< of the upward axis
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
+    character(len=*), intent(in) :: label      !< label of the upward axis
     character(len=:), allocatable :: text
     real(wp) :: x(2), y(2), sides(2)
 
@@ -287,8 +292,8 @@ contains
 
   !> Whether both axes have the same unit and the picture is to show true shapes.
   pure logical function equal_scales(curves, data)
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
 
     equal_scales = data%units(curves(1)%x)%text == data%units(curves(1)%y)%text .and. .not. over_time(curves(1))
     if (equal_scales) equal_scales = maxval(spans(curves, data)) > tiny(1.0_wp)
@@ -296,7 +301,8 @@ contains
 
   !> The range of an axis around what the data take, with a margin.
   pure function axis_range(ends, span) result(text)
-    real(wp), intent(in) :: ends(2), span
+    real(wp), intent(in) :: ends(2)  !< least and greatest value
+    real(wp), intent(in) :: span     !< length of the axis, without margins
     character(len=:), allocatable :: text
     real(wp) :: middle, half
 
@@ -307,7 +313,7 @@ contains
 
   !> How gnuplot writes the numbers of an axis.
   pure function format_for(ends) result(text)
-    real(wp), intent(in) :: ends(2)
+    real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
     character(len=:), allocatable :: text
 
     text = quoted('%.'//to_text(digits_needed(ends))//'g')
@@ -315,7 +321,7 @@ contains
 
   !> Letters that the marks of an axis take: the digits, and for numbers like -3.5e-13 or -0.00035 more.
   pure integer function letters_needed(ends)
-    real(wp), intent(in) :: ends(2)
+    real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
     real(wp), parameter :: smallest_short = 1e-2_wp, largest_short = 1e6_wp
     integer, parameter :: exponent = 4
     real(wp) :: size
@@ -327,7 +333,7 @@ contains
 
   !> Digits by which neighbouring marks of an axis differ, six at least.
   pure integer function digits_needed(ends)
-    real(wp), intent(in) :: ends(2)
+    real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
     real(wp) :: size, span
 
     digits_needed = 6
@@ -338,9 +344,10 @@ contains
 
   !> The plot command.
   pure function curve_commands(curves, data, source, with) result(text)
-    type(curve_type), intent(in) :: curves(:)
-    type(plot_data_type), intent(in) :: data
-    character(len=*), intent(in) :: source, with
+    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
+    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
+    character(len=*), intent(in) :: source     !< the data as a word of the script: a block of data or a file
+    character(len=*), intent(in) :: with       !< style of the curves
     character(len=:), allocatable :: text
     integer :: i
 
@@ -362,8 +369,8 @@ contains
 
   !> What the key calls a curve.
   pure function curve_name(curve, data) result(name)
-    type(curve_type), intent(in) :: curve
-    type(plot_data_type), intent(in) :: data
+    type(curve_type), intent(in) :: curve     !< the curve with its two columns
+    type(plot_data_type), intent(in) :: data  !< rows and columns that are plotted
     character(len=:), allocatable :: name
 
     name = data%names(curve%y)%text

@@ -30,11 +30,11 @@ contains
   !> Write the graph into a file; by its ending as text (.dot, .gv), or as a picture (.svg, .png, .pdf) with the text
   !> beside it. Where dot is not there the text is kept, and `said` tells how to use it.
   subroutine save_structure_graph(path, mechanism, plan, drawn, said, err)
-    character(len=*), intent(in) :: path
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    logical, intent(out) :: drawn                        !< or else the words tell why there is no such picture
-    character(len=:), allocatable, intent(out) :: said   !< a line for the user
+    character(len=*), intent(in) :: path                !< file of the graph or of its picture
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    logical, intent(out) :: drawn                       !< the file was written as it was asked for; else `said` tells the reason
+    character(len=:), allocatable, intent(out) :: said  !< a line for the user
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: text, text_path
 
@@ -50,7 +50,7 @@ contains
 
   !> The file of a graph's text: the one that is asked for, or one beside the picture that is.
   pure function text_of_graph(path) result(text_path)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path  !< file of the graph or of its picture
     character(len=:), allocatable :: text_path
 
     select case (ending_of(path))
@@ -63,10 +63,12 @@ contains
 
   !> Let dot draw.
   subroutine draw(path, text, text_path, drawn, said, err)
-    character(len=*), intent(in) :: path, text, text_path
-    logical, intent(out) :: drawn
-    character(len=:), allocatable, intent(inout) :: said
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path                  !< file of the picture
+    character(len=*), intent(in) :: text                  !< text of the graph
+    character(len=*), intent(in) :: text_path             !< file of the text of the graph
+    logical, intent(out) :: drawn                         !< the picture was drawn
+    character(len=:), allocatable, intent(inout) :: said  !< a line for the user; replaced where dot is not there
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(child_outcome_type) :: outcome
     type(string_type) :: words(3)
 
@@ -86,8 +88,8 @@ contains
 
   !> The text of the graph.
   pure function structure_graph(mechanism, plan) result(text)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     character(len=:), allocatable :: text
     integer :: b
 
@@ -109,8 +111,8 @@ contains
 
   !> The links that a block reaches first.
   pure function cluster(plan, b) result(text)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: b
+    type(plan_type), intent(in) :: plan  !< the plan of the mechanism
+    integer, intent(in) :: b             !< number of the block
     character(len=:), allocatable :: text
     integer :: s
 
@@ -126,8 +128,8 @@ contains
 
   !> What a block solves, and for what.
   pure function words_of(plan, block) result(words)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
+    type(plan_type), intent(in) :: plan    !< the plan of the mechanism
+    type(block_type), intent(in) :: block  !< the block
     character(len=:), allocatable :: words
     integer :: i, listed
 
@@ -140,9 +142,9 @@ contains
 
   !> The pairs of a block, from the link that is known.
   pure function edges(mechanism, plan, b) result(text)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: b
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    integer, intent(in) :: b                       !< number of the block
     character(len=:), allocatable :: text
     integer :: s, k, from
 
@@ -160,7 +162,7 @@ contains
   end function edges
 
   pure character(len=7) function colour(b)
-    integer, intent(in) :: b
+    integer, intent(in) :: b  !< number of the block
 
     colour = colours(1 + modulo(b - 1, size(colours)))
   end function colour
@@ -168,7 +170,7 @@ contains
   !> Any text as a string of Graphviz: in double quotes only they and the backslash have a meaning. `&`, which
   !> begins names of letters, is such a name.
   pure function quoted(text) result(string)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: string
 
     string = '"'//with_escapes(printable(text), '"\&', [character(len=5) :: '\"', '\\', '&amp;'])//'"'

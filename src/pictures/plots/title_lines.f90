@@ -14,10 +14,10 @@ contains
   !> A title in lines, broken at blanks, or within words that are longer than a line. Where it takes more lines than
   !> there may be, the last one ends with an ellipsis.
   pure function title_lines(title, room, most) result(lines)
-    character(len=*), intent(in) :: title             !< any bytes
-    integer, intent(in) :: room                       !< letters in a line, at least two
-    integer, intent(in) :: most                       !< lines, at least one
-    type(string_type), allocatable :: lines(:)        !< of printable text; one at least, which can be empty
+    character(len=*), intent(in) :: title       !< title of the mechanism, any bytes
+    integer, intent(in) :: room                 !< largest number of letters in a line, at least two
+    integer, intent(in) :: most                 !< largest number of lines, at least one
+    type(string_type), allocatable :: lines(:)  !< of printable text; one at least, which can be empty
     type(string_type) :: found(most)
     character(len=:), allocatable :: left
     integer :: n, last
@@ -39,8 +39,8 @@ contains
 
   !> The last byte of the first line of a text.
   pure integer function end_of_line(text, room) result(last)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: room                       !< letters in a line
+    character(len=*), intent(in) :: text  !< text that is left, in UTF-8
+    integer, intent(in) :: room           !< largest number of letters in a line
     integer :: blank
 
     last = bytes_of(text, room)
@@ -52,7 +52,7 @@ contains
 
   !> How many letters wide a text is, letters of the usual width.
   pure integer function letters_of(text) result(letters)
-    character(len=*), intent(in) :: text              !< in UTF-8
+    character(len=*), intent(in) :: text  !< in UTF-8
     integer :: i, halves
 
     halves = 0
@@ -66,8 +66,8 @@ contains
 
   !> How many bytes of a text fit into so many letters, whole characters only; those of one character at least.
   pure integer function bytes_of(text, letters) result(bytes)
-    character(len=*), intent(in) :: text              !< in UTF-8
-    integer, intent(in) :: letters
+    character(len=*), intent(in) :: text  !< in UTF-8
+    integer, intent(in) :: letters        !< largest number of letters
     integer :: halves
 
     bytes = 0
@@ -82,8 +82,8 @@ contains
   !> The width of the character at a place, in halves of a small letter. Those of three and more bytes, letters of East
   !> Asia and pictures among them, take two letters.
   pure integer function halves_of(text, place) result(halves)
-    character(len=*), intent(in) :: text              !< in UTF-8
-    integer, intent(in) :: place                      !< of its first byte
+    character(len=*), intent(in) :: text  !< in UTF-8
+    integer, intent(in) :: place          !< place of the first byte of the character
 
     halves = 2
     if (index('fijlrtI''"|.,:;!()[]- ', text(place:place)) > 0) halves = 1

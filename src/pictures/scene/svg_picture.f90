@@ -30,7 +30,7 @@ contains
   !> Write a frame of the film as a picture of its own. Errors are exit_file.
   subroutine save_sketch(path, title, scene, film, projection, frame, err)
     character(len=*), intent(in) :: path               !< name of the file
-    character(len=*), intent(in) :: title              !< any text
+    character(len=*), intent(in) :: title              !< title of the mechanism, any text
     type(scene_type), intent(in) :: scene              !< nodes and items of the picture
     type(film_type), intent(in) :: film                !< poses and values at the outputs of the run
     type(projection_type), intent(in) :: projection    !< from space to the page
@@ -198,7 +198,7 @@ contains
 
   !> The title: in one line if it fits, else smaller in up to three.
   subroutine put_title(title, projection, page)
-    character(len=*), intent(in) :: title            !< any text
+    character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(page_type), intent(inout) :: page           !< text to which the picture is appended
     type(string_type), allocatable :: lines(:)
