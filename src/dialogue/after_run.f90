@@ -34,11 +34,11 @@ contains
 
   !> Hear what the user wants of a run that is over, until it is more than looking at it.
   subroutine look_back(conversation, kept, earlier, changed, next)
-    class(conversation_type), intent(inout) :: conversation
-    type(kept_rows_type), intent(in) :: kept       !< of the last run; none where it did not come that far
-    type(kept_rows_type), intent(in) :: earlier    !< of the run before it
-    logical, intent(in) :: changed                 !< since the last run: Enter runs again
-    integer, intent(out) :: next                   !< over, again or changing
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(kept_rows_type), intent(in) :: kept                 !< results of the last run; none where it did not come that far
+    type(kept_rows_type), intent(in) :: earlier              !< results of the run before the last one
+    logical, intent(in) :: changed                           !< an answer was changed since the last run, so that Enter runs again
+    integer, intent(out) :: next                             !< over, again or changing
     type(string_type), allocatable :: words(:)
     character(len=:), allocatable :: line, word, rest, usual
     logical :: done
@@ -80,8 +80,8 @@ contains
 
   !> The commands, and the names of the columns.
   pure subroutine words_here(kept, words)
-    type(kept_rows_type), intent(in) :: kept
-    type(string_type), allocatable, intent(out) :: words(:)
+    type(kept_rows_type), intent(in) :: kept                 !< results of the last run
+    type(string_type), allocatable, intent(out) :: words(:)  !< the commands and the names of the columns
     integer :: i, n
 
     n = 0
@@ -96,16 +96,16 @@ contains
   end subroutine words_here
 
   subroutine say_columns(conversation, kept)
-    class(conversation_type), intent(in) :: conversation
-    type(kept_rows_type), intent(in) :: kept
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    type(kept_rows_type), intent(in) :: kept              !< results of the last run
 
     if (kept%count > 0) call conversation%say('The columns: '//join(kept%names, ' '))
   end subroutine say_columns
 
   !> Whether there is something to look at; says so where there is not.
   logical function has_rows(conversation, kept)
-    class(conversation_type), intent(in) :: conversation
-    type(kept_rows_type), intent(in) :: kept
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    type(kept_rows_type), intent(in) :: kept              !< results of the last run
 
     has_rows = kept%count > 0
     if (.not. has_rows) call conversation%say('The run has no results to look at.')
@@ -113,9 +113,9 @@ contains
 
   !> "20 q1 P.x": the last rows of some columns.
   subroutine show(conversation, kept, what)
-    class(conversation_type), intent(in) :: conversation
-    type(kept_rows_type), intent(in) :: kept
-    character(len=*), intent(in) :: what
+    class(conversation_type), intent(in) :: conversation !< the conversation as it stands
+    type(kept_rows_type), intent(in) :: kept    !< results of the last run
+    character(len=*), intent(in) :: what        !< the text behind the command: a number of rows and names of columns, each optional
     character(len=len(what)), allocatable :: words(:)
     integer, allocatable :: columns(:)
     integer :: i, rows
@@ -140,10 +140,10 @@ contains
 
   !> The column with a name; none at all where there is none of that name.
   subroutine append_column(conversation, kept, name, columns)
-    class(conversation_type), intent(in) :: conversation
-    type(kept_rows_type), intent(in) :: kept
-    character(len=*), intent(in) :: name
-    integer, allocatable, intent(inout) :: columns(:)
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    type(kept_rows_type), intent(in) :: kept              !< results of the last run
+    character(len=*), intent(in) :: name                  !< name of the column
+    integer, allocatable, intent(inout) :: columns(:)     !< numbers of the columns; none after an unknown name
     character(len=:), allocatable :: meant
     integer :: number
 
@@ -161,9 +161,9 @@ contains
 
   !> A plot in the terminal, unless a picture is named.
   subroutine plot(conversation, kept, what)
-    class(conversation_type), intent(in) :: conversation
-    type(kept_rows_type), intent(in) :: kept
-    character(len=*), intent(in) :: what            !< as the argument of --plot; blanks are as good as commas
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    type(kept_rows_type), intent(in) :: kept              !< results of the last run
+    character(len=*), intent(in) :: what                  !< the argument of --plot, with blanks or commas between names
     type(error_type), allocatable :: err
     character(len=:), allocatable :: request, target, said
     integer :: i
@@ -182,8 +182,9 @@ contains
   end subroutine plot
 
   subroutine compare(conversation, kept, earlier)
-    class(conversation_type), intent(in) :: conversation
-    type(kept_rows_type), intent(in) :: kept, earlier
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    type(kept_rows_type), intent(in) :: kept              !< results of the last run
+    type(kept_rows_type), intent(in) :: earlier           !< results of the run before the last one
     type(comparison_type) :: comparison
 
     if (.not. has_rows(conversation, kept)) return
@@ -197,8 +198,8 @@ contains
 
   !> A list of columns with the name of a point as its three coordinates: "q1, P" as "q1,P.x,P.y,P.z".
   pure function with_points(kept, list) result(text)
-    type(kept_rows_type), intent(in) :: kept
-    character(len=*), intent(in) :: list         !< what was typed behind the command
+    type(kept_rows_type), intent(in) :: kept  !< results of the last run
+    character(len=*), intent(in) :: list      !< the text behind the command
     character(len=:), allocatable :: text, word
     character(len=len(list)), allocatable :: words(:)
     integer :: i
@@ -216,8 +217,8 @@ contains
   end function with_points
 
   pure logical function is_column(kept, name)
-    type(kept_rows_type), intent(in) :: kept
-    character(len=*), intent(in) :: name
+    type(kept_rows_type), intent(in) :: kept  !< results of the last run
+    character(len=*), intent(in) :: name      !< name that is looked for
     integer :: i
 
     is_column = .true.
@@ -229,7 +230,7 @@ contains
 
   !> Commas as blanks.
   pure function with_blanks(text) result(plain)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text  !< words with blanks or commas between
     character(len=len(text)) :: plain
     integer :: i
 

@@ -27,7 +27,7 @@ contains
 
   !> Put the question that is due, and take its answer.
   subroutine ask(conversation)
-    class(conversation_type), intent(inout) :: conversation
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type) :: question
     type(default_type) :: default
     type(string_type), allocatable :: words(:)
@@ -61,7 +61,7 @@ contains
 
   !> The question before. A group whose first question is due, and that is not complete, is left out.
   subroutine go_back(conversation)
-    class(conversation_type), intent(inout) :: conversation
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     logical :: done
 
     if (conversation%interview%is_begun()) then
@@ -75,7 +75,7 @@ contains
 
   !> Take away the load, point or body that is spoken of.
   subroutine leave_out(conversation)
-    class(conversation_type), intent(inout) :: conversation
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=:), allocatable :: name
     logical :: done
 
@@ -94,8 +94,8 @@ contains
 
   !> Take an answer to the question that is due.
   subroutine take_answer(conversation, line)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: line
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
     type(question_type) :: question
 
     question = conversation%interview%due()
@@ -113,8 +113,8 @@ contains
 
   !> The title of a topic where it begins.
   subroutine announce_topic(conversation, question)
-    class(conversation_type), intent(inout) :: conversation
-    type(question_type), intent(in) :: question
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(question_type), intent(in) :: question              !< the question
 
     if (question%topic == conversation%topic) return
     conversation%topic = question%topic
@@ -127,10 +127,10 @@ contains
 
   !> What stands above the prompt, and the prompt.
   subroutine introduce(conversation, question, default, prompt)
-    class(conversation_type), intent(inout) :: conversation
-    type(question_type), intent(in) :: question
-    type(default_type), intent(out) :: default
-    character(len=:), allocatable, intent(out) :: prompt
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(question_type), intent(in) :: question              !< the question
+    type(default_type), intent(out) :: default               !< the answer that Enter gives
+    character(len=:), allocatable, intent(out) :: prompt     !< text in front of the answer
     character(len=:), allocatable :: heading
 
     associate (draft => conversation%interview%draft, outline => conversation%interview%outline)
@@ -160,8 +160,8 @@ contains
 
   !> Enter: what stands in brackets.
   subroutine take_default(conversation, default)
-    class(conversation_type), intent(inout) :: conversation
-    type(default_type), intent(in) :: default
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(default_type), intent(in) :: default                !< the answer that Enter gives
 
     if (default%noted) then
       call keep_answer(conversation, default%text)
@@ -174,9 +174,9 @@ contains
 
   !> The answer about a name.
   subroutine take_item(conversation, question, line)
-    class(conversation_type), intent(inout) :: conversation
-    type(question_type), intent(in) :: question
-    character(len=*), intent(in) :: line
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(question_type), intent(in) :: question              !< the question
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
     character(len=:), allocatable :: text, problem
 
     if (lower(line(:min(len(line), 8))) == 'default') then
@@ -197,9 +197,9 @@ contains
   !> Whether an answer makes more or fewer coordinates independent than the structure allows. What it hardly allows is
   !> refused once: given again it is taken.
   subroutine count_independent(conversation, text, problem)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: text                      !< the answer as a data file writes it
-    character(len=:), allocatable, intent(inout) :: problem   !< empty where nothing speaks against it
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: text                     !< the answer as a data file writes it
+    character(len=:), allocatable, intent(inout) :: problem  !< the reason against the answer; empty: none
     logical :: certain
 
     call conversation%interview%miscount(text, problem, certain)
@@ -211,8 +211,8 @@ contains
 
   !> Note an answer and go on.
   subroutine keep_answer(conversation, text)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: text
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: text                     !< the answer as a data file writes it
 
     call conversation%interview%note(text)
     if (conversation%interview%dropped /= '') &
@@ -222,7 +222,7 @@ contains
 
   !> The next question; what was typed is kept.
   subroutine move_on(conversation)
-    class(conversation_type), intent(inout) :: conversation
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
 
     call conversation%interview%step()
     call conversation%keep()
@@ -231,10 +231,10 @@ contains
   !> Whether an answer fits what is known already, as the reader of data files would judge it. Structural
   !> data that go together are judged together, when the structure is complete.
   subroutine hold_against_rest(conversation, question, text, problem)
-    class(conversation_type), intent(in) :: conversation
-    type(question_type), intent(in) :: question
-    character(len=*), intent(in) :: text
-    character(len=:), allocatable, intent(out) :: problem
+    class(conversation_type), intent(in) :: conversation   !< the conversation as it stands
+    type(question_type), intent(in) :: question            !< the question
+    character(len=*), intent(in) :: text                   !< the answer as a data file writes it
+    character(len=:), allocatable, intent(out) :: problem  !< messages, a line each; empty: nothing is wrong
     type(draft_type) :: trial
     character(len=:), allocatable :: group, name
 
@@ -259,9 +259,9 @@ contains
 
   !> Which seldom names of a group are asked for.
   subroutine take_seldom(conversation, question, line)
-    class(conversation_type), intent(inout) :: conversation
-    type(question_type), intent(in) :: question
-    character(len=*), intent(in) :: line
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(question_type), intent(in) :: question              !< the question
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
     character(len=:), allocatable :: problem
     integer, allocatable :: rows(:)
     integer :: i
@@ -285,10 +285,10 @@ contains
 
   !> Names separated by blanks or commas.
   pure subroutine take_names(line, rows, asked, problem)
-    character(len=*), intent(in) :: line
-    integer, intent(in) :: rows(:)                !< of the names that can be meant
-    logical, intent(inout) :: asked(:)
-    character(len=:), allocatable, intent(out) :: problem
+    character(len=*), intent(in) :: line                   !< the answer, without blanks around it
+    integer, intent(in) :: rows(:)                         !< rows in item_table of the names that can be meant
+    logical, intent(inout) :: asked(:)                     !< (rows of item_table) which seldom names are asked for
+    character(len=:), allocatable, intent(out) :: problem  !< the reason why a word is no name; empty: all are names
     character(len=:), allocatable :: plain, hint
     integer, parameter :: longest_list = 200
     integer :: i, k
@@ -317,8 +317,8 @@ contains
 
   !> How the structure is given. What was given in another way is forgotten.
   subroutine take_way(conversation, line)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: line
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
     character(len=:), allocatable :: way
 
     way = word_meant(line(:min(len(line), 20)), ways)
@@ -342,8 +342,8 @@ contains
 
   !> Whether dependent coordinates at the start are asked for.
   subroutine take_guesses(conversation, line)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: line
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
 
     associate (interview => conversation%interview)
       select case (yes_or_no(line))

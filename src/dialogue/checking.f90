@@ -26,8 +26,8 @@ contains
 
   !> Carry out the check that is due, and go on where all is well; else offer a correction.
   subroutine check(conversation, task)
-    class(conversation_type), intent(inout) :: conversation
-    class(task_type), intent(in) :: task
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    class(task_type), intent(in) :: task                     !< what the program computes
     type(question_type) :: question
 
     question = conversation%interview%due()
@@ -40,7 +40,7 @@ contains
 
   !> Show the structure, or what is wrong with it.
   subroutine judge_structure(conversation)
-    class(conversation_type), intent(inout) :: conversation
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
 
     character(len=:), allocatable :: otherwise
 
@@ -60,8 +60,8 @@ contains
 
   !> Put the mechanism together at the start and tell how it went.
   subroutine judge_start(conversation, task)
-    class(conversation_type), intent(inout) :: conversation
-    class(task_type), intent(in) :: task
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    class(task_type), intent(in) :: task                     !< what the program computes
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(state_type) :: start
@@ -91,10 +91,10 @@ contains
 
   !> Positions of all coordinates, and what the geometry says of the mobility.
   subroutine tell_start(conversation, mechanism, plan, start)
-    class(conversation_type), intent(in) :: conversation
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(state_type), intent(in) :: start                 !< position at the start
     type(mobility_report_type) :: report
     character(len=:), allocatable :: text
     integer :: k

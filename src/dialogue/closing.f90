@@ -31,9 +31,9 @@ contains
   !> Show all answers and what is still wrong, and hear what to change; once all is right, what to do.
   !> `run_path` is the data file to be run then; empty: none.
   subroutine close_conversation(conversation, needs_drives, run_path)
-    class(conversation_type), intent(inout) :: conversation
-    logical, intent(in) :: needs_drives
-    character(len=:), allocatable, intent(inout) :: run_path
+    class(conversation_type), intent(inout) :: conversation   !< the conversation as it stands
+    logical, intent(in) :: needs_drives                       !< the program needs a drive for each independent coordinate
+    character(len=:), allocatable, intent(inout) :: run_path  !< data file to be run then; empty: none
     type(string_type) :: words(5)
     character(len=:), allocatable :: line
     logical :: done
@@ -61,8 +61,8 @@ contains
 
   !> All answers where the end is reached the first time, and what is wrong with them.
   subroutine show_all(conversation, needs_drives)
-    class(conversation_type), intent(inout) :: conversation
-    logical, intent(in) :: needs_drives
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    logical, intent(in) :: needs_drives                      !< the program needs a drive for each independent coordinate
     type(mechanism_type) :: mechanism
     type(draft_text_type) :: written
     type(diagnostics_type) :: diagnostics
@@ -85,8 +85,8 @@ contains
 
   !> Save, run, both or neither.
   subroutine finish(conversation, run_path)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=:), allocatable, intent(inout) :: run_path
+    class(conversation_type), intent(inout) :: conversation   !< the conversation as it stands
+    character(len=:), allocatable, intent(inout) :: run_path  !< data file to be run then; empty: none
     type(string_type) :: words(6)
     character(len=:), allocatable :: line
     integer :: i
@@ -123,8 +123,8 @@ contains
 
   !> Write the data file under a name that is asked for. `saved` is false where the user went back or left.
   subroutine save(conversation, saved)
-    class(conversation_type), intent(inout) :: conversation
-    logical, intent(out) :: saved
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    logical, intent(out) :: saved                            !< the data file was written
     type(error_type), allocatable :: err
     type(string_type) :: words(2)
     character(len=:), allocatable :: path
@@ -165,8 +165,8 @@ contains
 
   !> Whether a data file of this name would be written over the table of one of its drives.
   logical function is_read(draft, path)
-    type(draft_type), intent(in) :: draft
-    character(len=*), intent(in) :: path
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    character(len=*), intent(in) :: path   !< name of the data file
     character(len=:), allocatable :: table
     integer :: i
 
@@ -183,9 +183,9 @@ contains
 
   !> Write all answers as a finished data file; then what was kept of them on the way is of no more use.
   subroutine write_data_file(conversation, path, err)
-    class(conversation_type), intent(in) :: conversation
-    character(len=*), intent(in) :: path
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: path                  !< name of the data file
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(draft_type) :: draft
 
     draft = conversation%interview%draft
@@ -199,9 +199,9 @@ contains
 
   !> A file that is there and is not the one being edited is overwritten only where the user says so.
   subroutine agree_to_overwrite(conversation, path, agreed)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: path
-    logical, intent(out) :: agreed
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: path                     !< name of the data file
+    logical, intent(out) :: agreed                           !< the file can be written
     type(string_type) :: words(2)
     character(len=:), allocatable :: line
 

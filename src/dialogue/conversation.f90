@@ -47,8 +47,8 @@ contains
 
   !> Say something, a paragraph two columns in.
   subroutine say(self, text)
-    class(conversation_type), intent(in) :: self   !< the conversation
-    character(len=*), intent(in) :: text
+    class(conversation_type), intent(in) :: self  !< the conversation
+    character(len=*), intent(in) :: text          !< words, any number of lines
 
     call print_paragraph(error_unit, text, 2)
   end subroutine say
@@ -56,10 +56,10 @@ contains
   !> Ask, and hear an answer without blanks around it. `list` is answered here; `quit`, and an input that
   !> ends, end the conversation: the line is of no use then.
   subroutine listen(self, prompt, words, line)
-    class(conversation_type), intent(inout) :: self   !< the conversation
-    character(len=*), intent(in) :: prompt
-    type(string_type), intent(in) :: words(:)
-    character(len=:), allocatable, intent(out) :: line
+    class(conversation_type), intent(inout) :: self     !< the conversation
+    character(len=*), intent(in) :: prompt              !< text in front of the answer
+    type(string_type), intent(in) :: words(:)           !< words that can be completed
+    character(len=:), allocatable, intent(out) :: line  !< the answer, without blanks around it
     integer :: status
 
     do
@@ -83,7 +83,7 @@ contains
 
   !> Blanks and tabs off both ends.
   pure function without_blanks(line) result(text)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< a line as it was typed
     character(len=:), allocatable :: text
     character(len=*), parameter :: blanks = ' '//achar(9)
 
@@ -92,7 +92,7 @@ contains
 
   !> Keep what was typed so far. Where that fails it is told once.
   subroutine keep(self)
-    class(conversation_type), intent(inout) :: self   !< the conversation
+    class(conversation_type), intent(inout) :: self  !< the conversation
     type(error_type), allocatable :: err
 
     if (self%cannot_keep) return
@@ -111,7 +111,7 @@ contains
   end subroutine keep
 
   pure logical function says_nothing(draft)
-    type(draft_type), intent(in) :: draft
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer :: i
 
     says_nothing = all([(size(draft%groups(i)%entries) == 0, i=1, size(draft%groups))])
@@ -119,7 +119,7 @@ contains
 
   !> Settle the names of files.
   subroutine name_files(self)
-    class(conversation_type), intent(inout) :: self   !< the conversation
+    class(conversation_type), intent(inout) :: self  !< the conversation
 
     if (self%stem == '') self%stem = stem_of_title(self%interview%draft%value('mechanism', 1, 'title'))
     if (self%data_path == '') self%data_path = self%stem//'.nml'

@@ -22,9 +22,9 @@ contains
 
   !> Lead a conversation and do what it ends with. `code` is what the program answers to the shell.
   subroutine converse(task, options, code)
-    class(task_type), intent(in) :: task
-    type(command_line_type), intent(in) :: options
-    integer, intent(out) :: code
+    class(task_type), intent(in) :: task            !< what the program computes
+    type(command_line_type), intent(in) :: options  !< options of the command line
+    integer, intent(out) :: code                    !< exit code of the program
     type(conversation_type) :: conversation
     character(len=:), allocatable :: run_path
 
@@ -46,10 +46,10 @@ contains
 
   !> The first words, and what is known already.
   subroutine begin(conversation, task, options, code)
-    type(conversation_type), intent(inout) :: conversation
-    class(task_type), intent(in) :: task
-    type(command_line_type), intent(in) :: options
-    integer, intent(out) :: code
+    type(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    class(task_type), intent(in) :: task                    !< what the program computes
+    type(command_line_type), intent(in) :: options          !< options of the command line
+    integer, intent(out) :: code                            !< exit code of the program
     character(len=:), allocatable :: path, bookmark
     type(draft_type) :: draft
     type(diagnostics_type) :: diagnostics
@@ -91,8 +91,9 @@ contains
   end subroutine begin
 
   subroutine greet(conversation, program_name, path)
-    type(conversation_type), intent(in) :: conversation
-    character(len=*), intent(in) :: program_name, path
+    type(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: program_name         !< mech9k or mech9d
+    character(len=*), intent(in) :: path                 !< file that the conversation is about; empty: none
     character(len=*), parameter :: how = 'Enter takes what stands in brackets, ? explains, back returns, list shows all '// &
                                          'answers, quit leaves; what is typed is kept.'
 
@@ -108,8 +109,8 @@ contains
 
   !> The last words, and the exit code of a conversation that does not end with a run.
   subroutine take_leave(conversation, code)
-    type(conversation_type), intent(inout) :: conversation
-    integer, intent(out) :: code
+    type(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    integer, intent(out) :: code                            !< exit code of the program
     character(len=:), allocatable :: missing
 
     code = exit_done

@@ -23,8 +23,8 @@ contains
 
   !> Show what is wrong, each with the answer it is about.
   subroutine show_faults(conversation, faults)
-    class(conversation_type), intent(in) :: conversation
-    type(fault_type), intent(in) :: faults(:)
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    type(fault_type), intent(in) :: faults(:)             !< errors, each with its entry in the draft
     character(len=:), allocatable :: text
     integer :: i
 
@@ -43,9 +43,9 @@ contains
   !> Ask which answer to change after a check that failed. Enter takes the first that is wrong or
   !> lacking; where there is none, the question with the label `otherwise`.
   subroutine offer_correction(conversation, faults, otherwise)
-    class(conversation_type), intent(inout) :: conversation
-    type(fault_type), intent(in) :: faults(:)
-    character(len=*), intent(in) :: otherwise
+    class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
+    type(fault_type), intent(in) :: faults(:)         !< errors, each with its entry in the draft
+    character(len=*), intent(in) :: otherwise         !< label of the question that Enter takes where no answer is known to be wrong
     type(string_type) :: words(6)
     character(len=:), allocatable :: line, proposal
     integer :: first, missing
@@ -82,8 +82,8 @@ contains
 
   !> Guesses are asked for in their turn; to anything else the conversation comes back from here.
   subroutine take_otherwise(conversation, label)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: label
+    class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
+    character(len=*), intent(in) :: label             !< label of the question that Enter takes where no answer is known to be wrong
     integer :: number
 
     number = find_question(conversation%interview%questions, label)
@@ -111,9 +111,10 @@ contains
   !> The number of the first answer that is wrong, and that of the first question whose answer is lacking;
   !> 0 where there is none.
   pure subroutine find_first(conversation, faults, first, missing)
-    class(conversation_type), intent(in) :: conversation
-    type(fault_type), intent(in) :: faults(:)
-    integer, intent(out) :: first, missing
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    type(fault_type), intent(in) :: faults(:)             !< errors, each with its entry in the draft
+    integer, intent(out) :: first                         !< number of the first answer that is wrong; 0: none
+    integer, intent(out) :: missing                       !< number of the first question that lacks its answer; 0: none
     integer :: i
 
     first = 0
@@ -132,8 +133,8 @@ contains
 
   !> Make a question due, and return to the present one after it.
   subroutine begin_correction(conversation, number)
-    class(conversation_type), intent(inout) :: conversation
-    integer, intent(in) :: number
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    integer, intent(in) :: number                            !< number of the question
 
     associate (interview => conversation%interview)
       if (interview%return_to == '') interview%return_to = label_of(interview%due())
@@ -145,9 +146,9 @@ contains
   !> Do what a line asks for: change an answer by its number or its name, to a value where one is given as in
   !> "time end = 2"; add a group; remove something. `done` is false where the line means none of these.
   subroutine change(conversation, line, done)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: line
-    logical, intent(out), optional :: done
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the line that was typed
+    logical, intent(out), optional :: done                   !< false where the line means none of these
     character(len=:), allocatable :: word
     logical :: found
 
@@ -172,9 +173,9 @@ contains
 
   !> Make the question due whose answer is named, or give it its answer.
   subroutine change_answer(conversation, line, found)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: line
-    logical, intent(out) :: found
+    class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
+    character(len=*), intent(in) :: line         !< number or name of the answer, with the value behind an equals sign or without it
+    logical, intent(out) :: found                !< the line means an answer that can be changed
     character(len=:), allocatable :: group, name, which
     integer :: place, equals
     logical :: by_number
@@ -198,9 +199,9 @@ contains
 
   !> Ask for one group more.
   subroutine add_group(conversation, group, found)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: group
-    logical, intent(out) :: found
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: group                    !< name of the group
+    logical, intent(out) :: found                            !< such a group can be added
     integer :: i, row
 
     found = .true.
@@ -221,7 +222,7 @@ contains
 
   !> The groups of which there can be any number.
   function addable(conversation) result(list)
-    class(conversation_type), intent(in) :: conversation
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     character(len=:), allocatable :: list
     integer :: i
 
@@ -237,9 +238,9 @@ contains
 
   !> Take an answer away, or a group.
   subroutine remove(conversation, what, found)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: what
-    logical, intent(out) :: found
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: what                     !< number or name of the answer, or name and number of the group
+    logical, intent(out) :: found                            !< there was something to remove
     character(len=:), allocatable :: group, name, here
     integer :: place
 

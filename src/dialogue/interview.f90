@@ -50,9 +50,9 @@ contains
 
   !> Begin with a draft: an empty one, or what a file says.
   pure subroutine start(self, program_name, draft)
-    class(interview_type), intent(inout) :: self   !< the interview
-    character(len=*), intent(in) :: program_name
-    type(draft_type), intent(in) :: draft
+    class(interview_type), intent(inout) :: self  !< the interview
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+    type(draft_type), intent(in) :: draft         !< draft to begin with
 
     self%draft = draft
     if (self%draft%count_of('mechanism') == 0) call self%draft%add('mechanism')
@@ -70,7 +70,7 @@ contains
 
   !> The question that is due.
   pure type(question_type) function due(self)
-    class(interview_type), intent(in) :: self   !< the interview
+    class(interview_type), intent(in) :: self  !< the interview
 
     due = self%questions(self%at)
   end function due
@@ -78,8 +78,8 @@ contains
   !> Work out what follows from the draft: the structure, groups, questions. The question with this label is
   !> due then; the same number as before where there is none.
   pure subroutine refresh(self, label)
-    class(interview_type), intent(inout) :: self   !< the interview
-    character(len=*), intent(in) :: label
+    class(interview_type), intent(inout) :: self  !< the interview
+    character(len=*), intent(in) :: label         !< label of the question that is due then; empty: the number of the question stays
     integer :: found
 
     call read_draft_structure(self%draft, self%outline, self%structure, self%vectors, self%faults)
@@ -99,7 +99,7 @@ contains
 
   !> A structure of more parts than can be spoken of is as good as none.
   pure logical function counts_agree(self)
-    type(interview_type), intent(in) :: self   !< the interview
+    type(interview_type), intent(in) :: self  !< the interview
 
     counts_agree = .false.
     if (allocated(self%structure%links)) counts_agree = size(self%structure%links, 2) <= most_parts
@@ -108,7 +108,7 @@ contains
   !> Go on from the question that is due: to the next one; while correcting, to what is lacking now, and
   !> then back to where the correction began.
   pure subroutine step(self)
-    class(interview_type), intent(inout) :: self   !< the interview
+    class(interview_type), intent(inout) :: self  !< the interview
     integer :: i, goal
 
     if (self%return_to == '') then
@@ -134,7 +134,8 @@ contains
   end subroutine step
 
   pure logical function same_group(one, other)
-    type(question_type), intent(in) :: one, other
+    type(question_type), intent(in) :: one    !< the question that is due
+    type(question_type), intent(in) :: other  !< the question after it
 
     same_group = one%kind == ask_item .and. other%kind == ask_item .and. one%group_row == other%group_row .and. &
                  one%place == other%place .and. .not. other%is_new
@@ -142,8 +143,8 @@ contains
 
   !> Go to the question before; checks are no questions. `done` is false at the first one.
   pure subroutine back(self, done)
-    class(interview_type), intent(inout) :: self   !< the interview
-    logical, intent(out) :: done
+    class(interview_type), intent(inout) :: self  !< the interview
+    logical, intent(out) :: done                  !< false at the first question
     integer :: i
 
     done = .false.
@@ -158,7 +159,7 @@ contains
   !> Whether the question that is due is the first of a group that can be left out and still lacks answers: such a
   !> group was begun, perhaps by mistake.
   pure logical function is_begun(self)
-    class(interview_type), intent(in) :: self   !< the interview
+    class(interview_type), intent(in) :: self  !< the interview
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -179,8 +180,8 @@ contains
   !> Take away the load, point or body that the question that is due belongs to. Whether there is another in its
   !> place is asked then.
   pure subroutine leave_out(self, done)
-    class(interview_type), intent(inout) :: self   !< the interview
-    logical, intent(out) :: done                !< false: the question belongs to no group that can be left out
+    class(interview_type), intent(inout) :: self  !< the interview
+    logical, intent(out) :: done                  !< false where the question belongs to no group that can be left out
     type(question_type) :: question
     character(len=:), allocatable :: group
     integer, allocatable :: rows(:)
@@ -199,10 +200,11 @@ contains
   !> Ask for an entry of the draft, then return to the question that is due now. `found` is false where
   !> this program has no question about it.
   pure subroutine correct(self, group, place, name, found)
-    class(interview_type), intent(inout) :: self   !< the interview
-    character(len=*), intent(in) :: group, name
-    integer, intent(in) :: place
-    logical, intent(out) :: found
+    class(interview_type), intent(inout) :: self  !< the interview
+    character(len=*), intent(in) :: group         !< name of the group
+    character(len=*), intent(in) :: name          !< name with its subscript
+    integer, intent(in) :: place                  !< place among the groups of that name, from 1
+    logical, intent(out) :: found                 !< false where the program has no question about it
     character(len=:), allocatable :: here
     integer, allocatable :: rows(:)
     integer :: number
@@ -226,10 +228,10 @@ contains
   !> it does not, or is about something else. Each closed chain makes at least one coordinate dependent, and three unless its pairs are of a
   !> special kind.
   pure subroutine miscount(self, answer, problem, certain)
-    class(interview_type), intent(in) :: self   !< the interview
-    character(len=*), intent(in) :: answer                     !< as a data file writes it
-    character(len=:), allocatable, intent(out) :: problem
-    logical, intent(out) :: certain                            !< no pairs at all can make it right
+    class(interview_type), intent(in) :: self              !< the interview
+    character(len=*), intent(in) :: answer                 !< the answer as a data file writes it
+    character(len=:), allocatable, intent(out) :: problem  !< the reason against the answer; empty: none
+    logical, intent(out) :: certain                        !< the answer is wrong whatever the pairs are
     type(interview_type) :: trial
     integer :: chains, named, most, usual
 
@@ -260,8 +262,8 @@ contains
 
   !> Keep an answer to the question that is due, which then may have others after it.
   pure subroutine note(self, text)
-    class(interview_type), intent(inout) :: self   !< the interview
-    character(len=*), intent(in) :: text        !< as a data file writes it
+    class(interview_type), intent(inout) :: self  !< the interview
+    character(len=*), intent(in) :: text          !< the answer as a data file writes it
     type(question_type) :: question
 
     question = self%due()
@@ -271,7 +273,7 @@ contains
 
   !> Take the answer to the question that is due back.
   pure subroutine unnote(self)
-    class(interview_type), intent(inout) :: self   !< the interview
+    class(interview_type), intent(inout) :: self  !< the interview
     type(question_type) :: question
 
     question = self%due()
@@ -281,7 +283,7 @@ contains
   !> What must be known beside the draft to go on with it: the question that is due, the way of the
   !> structure, and the seldom names that are asked for: "pair(1).axis; pairs; pair.zero pair.moving_point".
   pure function bookmark(self) result(text)
-    class(interview_type), intent(in) :: self   !< the interview
+    class(interview_type), intent(in) :: self  !< the interview
     character(len=:), allocatable :: text
     integer :: row
 
@@ -294,8 +296,8 @@ contains
 
   !> Go on where a bookmark says, as far as it means anything.
   pure subroutine open_at(self, text)
-    class(interview_type), intent(inout) :: self   !< the interview
-    character(len=*), intent(in) :: text
+    class(interview_type), intent(inout) :: self  !< the interview
+    character(len=*), intent(in) :: text          !< the bookmark, in the form of `bookmark`
     integer :: first, second, row
 
     first = index(text, ';')

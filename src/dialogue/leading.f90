@@ -13,8 +13,8 @@ contains
 
   !> Go on until every question is answered, or the user leaves.
   subroutine lead(conversation, task)
-    class(conversation_type), intent(inout) :: conversation
-    class(task_type), intent(in) :: task
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    class(task_type), intent(in) :: task                     !< what the program computes
 
     do while (conversation%state == going)
       associate (question => conversation%interview%due())

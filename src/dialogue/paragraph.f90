@@ -10,9 +10,9 @@ contains
 
   !> Print text from a column on, broken at blanks; its own line ends stay.
   subroutine print_paragraph(unit, text, indent)
-    integer, intent(in) :: unit
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: indent          !< columns left free
+    integer, intent(in) :: unit           !< number of the output unit
+    character(len=*), intent(in) :: text  !< words with blanks between, any number of lines
+    integer, intent(in) :: indent         !< number of columns left free
     integer :: first, line_end, last, cut
 
     first = 1

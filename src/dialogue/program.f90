@@ -16,7 +16,7 @@ contains
 
   !> The whole program. It does not come back.
   subroutine run_program(task)
-    class(task_type), intent(in) :: task
+    class(task_type), intent(in) :: task  !< what the program computes
     integer :: code
 
     call leave_quit_alone()
@@ -26,8 +26,8 @@ contains
 
   !> The words are gone again before the program ends.
   subroutine run_command_line(task, code)
-    class(task_type), intent(in) :: task
-    integer, intent(out) :: code
+    class(task_type), intent(in) :: task  !< what the program computes
+    integer, intent(out) :: code          !< exit code of the program
     type(string_type), allocatable :: words(:)
 
     call get_command_words(words)
@@ -36,9 +36,9 @@ contains
 
   !> Do what the words of a command line ask for; `code` is what the program answers to the shell.
   subroutine run_words(task, words, code)
-    class(task_type), intent(in) :: task
-    type(string_type), intent(in) :: words(:)   !< without the program's name
-    integer, intent(out) :: code
+    class(task_type), intent(in) :: task       !< what the program computes
+    type(string_type), intent(in) :: words(:)  !< words of the command line without the program's name
+    integer, intent(out) :: code               !< exit code of the program
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 

@@ -18,11 +18,11 @@ contains
 
   !> Run a data file, and again as often as the user wants; `code` is that of the last run.
   subroutine run_by_turns(conversation, task, options, path, code)
-    class(conversation_type), intent(inout) :: conversation
-    class(task_type), intent(in) :: task
-    type(command_line_type), intent(in) :: options
-    character(len=*), intent(in) :: path            !< the data file of the conversation, or its draft
-    integer, intent(out) :: code
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    class(task_type), intent(in) :: task                     !< what the program computes
+    type(command_line_type), intent(in) :: options           !< options of the command line
+    character(len=*), intent(in) :: path                     !< the data file of the conversation, or its draft
+    integer, intent(out) :: code                             !< exit code of the last run
     type(kept_rows_type) :: kept, earlier
     integer :: next
     logical :: changed, saved_again
@@ -55,10 +55,10 @@ contains
 
   !> The last words: in which file the answers are, where this was not told when the data file was saved.
   subroutine tell_what_is_kept(conversation, path, changed, saved_again)
-    class(conversation_type), intent(in) :: conversation
-    character(len=*), intent(in) :: path         !< of the file that was run
-    logical, intent(in) :: changed               !< since the last run
-    logical, intent(in) :: saved_again           !< changes were written to the data file before a further run
+    class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: path                  !< name of the file that was run
+    logical, intent(in) :: changed                        !< something was changed since the last run
+    logical, intent(in) :: saved_again                    !< changes were written to the data file before a further run
     character(len=:), allocatable :: draft, how
 
     draft = conversation%draft_path
@@ -76,9 +76,9 @@ contains
 
   !> Write the file that is run, if something was changed.
   subroutine keep_changes(conversation, path, changed)
-    class(conversation_type), intent(inout) :: conversation
-    character(len=*), intent(in) :: path
-    logical, intent(inout) :: changed
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: path                     !< name of the file that was run
+    logical, intent(inout) :: changed                        !< there are changes that are not written yet
     type(error_type), allocatable :: err
 
     if (.not. changed) return
@@ -93,7 +93,8 @@ contains
 
   !> The results of the last run are now those of the run before.
   subroutine hand_over(kept, earlier)
-    type(kept_rows_type), intent(inout) :: kept, earlier
+    type(kept_rows_type), intent(inout) :: kept     !< results of the last run; empty afterwards
+    type(kept_rows_type), intent(inout) :: earlier  !< receives them
 
     earlier%title = kept%title
     call move_alloc(kept%names, earlier%names)

@@ -15,9 +15,9 @@ contains
   !> Draw the chains in the order of computation, each as links joined by pairs: "1 =5= 2 -4- 3", where
   !> =5= is an independent coordinate; then tell the mobility by the count.
   subroutine print_sketch(unit, structure, vectors)
-    integer, intent(in) :: unit
-    type(structure_type), intent(in) :: structure
-    type(structural_vectors_type), intent(in) :: vectors
+    integer, intent(in) :: unit                           !< number of the output unit
+    type(structure_type), intent(in) :: structure         !< links of the pairs and independent coordinates
+    type(structural_vectors_type), intent(in) :: vectors  !< the structure as the second set
     type(chain_type), allocatable :: chains(:)
     integer :: i, loops
 
@@ -41,7 +41,9 @@ contains
 
   !> "1 = 7 - 2 x 3".
   pure function count_text(coordinates, loops, each) result(text)
-    integer, intent(in) :: coordinates, loops, each
+    integer, intent(in) :: coordinates  !< number of coordinates
+    integer, intent(in) :: loops        !< number of closed chains
+    integer, intent(in) :: each         !< equations of each closed chain: 3 in a plane, 6 in space
     character(len=:), allocatable :: text
 
     text = to_text(coordinates - loops*each)//' = '//to_text(coordinates)//' - '//to_text(loops)//' x '//to_text(each)
@@ -49,9 +51,9 @@ contains
 
   !> One chain, on as many lines as it needs.
   subroutine print_chain(unit, vectors, chain)
-    integer, intent(in) :: unit
-    type(structural_vectors_type), intent(in) :: vectors
-    type(chain_type), intent(in) :: chain
+    integer, intent(in) :: unit                           !< number of the output unit
+    type(structural_vectors_type), intent(in) :: vectors  !< the structure as the second set
+    type(chain_type), intent(in) :: chain                 !< the chain
     character(len=:), allocatable :: line, step
     integer :: i
 

@@ -17,8 +17,8 @@ contains
 
   !> Print all answers, each with its number, a group or more lines each.
   subroutine print_summary(unit, draft)
-    integer, intent(in) :: unit
-    type(draft_type), intent(in) :: draft
+    integer, intent(in) :: unit            !< number of the output unit
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     character(len=:), allocatable :: line, piece
     integer :: i, j, number
 
@@ -46,8 +46,9 @@ contains
 
   !> The number of a coordinate stands in the title of its group.
   pure logical function is_hidden(draft, group, entry)
-    type(draft_type), intent(in) :: draft
-    integer, intent(in) :: group, entry
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: group           !< index of the group in the draft
+    integer, intent(in) :: entry           !< number of the entry in the group
     integer :: row
 
     is_hidden = .false.
@@ -57,8 +58,8 @@ contains
 
   !> "pair 5", "load 2", "time".
   pure function title_of(draft, group) result(title)
-    type(draft_type), intent(in) :: draft
-    integer, intent(in) :: group
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: group           !< index of the group in the draft
     character(len=:), allocatable :: title
     integer :: row
 
@@ -74,9 +75,10 @@ contains
 
   !> The entry with a number; group 0 where there is none.
   pure subroutine entry_with_number(draft, number, group, entry)
-    type(draft_type), intent(in) :: draft
-    integer, intent(in) :: number
-    integer, intent(out) :: group, entry
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: number          !< the number that the list shows
+    integer, intent(out) :: group          !< index of the group in the draft; 0: none
+    integer, intent(out) :: entry          !< number of the entry in the group; 0: none
     integer :: n
 
     n = 0
@@ -93,8 +95,9 @@ contains
 
   !> The number of an entry; 0 where it has none.
   pure integer function number_of_entry(draft, group, entry) result(number)
-    type(draft_type), intent(in) :: draft
-    integer, intent(in) :: group, entry
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: group           !< index of the group in the draft
+    integer, intent(in) :: entry           !< number of the entry in the group
     integer :: i, j
 
     number = 0
@@ -110,11 +113,12 @@ contains
   !> What the number of an answer means, or words that name it: a group, its place, and a name, empty where only
   !> a group is named. `group` is empty where they mean nothing.
   pure subroutine entry_meant(draft, which, group, place, name, by_number)
-    type(draft_type), intent(in) :: draft
-    character(len=*), intent(in) :: which
-    character(len=:), allocatable, intent(out) :: group, name
-    integer, intent(out) :: place
-    logical, intent(out), optional :: by_number    !< an answer has this number
+    type(draft_type), intent(in) :: draft                !< groups and names with their values as text
+    character(len=*), intent(in) :: which                !< the words that were typed
+    character(len=:), allocatable, intent(out) :: group  !< name of the group; empty: the words mean nothing
+    character(len=:), allocatable, intent(out) :: name   !< name with its subscript; empty: the group as a whole
+    integer, intent(out) :: place                        !< place among the groups of that name, from 1
+    logical, intent(out), optional :: by_number          !< the words are the number of an answer
     integer :: i, entry
 
     i = 0
@@ -133,10 +137,11 @@ contains
   !> said. Where the group is one for each coordinate, its number is the coordinate's. `group` is empty where the
   !> words mean nothing.
   pure subroutine named_entry(draft, line, group, place, name)
-    type(draft_type), intent(in) :: draft
-    character(len=*), intent(in) :: line
-    character(len=:), allocatable, intent(out) :: group, name
-    integer, intent(out) :: place
+    type(draft_type), intent(in) :: draft                !< groups and names with their values as text
+    character(len=*), intent(in) :: line                 !< the words that were typed
+    character(len=:), allocatable, intent(out) :: group  !< name of the group; empty: the words mean nothing
+    character(len=:), allocatable, intent(out) :: name   !< name with its subscript; empty: the group as a whole
+    integer, intent(out) :: place                        !< place among the groups of that name, from 1
     integer :: row, next
 
     group = ''

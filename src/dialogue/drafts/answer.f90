@@ -23,10 +23,10 @@ contains
   !> Values as a data file writes them, or, if that cannot be, why not: one message or several, a line each.
   !> Texts need no quotes, a switch may be answered by yes or no, and short forms are written in full.
   pure subroutine read_answer(row, line, text, problem)
-    type(item_row_type), intent(in) :: row
-    character(len=*), intent(in) :: line                     !< without blanks around it
-    character(len=:), allocatable, intent(out) :: text
-    character(len=:), allocatable, intent(out) :: problem    !< empty where all is well
+    type(item_row_type), intent(in) :: row                 !< row of the table of names for the question
+    character(len=*), intent(in) :: line                   !< the answer, without blanks around it
+    character(len=:), allocatable, intent(out) :: text     !< values as a data file writes them
+    character(len=:), allocatable, intent(out) :: problem  !< the reason why it is no answer; empty: it is one
     character(len=:), allocatable :: written
 
     text = ''
@@ -46,10 +46,10 @@ contains
   end subroutine read_answer
 
   pure subroutine read_values(row, written, text, problem)
-    type(item_row_type), intent(in) :: row
-    character(len=*), intent(in) :: written
-    character(len=:), allocatable, intent(out) :: text
-    character(len=:), allocatable, intent(inout) :: problem
+    type(item_row_type), intent(in) :: row                   !< row of the table of names for the question
+    character(len=*), intent(in) :: written                  !< values in full form
+    character(len=:), allocatable, intent(out) :: text       !< values as a data file writes them
+    character(len=:), allocatable, intent(inout) :: problem  !< stays empty where the values are right
     type(source_type) :: source
     type(item_type) :: item, plain
     type(diagnostics_type) :: diagnostics
@@ -72,7 +72,7 @@ contains
   end subroutine read_values
 
   pure function advice(mark) result(text)
-    character, intent(in) :: mark
+    character, intent(in) :: mark  !< first letter that cannot be read
     character(len=:), allocatable :: text
 
     text = ''
@@ -81,7 +81,7 @@ contains
 
   !> All messages, each once and in a line, at most a few.
   pure function messages_of(diagnostics) result(text)
-    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(in) :: diagnostics  !< the errors that were found
     character(len=:), allocatable :: text, message
     type(span_type) :: span
     integer, parameter :: most = 4
@@ -105,14 +105,14 @@ contains
 
   !> A text in quotes, its own quotes doubled.
   pure function quoted(line) result(text)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< the text without quotes around it
     character(len=:), allocatable :: text
 
     text = ''''//with_escapes(line, '''', [''''''])//''''
   end function quoted
 
   pure function switch_text(line) result(text)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< the answer, without blanks around it
     character(len=:), allocatable :: text
 
     text = line
@@ -122,7 +122,7 @@ contains
 
   !> 'yes' or 'no' for the usual ways to type them; empty for anything else.
   pure function yes_or_no(line) result(word)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< the answer, without blanks around it
     character(len=:), allocatable :: word
 
     select case (lower(line))
@@ -136,7 +136,7 @@ contains
   end function yes_or_no
 
   pure logical function has_control_byte(line)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< the answer, without blanks around it
     integer :: i
 
     has_control_byte = .true.

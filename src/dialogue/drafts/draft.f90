@@ -45,7 +45,7 @@ contains
 
   !> Nothing is said yet.
   pure subroutine clear(self)
-    class(draft_type), intent(inout) :: self   !< the draft
+    class(draft_type), intent(inout) :: self  !< the draft
 
     self%head = ''
     self%comments_left_out = 0
@@ -55,9 +55,9 @@ contains
 
   !> Index of a group; 0 where there is none.
   pure integer function find(self, group, place) result(index)
-    class(draft_type), intent(in) :: self   !< the draft
-    character(len=*), intent(in) :: group
-    integer, intent(in) :: place
+    class(draft_type), intent(in) :: self  !< the draft
+    character(len=*), intent(in) :: group  !< name of the group
+    integer, intent(in) :: place           !< place among the groups of that name, from 1
     integer :: n
 
     n = 0
@@ -70,9 +70,10 @@ contains
 
   !> Place of the group whose name `key` has this number; 0 where there is none.
   pure integer function with_number(self, group, key, number) result(place)
-    class(draft_type), intent(in) :: self   !< the draft
-    character(len=*), intent(in) :: group, key
-    integer, intent(in) :: number
+    class(draft_type), intent(in) :: self  !< the draft
+    character(len=*), intent(in) :: group  !< name of the group
+    character(len=*), intent(in) :: key    !< name whose value is the number
+    integer, intent(in) :: number          !< the number that is looked for
     integer :: i
 
     place = 0
@@ -86,8 +87,8 @@ contains
 
   !> How many groups have this name.
   pure integer function count_of(self, group) result(n)
-    class(draft_type), intent(in) :: self   !< the draft
-    character(len=*), intent(in) :: group
+    class(draft_type), intent(in) :: self  !< the draft
+    character(len=*), intent(in) :: group  !< name of the group
     integer :: i
 
     n = 0
@@ -98,8 +99,8 @@ contains
 
   !> Place of the group with this index among those of its name.
   pure integer function place_of(self, index) result(place)
-    class(draft_type), intent(in) :: self   !< the draft
-    integer, intent(in) :: index
+    class(draft_type), intent(in) :: self  !< the draft
+    integer, intent(in) :: index           !< index of the group in the draft
     integer :: i
 
     place = 0
@@ -110,9 +111,10 @@ contains
 
   !> Number of an entry in its group; 0 where the group does not have it.
   pure integer function find_entry(self, group, place, name) result(number)
-    class(draft_type), intent(in) :: self   !< the draft
-    character(len=*), intent(in) :: group, name
-    integer, intent(in) :: place
+    class(draft_type), intent(in) :: self  !< the draft
+    character(len=*), intent(in) :: group  !< name of the group
+    character(len=*), intent(in) :: name   !< name with its subscript
+    integer, intent(in) :: place           !< place among the groups of that name, from 1
     integer :: i
 
     number = 0
@@ -121,8 +123,8 @@ contains
   end function find_entry
 
   pure integer function entry_number(group, name) result(number)
-    type(draft_group_type), intent(in) :: group
-    character(len=*), intent(in) :: name
+    type(draft_group_type), intent(in) :: group  !< the group
+    character(len=*), intent(in) :: name         !< name with its subscript
 
     do number = size(group%entries), 1, -1
       if (group%entries(number)%name == name) return
@@ -130,8 +132,8 @@ contains
   end function entry_number
 
   pure function value_in(group, name) result(text)
-    type(draft_group_type), intent(in) :: group
-    character(len=*), intent(in) :: name
+    type(draft_group_type), intent(in) :: group  !< the group
+    character(len=*), intent(in) :: name         !< name with its subscript
     character(len=:), allocatable :: text
     integer :: i
 
@@ -142,9 +144,10 @@ contains
 
   !> The values under a name as text; empty where it is not given.
   pure function value(self, group, place, name) result(text)
-    class(draft_type), intent(in) :: self   !< the draft
-    character(len=*), intent(in) :: group, name
-    integer, intent(in) :: place
+    class(draft_type), intent(in) :: self  !< the draft
+    character(len=*), intent(in) :: group  !< name of the group
+    character(len=*), intent(in) :: name   !< name with its subscript
+    integer, intent(in) :: place           !< place among the groups of that name, from 1
     character(len=:), allocatable :: text
     integer :: i
 
@@ -155,26 +158,28 @@ contains
 
   !> The whole number under a name; 0 where there is none.
   pure integer function number(self, group, place, name)
-    class(draft_type), intent(in) :: self   !< the draft
-    character(len=*), intent(in) :: group, name
-    integer, intent(in) :: place
+    class(draft_type), intent(in) :: self  !< the draft
+    character(len=*), intent(in) :: group  !< name of the group
+    character(len=*), intent(in) :: name   !< name with its subscript
+    integer, intent(in) :: place           !< place among the groups of that name, from 1
 
     number = integer_of(self%value(group, place, name))
   end function number
 
   !> Whether a name is given.
   pure logical function has(self, group, place, name)
-    class(draft_type), intent(in) :: self   !< the draft
-    character(len=*), intent(in) :: group, name
-    integer, intent(in) :: place
+    class(draft_type), intent(in) :: self  !< the draft
+    character(len=*), intent(in) :: group  !< name of the group
+    character(len=*), intent(in) :: name   !< name with its subscript
+    integer, intent(in) :: place           !< place among the groups of that name, from 1
 
     has = self%find_entry(group, place, name) > 0
   end function has
 
   !> One group more, empty: after its fellows, or where the table of groups has it.
   pure subroutine add(self, group)
-    class(draft_type), intent(inout) :: self   !< the draft
-    character(len=*), intent(in) :: group
+    class(draft_type), intent(inout) :: self  !< the draft
+    character(len=*), intent(in) :: group     !< name of the group
     type(draft_group_type), allocatable :: longer(:)
     integer :: i, at
 
@@ -194,14 +199,15 @@ contains
 
   !> Where groups of a name stand in a file: as in the table of groups, unknown ones at its end.
   pure integer function rank_of(group) result(rank)
-    character(len=*), intent(in) :: group
+    character(len=*), intent(in) :: group  !< name of the group
 
     rank = find_group_row(group)
     if (rank == 0) rank = huge(rank)
   end function rank_of
 
   pure subroutine move_group(from, to)
-    type(draft_group_type), intent(inout) :: from, to
+    type(draft_group_type), intent(inout) :: from  !< loses its contents
+    type(draft_group_type), intent(inout) :: to    !< receives them
 
     call move_alloc(from%name, to%name)
     call move_alloc(from%comment, to%comment)
@@ -210,9 +216,11 @@ contains
 
   !> Give a name a value, in the place of an earlier one; a group that is not there yet is added.
   pure subroutine give(self, group, place, name, text)
-    class(draft_type), intent(inout) :: self   !< the draft
-    character(len=*), intent(in) :: group, name, text
-    integer, intent(in) :: place             !< at most one more than there are
+    class(draft_type), intent(inout) :: self  !< the draft
+    character(len=*), intent(in) :: group     !< name of the group
+    character(len=*), intent(in) :: name      !< name with its subscript
+    character(len=*), intent(in) :: text      !< values as a data file writes them
+    integer, intent(in) :: place              !< place among the groups of that name; at most one more than there are
     integer :: i, number
 
     if (place > self%count_of(group)) call self%add(group)
@@ -224,9 +232,9 @@ contains
 
   !> One entry more, in the order of the table of names; rows of a matrix in theirs.
   pure subroutine add_entry(group, name, number)
-    type(draft_group_type), intent(inout) :: group
-    character(len=*), intent(in) :: name
-    integer, intent(out) :: number           !< where it stands
+    type(draft_group_type), intent(inout) :: group  !< the group
+    character(len=*), intent(in) :: name            !< name with its subscript
+    integer, intent(out) :: number                  !< number of the new entry in the group
     type(entry_type), allocatable :: longer(:)
     integer :: i
 
@@ -247,7 +255,9 @@ contains
   end subroutine add_entry
 
   pure logical function stands_before(group, name, other)
-    character(len=*), intent(in) :: group, name, other
+    character(len=*), intent(in) :: group  !< name of the group
+    character(len=*), intent(in) :: name   !< name with its subscript
+    character(len=*), intent(in) :: other  !< the other name with its subscript
     integer, allocatable :: rows(:), others(:)
 
     rows = find_item_rows(group, plain_name(name))
@@ -259,7 +269,7 @@ contains
   end function stands_before
 
   pure integer function subscript_of(name) result(subscript)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name  !< name with its subscript
     integer :: first
 
     first = index(name, '(')
@@ -269,9 +279,10 @@ contains
 
   !> Say nothing under a name any more.
   pure subroutine take_away(self, group, place, name)
-    class(draft_type), intent(inout) :: self   !< the draft
-    character(len=*), intent(in) :: group, name
-    integer, intent(in) :: place
+    class(draft_type), intent(inout) :: self  !< the draft
+    character(len=*), intent(in) :: group     !< name of the group
+    character(len=*), intent(in) :: name      !< name with its subscript
+    integer, intent(in) :: place              !< place among the groups of that name, from 1
     type(entry_type), allocatable :: shorter(:)
     integer :: i, j, number
 
@@ -291,9 +302,9 @@ contains
 
   !> A group less.
   pure subroutine remove(self, group, place)
-    class(draft_type), intent(inout) :: self   !< the draft
-    character(len=*), intent(in) :: group
-    integer, intent(in) :: place
+    class(draft_type), intent(inout) :: self  !< the draft
+    character(len=*), intent(in) :: group     !< name of the group
+    integer, intent(in) :: place              !< place among the groups of that name, from 1
     type(draft_group_type), allocatable :: shorter(:)
     integer :: i, index
 
@@ -308,7 +319,7 @@ contains
 
   !> A name without its subscript.
   pure function plain_name(name) result(plain)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name  !< name with its subscript
     character(len=:), allocatable :: plain
 
     plain = name(:index(name//'(', '(') - 1)
@@ -316,7 +327,7 @@ contains
 
   !> The whole number that a text is; 0 where it is none.
   pure integer function integer_of(text) result(number)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text  !< any text
     type(numeral_type) :: numeral
 
     number = 0
@@ -328,7 +339,7 @@ contains
 
   !> A text value without its quotes; what has none stays as it is.
   pure function unquoted(text) result(plain)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text  !< value as a data file writes it
     character(len=:), allocatable :: plain
     character :: quote
     integer :: i

@@ -28,12 +28,12 @@ contains
 
   !> The mechanism of a draft. It is of use only where nothing is wrong.
   subroutine read_draft(draft, path, needs_drives, mechanism, written, diagnostics)
-    type(draft_type), intent(in) :: draft
-    character(len=*), intent(in) :: path          !< of the data file: tables of drives stand beside it
-    logical, intent(in) :: needs_drives
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
-    type(draft_text_type), intent(out) :: written
-    type(diagnostics_type), intent(out) :: diagnostics   !< gets what is wrong
+    type(draft_type), intent(in) :: draft               !< groups and names with their values as text
+    character(len=*), intent(in) :: path                !< path of the data file; tables of drives are sought beside it
+    logical, intent(in) :: needs_drives                 !< the program needs a drive for each independent coordinate
+    type(mechanism_type), intent(out) :: mechanism      !< the mechanism
+    type(draft_text_type), intent(out) :: written       !< text of the draft, with the place of each entry
+    type(diagnostics_type), intent(out) :: diagnostics  !< gets what is wrong
     type(document_type) :: document
 
     call write_draft(draft, '', written)
@@ -43,11 +43,11 @@ contains
 
   !> The structure alone. It is of use only where nothing is wrong.
   pure subroutine read_draft_structure(draft, outline, structure, vectors, faults)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    type(structure_type), intent(out) :: structure
-    type(structural_vectors_type), intent(out) :: vectors
-    type(fault_type), allocatable, intent(out) :: faults(:)
+    type(draft_type), intent(in) :: draft                    !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline                !< facts known beside the draft
+    type(structure_type), intent(out) :: structure           !< links of the pairs and independent coordinates
+    type(structural_vectors_type), intent(out) :: vectors    !< the structure as the second set
+    type(fault_type), allocatable, intent(out) :: faults(:)  !< errors, each with its entry in the draft
     type(draft_type) :: part
     type(draft_text_type) :: written
     type(diagnostics_type) :: diagnostics
@@ -59,11 +59,11 @@ contains
   end subroutine read_draft_structure
 
   pure subroutine read_part(part, structure, vectors, written, diagnostics)
-    type(draft_type), intent(in) :: part
-    type(structure_type), intent(out) :: structure
-    type(structural_vectors_type), intent(out) :: vectors
-    type(draft_text_type), intent(out) :: written
-    type(diagnostics_type), intent(out) :: diagnostics   !< gets what is wrong
+    type(draft_type), intent(in) :: part                   !< draft with the structure alone
+    type(structure_type), intent(out) :: structure         !< links of the pairs and independent coordinates
+    type(structural_vectors_type), intent(out) :: vectors  !< the structure as the second set
+    type(draft_text_type), intent(out) :: written          !< text of the draft, with the place of each entry
+    type(diagnostics_type), intent(out) :: diagnostics     !< gets what is wrong
     type(document_type) :: document
 
     call write_draft(part, '', written)
@@ -74,8 +74,8 @@ contains
   !> What a draft says of the structure: counts, structural data, and the links of the pairs where they are
   !> how it is given. Pairs need a kind to be read.
   pure function structural_part(draft, outline) result(part)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
+    type(draft_type), intent(in) :: draft      !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline  !< facts known beside the draft
     type(draft_type) :: part
     integer :: i, j, place
     character(len=:), allocatable :: name
@@ -97,8 +97,9 @@ contains
 
   !> From places in a part of a draft to those in the whole, by names.
   pure subroutine translate(part, draft, faults)
-    type(draft_type), intent(in) :: part, draft
-    type(fault_type), intent(inout) :: faults(:)
+    type(draft_type), intent(in) :: part          !< draft with the structure alone
+    type(draft_type), intent(in) :: draft         !< the whole draft
+    type(fault_type), intent(inout) :: faults(:)  !< errors whose entries are first those of the part, then those of the whole
     integer :: i, place
 
     do i = 1, size(faults)
@@ -115,9 +116,9 @@ contains
 
   !> Errors with the entries of the draft they are about, in the order in which they were found.
   pure subroutine find_faults(diagnostics, written, faults)
-    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
-    type(draft_text_type), intent(in) :: written
-    type(fault_type), allocatable, intent(out) :: faults(:)
+    type(diagnostics_type), intent(in) :: diagnostics        !< gets what is wrong
+    type(draft_text_type), intent(in) :: written             !< text of the draft, with the place of each entry
+    type(fault_type), allocatable, intent(out) :: faults(:)  !< errors, each with its entry in the draft
     type(span_type) :: span
     integer :: i
 
@@ -130,9 +131,9 @@ contains
 
   !> The errors of a draft that was read by read_draft.
   pure subroutine faults_of(diagnostics, written, faults)
-    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
-    type(draft_text_type), intent(in) :: written
-    type(fault_type), allocatable, intent(out) :: faults(:)
+    type(diagnostics_type), intent(in) :: diagnostics        !< gets what is wrong
+    type(draft_text_type), intent(in) :: written             !< text of the draft, with the place of each entry
+    type(fault_type), allocatable, intent(out) :: faults(:)  !< errors, each with its entry in the draft
 
     call find_faults(diagnostics, written, faults)
   end subroutine faults_of
@@ -140,11 +141,13 @@ contains
   !> What is wrong with one entry of a draft, as far as this can be told now; empty: nothing. What the
   !> entry's group still lacks is taken for given, with the examples of the table of names.
   subroutine problem_with(draft, outline, path, group, place, name, problem)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    character(len=*), intent(in) :: path, group, name
-    integer, intent(in) :: place
-    character(len=:), allocatable, intent(out) :: problem
+    type(draft_type), intent(in) :: draft                  !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline              !< facts known beside the draft
+    character(len=*), intent(in) :: path                   !< path of the data file; tables of drives are sought beside it
+    character(len=*), intent(in) :: group                  !< name of the group
+    character(len=*), intent(in) :: name                   !< name with its subscript
+    integer, intent(in) :: place                           !< place among the groups of that name, from 1
+    character(len=:), allocatable, intent(out) :: problem  !< messages, a line each; empty: nothing is wrong
     type(draft_type) :: trial
     type(mechanism_type) :: mechanism
     type(structure_type) :: structure
@@ -177,9 +180,9 @@ contains
 
   !> Give a group what it needs and lacks.
   pure subroutine complete(draft, group, place)
-    type(draft_type), intent(inout) :: draft
-    character(len=*), intent(in) :: group
-    integer, intent(in) :: place
+    type(draft_type), intent(inout) :: draft  !< draft whose group is completed
+    character(len=*), intent(in) :: group     !< name of the group
+    integer, intent(in) :: place              !< place among the groups of that name, from 1
     integer, allocatable :: rows(:)
     integer :: i
     character(len=:), allocatable :: kind
@@ -198,7 +201,7 @@ contains
 
   !> Rows of the coincidence matrix that are not given yet: as its symmetry says, else zeros.
   pure subroutine complete_matrix(draft)
-    type(draft_type), intent(inout) :: draft
+    type(draft_type), intent(inout) :: draft  !< draft whose coincidence matrix is completed
     integer :: n, i, j
     integer, allocatable :: c(:, :)
     logical, allocatable :: given(:)
@@ -222,8 +225,8 @@ contains
 
   !> Numbers from "1, 2, 3"; more than fit are left out, missing ones stay.
   pure subroutine take_row(text, numbers)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: numbers(:)
+    character(len=*), intent(in) :: text  !< numbers with commas between them
+    integer, intent(inout) :: numbers(:)  !< the numbers; those that are missing in the text stay as they were
     integer :: status
     integer :: read_numbers(size(numbers))
 

@@ -24,11 +24,11 @@ contains
   !> Write a draft as a data file. With a bookmark it is one that goes on there. What stood in the file before is kept
   !> until all is written.
   subroutine save_draft(draft, path, bookmark, program_name, err)
-    type(draft_type), intent(in) :: draft
-    character(len=*), intent(in) :: path
-    character(len=*), intent(in) :: bookmark       !< empty: the data file is finished
-    character(len=*), intent(in) :: program_name
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(draft_type), intent(in) :: draft              !< groups and names with their values as text
+    character(len=*), intent(in) :: path               !< name of the file
+    character(len=*), intent(in) :: bookmark           !< the place where the conversation goes on; empty: the data file is finished
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(draft_text_type) :: written
     character(len=:), allocatable :: remark
 
@@ -40,11 +40,11 @@ contains
 
   !> Read a data file as a draft, and its bookmark, empty where it has none. What cannot be read stands in the diagnostics.
   subroutine load_draft(path, most_parts, draft, bookmark, diagnostics)
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: most_parts              !< links, or coordinates, that a conversation can hold
-    type(draft_type), intent(out) :: draft
-    character(len=:), allocatable, intent(out) :: bookmark
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: path                    !< name of the file
+    integer, intent(in) :: most_parts                       !< largest number of links or coordinates in a conversation
+    type(draft_type), intent(out) :: draft                  !< groups and names with their values as text
+    character(len=:), allocatable, intent(out) :: bookmark  !< the place where the conversation goes on; empty: none
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     type(document_type) :: document
     integer :: first, last
 
@@ -66,7 +66,7 @@ contains
 
   !> Remove a file; whether it was there or not does not matter.
   subroutine delete_file(path)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path  !< name of the file
     integer :: unit, status
 
     open (newunit=unit, file=path, status='old', iostat=status)
@@ -75,14 +75,14 @@ contains
 
   !> Whether a file, or anything else of that name, is there.
   logical function file_exists(path)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path  !< name of the file
 
     inquire (file=path, exist=file_exists)
   end function file_exists
 
   !> A name for files, of letters, digits and underscores, from the beginning of a title.
   pure function stem_of_title(title) result(stem)
-    character(len=*), intent(in) :: title          !< as a data file writes it
+    character(len=*), intent(in) :: title  !< title as a data file writes it
     character(len=:), allocatable :: stem
     character(len=:), allocatable :: plain
     integer :: i
@@ -105,7 +105,7 @@ contains
 
   !> A path for what is typed, of a file that is not there yet.
   function free_draft_path(stem) result(path)
-    character(len=*), intent(in) :: stem           !< a path without its ending
+    character(len=*), intent(in) :: stem  !< path without its ending
     character(len=:), allocatable :: path
     integer :: i
 
@@ -119,7 +119,7 @@ contains
 
   !> The path of the finished data file that belongs to a draft's.
   pure function path_without_draft(path) result(plain)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path  !< name of the file
     character(len=:), allocatable :: plain
 
     plain = path
@@ -128,7 +128,7 @@ contains
 
   !> A path without the ending of data files.
   pure function stem_of_path(path) result(stem)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path  !< name of the file
     character(len=:), allocatable :: stem
 
     stem = path_without_draft(path)
@@ -136,7 +136,8 @@ contains
   end function stem_of_path
 
   pure logical function ends_with(text, ending)
-    character(len=*), intent(in) :: text, ending
+    character(len=*), intent(in) :: text    !< any text
+    character(len=*), intent(in) :: ending  !< the ending that is looked for
 
     ends_with = .false.
     if (len(text) > len(ending)) ends_with = text(len(text) - len(ending) + 1:) == ending

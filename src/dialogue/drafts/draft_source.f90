@@ -19,8 +19,8 @@ contains
   !> Take over what a document says: one entry for each name, the coincidence matrix by rows. Values
   !> that cannot be read are left out; they have been reported when the document was read.
   pure subroutine draft_from_document(document, draft)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(draft_type), intent(out) :: draft
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    type(draft_type), intent(out) :: draft       !< groups and names with their values as text
     type(document_type) :: checked
     type(diagnostics_type) :: ignored
     character(len=:), allocatable :: comment
@@ -44,9 +44,9 @@ contains
   end subroutine draft_from_document
 
   pure subroutine take_group(document, group, draft)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(draft_type), intent(inout) :: draft
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    type(group_type), intent(in) :: group        !< the group of the data file
+    type(draft_type), intent(inout) :: draft     !< draft to which the group is added
     character(len=:), allocatable :: comment
     integer :: i, place, number
 
@@ -66,9 +66,9 @@ contains
 
   !> The coincidence matrix, however it is given, as rows.
   pure subroutine take_matrix(document, group, draft)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(draft_type), intent(inout) :: draft
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    type(group_type), intent(in) :: group        !< the group of the data file
+    type(draft_type), intent(inout) :: draft     !< draft to which the rows are added
     type(matrix_type) :: matrix
     type(diagnostics_type) :: ignored
     integer :: i, number
@@ -94,7 +94,7 @@ contains
 
   !> Whether an item is a whole row of the matrix: c(2,:).
   pure logical function is_row(item)
-    type(item_type), intent(in) :: item
+    type(item_type), intent(in) :: item  !< one name of a group with its subscripts and values
 
     is_row = .false.
     if (size(item%subscripts) == 2) &
@@ -104,8 +104,8 @@ contains
 
   !> Values as they are written, with commas between.
   pure function values_text(source_text, values) result(text)
-    character(len=*), intent(in) :: source_text
-    type(value_type), intent(in) :: values(:)
+    character(len=*), intent(in) :: source_text  !< text in which the values stand
+    type(value_type), intent(in) :: values(:)    !< the values
     character(len=:), allocatable :: text
     type(string_type) :: words(size(values))
     integer :: i
@@ -119,10 +119,10 @@ contains
 
   !> The comment lines right above a byte; with `to_the_top` those that stand over them, above a blank line.
   pure subroutine find_comment(source, byte, to_the_top, comment)
-    type(source_type), intent(in) :: source
-    integer, intent(in) :: byte
-    logical, intent(in) :: to_the_top
-    character(len=:), allocatable, intent(out) :: comment
+    type(source_type), intent(in) :: source                !< text of the data file
+    integer, intent(in) :: byte                            !< number of the byte below the comment
+    logical, intent(in) :: to_the_top                      !< take the lines from the top of the file down to a blank line
+    character(len=:), allocatable, intent(out) :: comment  !< comment lines with their line ends; empty: none
     type(place_type) :: position
     integer :: line, first, last
 
@@ -142,9 +142,10 @@ contains
 
   !> Comment lines and blank ones, without a blank one at the end; none where something else stands among them.
   pure subroutine take_lines(source, from, to, text)
-    type(source_type), intent(in) :: source
-    integer, intent(in) :: from, to
-    character(len=:), allocatable, intent(out) :: text
+    type(source_type), intent(in) :: source             !< text of the data file
+    integer, intent(in) :: from                         !< number of the first line
+    integer, intent(in) :: to                           !< number of the last line
+    character(len=:), allocatable, intent(out) :: text  !< the lines with their line ends; empty where another line is among them
     integer :: line, first, last
 
     text = ''
@@ -163,7 +164,7 @@ contains
 
   !> How many comments a text has; an exclamation mark in quotes begins none.
   pure integer function count_comments(text) result(count)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text  !< text of a data file
     character :: quote
     integer :: at
 
@@ -184,7 +185,7 @@ contains
   end function count_comments
 
   pure logical function is_comment(line)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< one line
 
     is_comment = index(adjustl(line), '!') == 1
   end function is_comment

@@ -25,9 +25,9 @@ contains
 
   !> Write a draft. `remark` is a comment line for its end; empty: none.
   pure subroutine write_draft(draft, remark, written)
-    type(draft_type), intent(in) :: draft
-    character(len=*), intent(in) :: remark
-    type(draft_text_type), intent(out) :: written
+    type(draft_type), intent(in) :: draft          !< groups and names with their values as text
+    character(len=*), intent(in) :: remark         !< comment line for the end of the text; empty: none
+    type(draft_text_type), intent(out) :: written  !< text of the draft, with the place of each entry
     integer :: i, n
     character(len=:), allocatable :: before
 
@@ -49,8 +49,8 @@ contains
 
   !> A blank line, and what groups of this name are, unless a comment stands there already.
   pure subroutine begin_kind(group, text)
-    type(draft_group_type), intent(in) :: group
-    character(len=:), allocatable, intent(inout) :: text
+    type(draft_group_type), intent(in) :: group           !< the group
+    character(len=:), allocatable, intent(inout) :: text  !< text to which the heading is appended
     integer :: row
 
     if (text /= '') text = text//line_end
@@ -59,9 +59,9 @@ contains
   end subroutine begin_kind
 
   pure subroutine write_group(group, number, written)
-    type(draft_group_type), intent(in) :: group
-    integer, intent(in) :: number              !< its index in the draft
-    type(draft_text_type), intent(inout) :: written
+    type(draft_group_type), intent(in) :: group      !< the group
+    integer, intent(in) :: number                    !< index of the group in the draft
+    type(draft_text_type), intent(inout) :: written  !< text to which the group is appended, with the place of each entry
     type(string_type) :: parts(size(group%entries))
     character(len=:), allocatable :: separator, equals
     integer :: i, whole, length
@@ -94,7 +94,7 @@ contains
 
   !> Rows of a matrix are easier to read one below the other.
   pure logical function is_matrix(group)
-    type(draft_group_type), intent(in) :: group
+    type(draft_group_type), intent(in) :: group  !< the group
     integer :: i
 
     is_matrix = .true.
@@ -105,8 +105,10 @@ contains
   end function is_matrix
 
   pure subroutine note(written, group, entry, first)
-    type(draft_text_type), intent(inout) :: written
-    integer, intent(in) :: group, entry, first
+    type(draft_text_type), intent(inout) :: written  !< text to which the group is appended, with the place of each entry
+    integer, intent(in) :: group                     !< index of the group in the draft
+    integer, intent(in) :: entry                     !< number of the entry in the group; 0: the whole group
+    integer, intent(in) :: first                     !< number of its first byte in the text
 
     written%count = written%count + 1
     written%group(written%count) = group
@@ -117,9 +119,10 @@ contains
   !> Group and entry that a byte of the text belongs to; group 0 where it is none, entry 0 where it is the
   !> group as a whole.
   pure subroutine locate(written, byte, group, entry)
-    type(draft_text_type), intent(in) :: written
-    integer, intent(in) :: byte
-    integer, intent(out) :: group, entry
+    type(draft_text_type), intent(in) :: written  !< text of the draft, with the place of each entry
+    integer, intent(in) :: byte                   !< number of the byte in the text
+    integer, intent(out) :: group                 !< index of the group in the draft; 0: none
+    integer, intent(out) :: entry                 !< number of the entry in the group; 0: the whole group
     integer :: i
 
     group = 0

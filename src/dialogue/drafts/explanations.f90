@@ -288,9 +288,9 @@ contains
 
   !> Where the explanation of a name stands; 0 where there is none.
   pure integer function find_explanation(group, name, kinds) result(place)
-    character(len=*), intent(in) :: group    !< of the name
-    character(len=*), intent(in) :: name
-    character(len=*), intent(in) :: kinds    !< of the row of the grammar that is meant
+    character(len=*), intent(in) :: group  !< group of the name
+    character(len=*), intent(in) :: name   !< the name, without a subscript
+    character(len=*), intent(in) :: kinds  !< kinds of the row of the table of names that is meant
 
     do place = size(explanations), 1, -1
       if (explanations(place)%group == group .and. explanations(place)%name == name .and. &

@@ -26,8 +26,8 @@ contains
 
   !> The outline of what a draft says already.
   pure function new_outline(program_name, draft) result(outline)
-    character(len=*), intent(in) :: program_name
-    type(draft_type), intent(in) :: draft
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+    type(draft_type), intent(in) :: draft         !< groups and names with their values as text
     type(outline_type) :: outline
     integer :: i, j, row
 
@@ -48,8 +48,8 @@ contains
 
   !> The kind that a group says it is, in lower case; empty where it has none.
   pure function kind_in(draft, group) result(kind)
-    type(draft_type), intent(in) :: draft
-    integer, intent(in) :: group                            !< its index
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: group           !< index of the group in the draft
     character(len=:), allocatable :: kind
     integer :: i
 
@@ -64,8 +64,8 @@ contains
   !> A pair for each coordinate; a drive, or the values at the start, for each independent one; guesses for
   !> the others where they are wanted.
   pure subroutine make_groups(draft, outline)
-    type(draft_type), intent(inout) :: draft
-    type(outline_type), intent(in) :: outline
+    type(draft_type), intent(inout) :: draft   !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline  !< facts known beside the draft
     logical :: all(max(draft%number('mechanism', 1, 'coordinates'), 0))
 
     all = .true.
@@ -82,8 +82,8 @@ contains
 
   !> Links of the pairs as the structure says, where they are not the same in either order.
   pure subroutine give_links(draft, links)
-    type(draft_type), intent(inout) :: draft
-    integer, intent(in) :: links(:, :)
+    type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: links(:, :)        !< (2,M) reference link and moving link of each pair
     integer :: k, place
     character(len=:), allocatable :: given
 
@@ -98,9 +98,9 @@ contains
 
   !> A group for each coordinate of a mask, where there is none yet.
   pure subroutine make_numbered(draft, group, wanted)
-    type(draft_type), intent(inout) :: draft
-    character(len=*), intent(in) :: group
-    logical, intent(in) :: wanted(:)
+    type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
+    character(len=*), intent(in) :: group     !< name of the groups
+    logical, intent(in) :: wanted(:)          !< (M) coordinates that need a group
     logical :: there(size(wanted))
     integer :: k, place
 
@@ -119,7 +119,7 @@ contains
 
   !> Values at the start that say nothing but their coordinate.
   pure subroutine drop_empty_guesses(draft)
-    type(draft_type), intent(inout) :: draft
+    type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
     integer :: place
 
     do place = draft%count_of('initial'), 1, -1
@@ -130,9 +130,9 @@ contains
   !> Take away what does not belong to a group since its kind has changed, and drives and velocities of
   !> coordinates that are not independent any more. `dropped` names it; empty: nothing.
   pure subroutine drop_foreign(draft, outline, dropped)
-    type(draft_type), intent(inout) :: draft
-    type(outline_type), intent(in) :: outline
-    character(len=:), allocatable, intent(out) :: dropped
+    type(draft_type), intent(inout) :: draft               !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline              !< facts known beside the draft
+    character(len=:), allocatable, intent(out) :: dropped  !< names of what was taken away, with commas between; empty: nothing
     character(len=:), allocatable :: name
     integer :: i, j, k, place
 
@@ -161,8 +161,8 @@ contains
   end subroutine drop_foreign
 
   pure subroutine note(what, list)
-    character(len=*), intent(in) :: what
-    character(len=:), allocatable, intent(inout) :: list
+    character(len=*), intent(in) :: what                  !< name that is put in front
+    character(len=:), allocatable, intent(inout) :: list  !< names with commas between
 
     if (list /= '') list = ', '//list
     list = what//list
@@ -170,9 +170,9 @@ contains
 
   !> Whether a known name does not belong to the kind of its group.
   pure logical function is_foreign(draft, group, name)
-    type(draft_type), intent(in) :: draft
-    integer, intent(in) :: group
-    character(len=*), intent(in) :: name
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: group           !< index of the group in the draft
+    character(len=*), intent(in) :: name   !< name with its subscript
     character(len=:), allocatable :: kind
 
     is_foreign = .false.

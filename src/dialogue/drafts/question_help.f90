@@ -19,7 +19,7 @@ contains
 
   !> One line on what a question means, with the words it takes.
   pure function gist_of(question) result(text)
-    type(question_type), intent(in) :: question
+    type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: text
 
     associate (row => item_table(question%row))
@@ -30,7 +30,7 @@ contains
 
   !> What stands behind the colon of "text: fixed or link".
   pure function words_allowed(values) result(words)
-    character(len=*), intent(in) :: values
+    character(len=*), intent(in) :: values  !< a description such as "text: fixed or link"
     character(len=:), allocatable :: words
 
     words = values(index(values, ': ') + 2:)
@@ -38,9 +38,9 @@ contains
 
   !> The answer to `?`.
   pure function help_of(question, draft, outline) result(text)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
     character(len=:), allocatable :: text, names
 
     select case (question%kind)
@@ -71,8 +71,8 @@ contains
 
   !> The names of a group that are asked for only when told so, each with what it means in a line.
   pure function list_of_seldom(question, outline) result(text)
-    type(question_type), intent(in) :: question
-    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: question  !< the question
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
     character(len=:), allocatable :: text
     integer, allocatable :: rows(:)
     integer :: i
@@ -87,9 +87,9 @@ contains
 
   !> The explanation of a name, the values it takes, and an example in the unit that is asked for.
   pure function help_on_name(question, draft, outline) result(text)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
     character(len=:), allocatable :: text, unit, otherwise
     integer :: place
 
@@ -109,10 +109,10 @@ contains
 
   !> An example as it would be typed: in the unit of the coordinate that is meant.
   pure function example_of(row, place, kind, angle) result(text)
-    type(item_row_type), intent(in) :: row
-    integer, intent(in) :: place                !< of the explanation; 0: none
-    character(len=*), intent(in) :: kind        !< of the pair whose coordinate is meant; empty: none is
-    character(len=*), intent(in) :: angle       !< unit of angles, rad or deg
+    type(item_row_type), intent(in) :: row  !< row of the table of names
+    integer, intent(in) :: place            !< number of the explanation; 0: none
+    character(len=*), intent(in) :: kind    !< kind of the pair whose coordinate is meant; empty: no coordinate is meant
+    character(len=*), intent(in) :: angle   !< unit of angles, rad or deg
     character(len=:), allocatable :: text
 
     text = unquoted(trim(row%example))
@@ -126,7 +126,7 @@ contains
 
   !> What is said where Enter is pressed at a question that has nothing in brackets.
   pure function refusal_of_enter(question) result(text)
-    type(question_type), intent(in) :: question
+    type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: text
 
     text = 'This must be given; ? explains it.'

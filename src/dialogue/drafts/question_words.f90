@@ -25,10 +25,10 @@ contains
   !> What Enter answers to a question about a name: what was answered before, what the group before
   !> says where something must be said, or the default of the table.
   pure function default_of(question, draft, outline, table_file) result(default)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    character(len=*), intent(in) :: table_file      !< a name for the table of results
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
+    character(len=*), intent(in) :: table_file   !< name of a file for the table of results
     type(default_type) :: default
     character(len=:), allocatable :: group, name
 
@@ -60,7 +60,7 @@ contains
   end function default_of
 
   pure function switch_word(text) result(word)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text  !< a value as a data file writes it
     character(len=:), allocatable :: word
 
     word = text
@@ -71,8 +71,8 @@ contains
   !> A value for what must be given: the axis of the turning pair before, the first of the words allowed, or zero at the
   !> start; empty where nothing is likely. A slide proposes neither its kind nor its axis for the pair after it.
   pure function likely_value(question, draft) result(text)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     character(len=:), allocatable :: text
 
     text = ''
@@ -89,8 +89,8 @@ contains
 
   !> For a revolute pair the axis of the last revolute pair before it that has one; empty where there is none.
   pure function axis_before(place, draft) result(text)
-    integer, intent(in) :: place                    !< of the pair among the pairs
-    type(draft_type), intent(in) :: draft
+    integer, intent(in) :: place           !< place of the pair among the pairs, from 1
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     character(len=:), allocatable :: text
     integer :: i
 
@@ -104,9 +104,9 @@ contains
 
   !> Whether a question about a name must be answered, and is not.
   pure logical function is_lacking(question, draft, outline)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
 
     is_lacking = .false.
     if (question%kind /= ask_item .or. question%is_new) return
@@ -117,9 +117,9 @@ contains
   !> Whether a name must be given. Counts and structural data must here, though a data file can leave
   !> some of them to be counted; a group that is not repeated may be left out as a whole.
   pure logical function is_needed(question, draft, outline)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
 
     associate (row => item_table(question%row))
       is_needed = row%needed .or. index(row%default, '(needed') == 1
@@ -144,8 +144,8 @@ contains
   end function is_needed
 
   pure logical function is_independent(outline, coordinate)
-    type(outline_type), intent(in) :: outline
-    integer, intent(in) :: coordinate
+    type(outline_type), intent(in) :: outline  !< facts known beside the draft
+    integer, intent(in) :: coordinate          !< number of the coordinate
 
     is_independent = .false.
     if (coordinate >= 1 .and. coordinate <= size(outline%independent)) is_independent = outline%independent(coordinate)
@@ -153,8 +153,8 @@ contains
 
   !> The line above the questions of one group: "Pair 5, from link 1 to link 2"; empty where there is but one.
   pure function heading_of(question, draft) result(text)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     character(len=:), allocatable :: text
     character(len=:), allocatable :: group, links
     integer :: comma
@@ -182,9 +182,9 @@ contains
 
   !> The prompt: name, unit, what Enter answers.
   pure function prompt_of(question, draft, default) result(text)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
-    type(default_type), intent(in) :: default
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(default_type), intent(in) :: default    !< the answer that Enter gives
     character(len=:), allocatable :: text, unit
 
     associate (row => item_table(question%row))
@@ -205,8 +205,8 @@ contains
   !> The unit of a name in this data file: angles in rad or degrees, coordinates as their pair moves, loads on
   !> coordinates as these are.
   pure function unit_here(question, draft) result(unit)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     character(len=:), allocatable :: unit
     character(len=:), allocatable :: kind, q
 
@@ -225,8 +225,8 @@ contains
 
   !> Of the units of a length and of an angle, "N or N m", the one that fits the kind of pair.
   pure function unit_of_load(both, kind) result(unit)
-    character(len=*), intent(in) :: both         !< separated by a comma or `or`; a single unit stays as it is
-    character(len=*), intent(in) :: kind         !< of the pair; empty: unknown
+    character(len=*), intent(in) :: both  !< the two units, separated by a comma or `or`; a single unit stays as it is
+    character(len=*), intent(in) :: kind  !< kind of the pair; empty: unknown
     character(len=:), allocatable :: unit
     integer :: gap, next
 
@@ -244,8 +244,8 @@ contains
 
   !> The kind of the pair whose coordinate the group of a question names; empty where it names none.
   pure function coordinate_kind(question, draft) result(kind)
-    type(question_type), intent(in) :: question
-    type(draft_type), intent(in) :: draft
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     character(len=:), allocatable :: kind
     integer :: place
 
@@ -257,7 +257,7 @@ contains
 
   !> The unit of angles in this data file.
   pure function angle_unit(draft) result(unit)
-    type(draft_type), intent(in) :: draft
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     character(len=3) :: unit
 
     unit = 'rad'
@@ -266,8 +266,9 @@ contains
 
   !> Put a word in the place of another, once.
   pure subroutine replace(word, by, text)
-    character(len=*), intent(in) :: word, by
-    character(len=:), allocatable, intent(inout) :: text
+    character(len=*), intent(in) :: word                  !< word to be replaced
+    character(len=*), intent(in) :: by                    !< word that takes its place
+    character(len=:), allocatable, intent(inout) :: text  !< words between blanks, commas and slashes
     integer :: at
 
     at = word_place(text, word)
@@ -275,14 +276,16 @@ contains
   end subroutine replace
 
   pure logical function has_word(text, word)
-    character(len=*), intent(in) :: text, word
+    character(len=*), intent(in) :: text  !< words between blanks, commas and slashes
+    character(len=*), intent(in) :: word  !< the word that is looked for
 
     has_word = word_place(text, word) > 0
   end function has_word
 
   !> Where a word stands in a text that is made of words, blanks, commas and slashes; 0: nowhere.
   pure integer function word_place(text, word) result(at)
-    character(len=*), intent(in) :: text, word
+    character(len=*), intent(in) :: text  !< words between blanks, commas and slashes
+    character(len=*), intent(in) :: word  !< the word that is looked for
 
     do at = 1, len(text) - len(word) + 1
       if (text(at:at + len(word) - 1) /= word) cycle
@@ -297,8 +300,8 @@ contains
 
   !> The names of a group that are asked for only when told so: "zero, moving_point".
   pure function seldom_names(question, outline) result(text)
-    type(question_type), intent(in) :: question
-    type(outline_type), intent(in) :: outline
+    type(question_type), intent(in) :: question  !< the question
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
     character(len=:), allocatable :: text
     integer, allocatable :: rows(:)
     integer :: i
@@ -314,9 +317,9 @@ contains
 
   !> What can be completed at a question: its words and the commands.
   pure subroutine words_for(question, outline, words)
-    type(question_type), intent(in) :: question
-    type(outline_type), intent(in) :: outline
-    type(string_type), allocatable, intent(out) :: words(:)
+    type(question_type), intent(in) :: question              !< the question
+    type(outline_type), intent(in) :: outline                !< facts known beside the draft
+    type(string_type), allocatable, intent(out) :: words(:)  !< words that can be completed
     character(len=:), allocatable :: list
     integer :: i
 

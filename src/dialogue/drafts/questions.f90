@@ -36,9 +36,9 @@ contains
 
   !> All questions in order; the last one is the check of all.
   pure subroutine make_questions(draft, outline, questions)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    type(question_type), allocatable, intent(out) :: questions(:)
+    type(draft_type), intent(in) :: draft                          !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline                      !< facts known beside the draft
+    type(question_type), allocatable, intent(out) :: questions(:)  !< all questions in order
     integer, allocatable :: rows(:)
     integer :: count, i, topic
 
@@ -56,11 +56,12 @@ contains
   end subroutine make_questions
 
   pure subroutine ask_about_group(draft, outline, topic, group_row, questions, count)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    integer, intent(in) :: topic, group_row
-    type(question_type), allocatable, intent(inout) :: questions(:)
-    integer, intent(inout) :: count
+    type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline                        !< facts known beside the draft
+    integer, intent(in) :: topic                                     !< number of the topic
+    integer, intent(in) :: group_row                                 !< row of the group in group_table
+    type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
+    integer, intent(inout) :: count                                  !< number of questions in use
     character(len=:), allocatable :: group
     integer, allocatable :: rows(:)
     integer :: place
@@ -90,12 +91,12 @@ contains
 
   !> The names of one group.
   pure subroutine ask_about_one(draft, outline, template, rows, questions, count)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    type(question_type), intent(in) :: template
-    integer, intent(in) :: rows(:)
-    type(question_type), allocatable, intent(inout) :: questions(:)
-    integer, intent(inout) :: count
+    type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline                        !< facts known beside the draft
+    type(question_type), intent(in) :: template                      !< question with the topic and the group
+    integer, intent(in) :: rows(:)                                   !< rows of the group's names in item_table
+    type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
+    integer, intent(inout) :: count                                  !< number of questions in use
     type(question_type) :: question
     integer, allocatable :: order(:)
     integer :: i
@@ -111,7 +112,7 @@ contains
 
   !> The rows with that of the Denavit-Hartenberg parameters before those that they replace.
   pure function dh_first(rows) result(order)
-    integer, intent(in) :: rows(:)
+    integer, intent(in) :: rows(:)  !< rows of the names of a pair in item_table
     integer, allocatable :: order(:)
     integer :: i
 
@@ -121,16 +122,16 @@ contains
   end function dh_first
 
   pure logical function replaced(name)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name  !< the name, without a subscript
 
     replaced = index(instead_of_dh, ' '//trim(name)//' ') > 0
   end function replaced
 
   !> Whether a name is asked for in its group as it stands.
   pure logical function is_open(draft, outline, question)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
+    type(question_type), intent(in) :: question  !< the question
     integer :: group
     character(len=:), allocatable :: kind, name
 
@@ -153,8 +154,8 @@ contains
 
   !> Whether a name is asked for only when told so. Links of pairs are, where the structure gives them.
   pure logical function is_seldom(outline, row)
-    type(outline_type), intent(in) :: outline
-    type(item_row_type), intent(in) :: row
+    type(outline_type), intent(in) :: outline  !< facts known beside the draft
+    type(item_row_type), intent(in) :: row     !< row of the table of names
 
     is_seldom = row%seldom .or. (row%group == 'pair' .and. row%name == 'links' .and. outline%way /= 'pairs')
     is_seldom = is_seldom .and. is_used(outline, row)
@@ -162,17 +163,17 @@ contains
 
   !> Whether the program of the conversation uses a name.
   pure logical function is_used(outline, row)
-    type(outline_type), intent(in) :: outline
-    type(item_row_type), intent(in) :: row
+    type(outline_type), intent(in) :: outline  !< facts known beside the draft
+    type(item_row_type), intent(in) :: row     !< row of the table of names
 
     is_used = row%program == 'both' .or. row%program == outline%program_name
   end function is_used
 
   !> Values at the start: of independent coordinates where they are integrated, guesses of dependent ones.
   pure logical function is_open_at_start(draft, outline, question) result(open)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    type(question_type), intent(in) :: question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
+    type(question_type), intent(in) :: question  !< the question
     integer :: k
 
     open = .false.
@@ -187,7 +188,7 @@ contains
   end function is_open_at_start
 
   pure logical function has_procedures(draft)
-    type(draft_type), intent(in) :: draft
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer :: i
 
     has_procedures = draft%count_of('user') > 0
@@ -198,11 +199,12 @@ contains
 
   !> How the structure is given, and that; then the independent coordinates and the check.
   pure subroutine ask_about_structure(draft, outline, topic, group_row, questions, count)
-    type(draft_type), intent(in) :: draft
-    type(outline_type), intent(in) :: outline
-    integer, intent(in) :: topic, group_row
-    type(question_type), allocatable, intent(inout) :: questions(:)
-    integer, intent(inout) :: count
+    type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline                        !< facts known beside the draft
+    integer, intent(in) :: topic                                     !< number of the topic
+    integer, intent(in) :: group_row                                 !< row of the group in group_table
+    type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
+    integer, intent(inout) :: count                                  !< number of questions in use
     type(question_type) :: question
     integer, allocatable :: rows(:)
     integer :: i, pair_row
@@ -231,7 +233,8 @@ contains
 
   !> The second set takes the place of cq; anything else is asked for in either case.
   pure logical function has_place_in(way, name)
-    character(len=*), intent(in) :: way, name
+    character(len=*), intent(in) :: way   !< how the structure is given, one of `ways` of mech9_outline
+    character(len=*), intent(in) :: name  !< the name, without a subscript
 
     select case (name)
     case ('cq')
@@ -244,10 +247,10 @@ contains
   end function has_place_in
 
   pure subroutine ask_about_matrix(draft, template, questions, count)
-    type(draft_type), intent(in) :: draft
-    type(question_type), intent(in) :: template
-    type(question_type), allocatable, intent(inout) :: questions(:)
-    integer, intent(inout) :: count
+    type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
+    type(question_type), intent(in) :: template                      !< question about the coincidence matrix, without a row
+    type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
+    integer, intent(inout) :: count                                  !< number of questions in use
     type(question_type) :: question
     integer :: i
 
@@ -259,9 +262,9 @@ contains
   end subroutine ask_about_matrix
 
   pure subroutine append(questions, count, question)
-    type(question_type), allocatable, intent(inout) :: questions(:)
-    integer, intent(inout) :: count
-    type(question_type), intent(in) :: question
+    type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
+    integer, intent(inout) :: count                                  !< number of questions in use
+    type(question_type), intent(in) :: question                      !< the question
     type(question_type), allocatable :: longer(:)
 
     if (count == size(questions)) then
@@ -275,7 +278,7 @@ contains
 
   !> The name under which the draft keeps the answer.
   pure function entry_name(question) result(name)
-    type(question_type), intent(in) :: question
+    type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: name
 
     name = trim(item_table(question%row)%name)
@@ -284,7 +287,7 @@ contains
 
   !> What tells a question from all others: "pair(3).axis".
   pure function label_of(question) result(label)
-    type(question_type), intent(in) :: question
+    type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: label
 
     select case (question%kind)
@@ -307,8 +310,8 @@ contains
 
   !> Number of the question with a label; 0 where there is none.
   pure integer function find_question(questions, label) result(number)
-    type(question_type), intent(in) :: questions(:)
-    character(len=*), intent(in) :: label
+    type(question_type), intent(in) :: questions(:)  !< all questions in order
+    character(len=*), intent(in) :: label            !< the label that is looked for
 
     do number = size(questions), 1, -1
       if (label_of(questions(number)) == label) return

@@ -19,8 +19,8 @@ contains
   !> The full form of an answer to the question about a name: "rev" and "hinge" are revolute, "-z" the axis 0, 0, -1,
   !> "1-2" the links 1, 2, and for gravity "-y" is 0, -9.81, 0 and "none" 0, 0, 0. What is not short stays as it is.
   pure function full_form(row, line) result(text)
-    type(item_row_type), intent(in) :: row          !< of the name
-    character(len=*), intent(in) :: line            !< what was typed, without blanks around it
+    type(item_row_type), intent(in) :: row  !< row of the table of names for the question
+    character(len=*), intent(in) :: line    !< the answer, without blanks around it
     character(len=:), allocatable :: text
     character(len=:), allocatable :: word
 
@@ -42,7 +42,7 @@ contains
 
   !> What mechanics call the kinds of pairs; empty for other words.
   pure function kind_of_pair(line) result(kind)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< the answer, without blanks around it
     character(len=:), allocatable :: kind
 
     select case (lower(line))
@@ -59,8 +59,8 @@ contains
 
   !> The one word of a list that begins with what was typed, or is it; empty where none does, or several do.
   pure function word_meant(line, words) result(word)
-    character(len=*), intent(in) :: line
-    character(len=*), intent(in) :: words(:)        !< blank-padded, in lower case
+    character(len=*), intent(in) :: line      !< the answer, without blanks around it
+    character(len=*), intent(in) :: words(:)  !< the words allowed, in lower case
     character(len=:), allocatable :: word
     character(len=:), allocatable :: typed
     integer :: i, n
@@ -82,7 +82,7 @@ contains
 
   !> Whether a line is x, y or z, perhaps behind a sign.
   pure logical function is_signed_axis(line)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< the answer, without blanks around it
 
     is_signed_axis = .false.
     if (len(line) > 2) return
@@ -94,8 +94,8 @@ contains
 
   !> Components of a vector along the axis that a line such as "-y" names.
   pure function along(line, length) result(text)
-    character(len=*), intent(in) :: line
-    character(len=*), intent(in) :: length          !< of the vector, as a number is typed
+    character(len=*), intent(in) :: line    !< the answer, without blanks around it
+    character(len=*), intent(in) :: length  !< length of the vector, as a number is typed
     character(len=:), allocatable :: text, component
     integer :: i
 
@@ -111,7 +111,7 @@ contains
 
   !> "1, 2" for "1-2" and "1 - 2"; anything else as it is.
   pure function two_numbers(line) result(text)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line  !< the answer, without blanks around it
     character(len=:), allocatable :: text, first, second
     integer :: dash
 

@@ -36,7 +36,7 @@ contains
 
   !> Rows of group_table that belong to a topic, in the topic's order.
   pure function groups_of_topic(topic) result(rows)
-    integer, intent(in) :: topic
+    integer, intent(in) :: topic  !< number of the topic
     integer, allocatable :: rows(:)
     integer :: i, j
 
@@ -52,7 +52,8 @@ contains
   end function groups_of_topic
 
   pure logical function has_word(words, word)
-    character(len=*), intent(in) :: words, word
+    character(len=*), intent(in) :: words  !< words with blanks between
+    character(len=*), intent(in) :: word   !< the word that is looked for
 
     has_word = index(' '//trim(words)//' ', ' '//trim(word)//' ') > 0
   end function has_word
@@ -60,14 +61,14 @@ contains
   !> Whether the groups of a name are told apart by the number of a coordinate: then there is one for each
   !> coordinate concerned, and the number itself is not asked for.
   pure logical function is_numbered(group_row)
-    integer, intent(in) :: group_row
+    integer, intent(in) :: group_row  !< row of the group in group_table
 
     is_numbered = group_table(group_row)%key == 'coordinate'
   end function is_numbered
 
   !> Whether there can be any number of groups of a name, which the user begins one by one.
   pure logical function can_be_left_out(group_row)
-    integer, intent(in) :: group_row
+    integer, intent(in) :: group_row  !< row of the group in group_table
 
     can_be_left_out = group_table(group_row)%repeats .and. .not. is_numbered(group_row)
   end function can_be_left_out

@@ -191,10 +191,10 @@ contains
     real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the line [px]
     character(len=*), intent(in) :: line       !< colour of the line
     real(wp), intent(in) :: width              !< width of the line [px]
-    integer :: n
+    integer :: order(max(0, 2*size(corners, 2) - 1))
 
-    n = size(corners, 2)
-    call self%polygon(corners(:, [integer :: forth_and_back(n)]), none, line, width)
+    order = forth_and_back(size(corners, 2))
+    call self%polygon(corners(:, order), none, line, width)
   end subroutine polyline
 
   pure function forth_and_back(n) result(numbers)
