@@ -2,7 +2,7 @@
 !>
 !> The vector that is integrated holds all coordinates and the rates of the independent ones. An
 !> evaluation takes the positions as they are, and the chains are closed after each accepted step:
-!> half the cost of closing them in every evaluation, at the same error (docs/performance.md).
+!> half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_singular
