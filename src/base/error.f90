@@ -9,17 +9,17 @@ module mech9_error
   public :: exit_done, exit_internal, exit_usage, exit_data, exit_structure, exit_assembly
   public :: exit_singular, exit_integrator, exit_file, exit_interrupted
 
-  !> What a program answers to the shell; the codes double as kinds of errors.
+  !> Exit codes of the programs, which are the kinds of errors as well.
   integer, parameter :: exit_done = 0
-  integer, parameter :: exit_internal = 1       !< a defect of the program itself
-  integer, parameter :: exit_usage = 2          !< wrong command line
-  integer, parameter :: exit_data = 3           !< wrong data file
-  integer, parameter :: exit_structure = 4      !< structure or mobility
-  integer, parameter :: exit_assembly = 5       !< the mechanism cannot be assembled
-  integer, parameter :: exit_singular = 6       !< singular position, or the branch would change
-  integer, parameter :: exit_integrator = 7     !< integration cannot go on
-  integer, parameter :: exit_file = 8           !< a file cannot be read or written
-  integer, parameter :: exit_interrupted = 130  !< the user interrupted the run
+  integer, parameter :: exit_internal = 1        !< a defect of the program itself
+  integer, parameter :: exit_usage = 2           !< wrong command line
+  integer, parameter :: exit_data = 3            !< wrong data file
+  integer, parameter :: exit_structure = 4       !< structure or mobility
+  integer, parameter :: exit_assembly = 5        !< the mechanism cannot be assembled
+  integer, parameter :: exit_singular = 6        !< singular position, or the branch would change
+  integer, parameter :: exit_integrator = 7      !< integration cannot go on
+  integer, parameter :: exit_file = 8            !< a file cannot be read or written
+  integer, parameter :: exit_interrupted = 130   !< the user interrupted the run
 
   !> A place in the data file; line 0 means none.
   type :: place_type
@@ -31,8 +31,7 @@ module mech9_error
   type :: error_type
     integer :: code = exit_internal
     character(len=:), allocatable :: message
-    !> Place in the data file, where one is known.
-    type(place_type) :: place
+    type(place_type) :: place   !< place in the data file; line 0 where none is known
   end type error_type
 
 contains
@@ -40,9 +39,9 @@ contains
   !> Make a failure.
   pure subroutine raise(err, code, message, place)
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    integer, intent(in) :: code               !< one of the exit_ codes
-    character(len=*), intent(in) :: message   !< what went wrong and what to do
-    type(place_type), intent(in), optional :: place
+    integer, intent(in) :: code                         !< one of the exit_ codes
+    character(len=*), intent(in) :: message             !< what went wrong and what to do
+    type(place_type), intent(in), optional :: place     !< place in the data file that the message points to
 
     allocate (err)
     err%code = code
@@ -53,9 +52,9 @@ contains
   !> Say where a failure happened; does nothing when all is well.
   !> A place in the data file is kept if the failure has one already.
   pure subroutine add_place(err, text, place)
-    type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
-    character(len=*), intent(in), optional :: text   !< put before the message, as "text: message"
-    type(place_type), intent(in), optional :: place
+    type(error_type), allocatable, intent(inout) :: err   !< the failure, which gets the place; not allocated: nothing happens
+    character(len=*), intent(in), optional :: text        !< the place in words, put before the message as "text: message"
+    type(place_type), intent(in), optional :: place       !< place in the data file that the message points to
 
     if (.not. allocated(err)) return
     if (present(text)) err%message = text//': '//err%message

@@ -1,4 +1,4 @@
-!> Small helpers for text: numbers as text, case, lists, nearest names.
+!> Texts: numbers written as text, lower case, lists, nearest names.
 !>
 !> Functions here and wherever threads may meet have results of explicit length: gfortran keeps the length of
 !> a result `character(len=:), allocatable` in a static variable of the caller, which threads would share.
@@ -11,7 +11,7 @@ module mech9_text
 
   integer, parameter :: longest_real = 48     !< characters of a real number
 
-  !> One text of its own length, for arrays of texts.
+  !> A text of any length, for arrays of texts.
   type :: string_type
     character(len=:), allocatable :: text
   end type string_type
@@ -23,11 +23,11 @@ module mech9_text
 
 contains
 
-  ! Lengths of results: gfortran wants them before the functions that have them.
+  ! Lengths of results stand first: gfortran must see them before the functions whose results have them.
 
-  !> Digits of an integer, and its sign if it has one.
+  !> Letters of an integer as text: its digits, and a minus sign if it has one.
   pure integer function integer_length(number) result(length)
-    integer(long), intent(in) :: number
+    integer(long), intent(in) :: number   !< the number to be written
     integer(long) :: rest
 
     length = merge(2, 1, number < 0)
@@ -38,18 +38,20 @@ contains
     end do
   end function integer_length
 
+  !> Letters of a real number as text.
   pure integer function real_length(number, digits) result(length)
-    real(wp), intent(in) :: number
-    integer, intent(in) :: digits
+    real(wp), intent(in) :: number   !< the number to be written
+    integer, intent(in) :: digits    !< significant digits, 1 or more
     character(len=longest_real) :: buffer
 
     call write_real(number, digits, buffer)
     length = len_trim(buffer)
   end function real_length
 
+  !> Letters of a list of integers.
   pure integer function integers_length(numbers, separator) result(length)
-    integer, intent(in) :: numbers(:)
-    character(len=*), intent(in) :: separator
+    integer, intent(in) :: numbers(:)           !< integers in the order in which they are written
+    character(len=*), intent(in) :: separator   !< stands between two neighbours
     integer :: i
 
     length = len(separator)*max(size(numbers) - 1, 0)
@@ -58,17 +60,20 @@ contains
     end do
   end function integers_length
 
+  !> Letters of the beginning of a list of integers, with the number of those left out.
   pure integer function some_length(numbers, most) result(length)
-    integer, intent(in) :: numbers(:), most
+    integer, intent(in) :: numbers(:)   !< integers in the order in which they are written
+    integer, intent(in) :: most         !< so many are written
 
     length = integers_length(numbers(:min(size(numbers), most)), ', ')
     if (size(numbers) > most) &
       length = length + len(' and  more') + integer_length(int(size(numbers) - most, long))
   end function some_length
 
+  !> Letters of texts in one line.
   pure integer function joined_length(strings, separator) result(length)
-    type(string_type), intent(in) :: strings(:)
-    character(len=*), intent(in) :: separator
+    type(string_type), intent(in) :: strings(:)   !< texts, all of them allocated
+    character(len=*), intent(in) :: separator     !< stands between two neighbours
     integer :: i
 
     length = len(separator)*max(size(strings) - 1, 0)
@@ -77,8 +82,10 @@ contains
     end do
   end function joined_length
 
+  !> Letters of the nearest name; 0 where none is near.
   pure integer function nearest_length(word, known) result(length)
-    character(len=*), intent(in) :: word, known(:)
+    character(len=*), intent(in) :: word       !< the word that is not known
+    character(len=*), intent(in) :: known(:)   !< blank-padded names
     integer :: place
 
     length = 0
@@ -86,15 +93,17 @@ contains
     if (place > 0) length = len_trim(known(place))
   end function nearest_length
 
+  !> A default integer.
   pure function integer_to_text(number) result(text)
-    integer, intent(in) :: number
+    integer, intent(in) :: number   !< the number to be written
     character(len=integer_length(int(number, long))) :: text
 
     write (text, '(i0)') number
   end function integer_to_text
 
+  !> A long integer.
   pure function long_to_text(number) result(text)
-    integer(long), intent(in) :: number
+    integer(long), intent(in) :: number   !< the number to be written
     character(len=integer_length(number)) :: text
 
     write (text, '(i0)') number
@@ -102,16 +111,16 @@ contains
 
   !> A real number with six significant digits.
   pure function real_to_text(number) result(text)
-    real(wp), intent(in) :: number
+    real(wp), intent(in) :: number   !< the number to be written
     character(len=real_length(number, 6)) :: text
 
     text = digits_to_text(number, 6)
   end function real_to_text
 
-  !> A real number with as many significant digits as asked for.
+  !> A real number with a given number of significant digits.
   pure function digits_to_text(number, digits) result(text)
-    real(wp), intent(in) :: number
-    integer, intent(in) :: digits
+    real(wp), intent(in) :: number   !< the number to be written
+    integer, intent(in) :: digits    !< significant digits, 1 or more
     character(len=real_length(number, digits)) :: text
     character(len=longest_real) :: buffer
 
@@ -119,11 +128,11 @@ contains
     text = buffer
   end function digits_to_text
 
-  !> Plain where that is readable, padded with blanks: 0.25, 1200, 1.5e-7.
+  !> A real number without an exponent where that is readable, padded with blanks: 0.25, 1200, 1.5e-7.
   pure subroutine write_real(number, digits, text)
-    real(wp), intent(in) :: number
-    integer, intent(in) :: digits
-    character(len=longest_real), intent(out) :: text
+    real(wp), intent(in) :: number                     !< the number to be written
+    integer, intent(in) :: digits                      !< significant digits, 1 or more
+    character(len=longest_real), intent(out) :: text   !< the number, followed by blanks
     character(len=longest_real) :: buffer
     character(len=16) :: form
     integer :: exponent
@@ -155,7 +164,7 @@ contains
 
   !> A decimal number without the zeros at its end, padded with blanks.
   pure function without_zeros(number) result(text)
-    character(len=*), intent(in) :: number
+    character(len=*), intent(in) :: number   !< a decimal number with a point, without blanks
     character(len=len(number)) :: text
     integer :: last
 
@@ -166,7 +175,7 @@ contains
 
   !> Integers separated by commas: "1, 2, 5".
   pure function integers_to_text(numbers) result(text)
-    integer, intent(in) :: numbers(:)
+    integer, intent(in) :: numbers(:)   !< integers in the order in which they are written
     character(len=integers_length(numbers, ', ')) :: text
 
     text = separated_integers(numbers, ', ')
@@ -174,8 +183,8 @@ contains
 
   !> Integers with a separator between them.
   pure function separated_integers(numbers, separator) result(text)
-    integer, intent(in) :: numbers(:)
-    character(len=*), intent(in) :: separator
+    integer, intent(in) :: numbers(:)           !< integers in the order in which they are written
+    character(len=*), intent(in) :: separator   !< stands between two neighbours
     character(len=integers_length(numbers, separator)) :: text
     integer :: i, n, next
 
@@ -191,10 +200,10 @@ contains
     end do
   end function separated_integers
 
-  !> "1, 2, 5"; of a long list the beginning: "1, 2, 3 and 12 more".
+  !> Integers separated by commas, "1, 2, 5"; only the beginning of a long list, "1, 2, 3 and 12 more".
   pure function some_of(numbers, most) result(text)
-    integer, intent(in) :: numbers(:)
-    integer, intent(in) :: most       !< so many are written
+    integer, intent(in) :: numbers(:)   !< integers in the order in which they are written
+    integer, intent(in) :: most         !< so many are written
     character(len=some_length(numbers, most)) :: text
 
     text = to_text(numbers(:min(size(numbers), most)))
@@ -203,7 +212,7 @@ contains
 
   !> The text in lower case (ASCII letters only; other bytes stay).
   pure function lower(text) result(lowered)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< any text
     character(len=len(text)) :: lowered
     integer :: i
 
@@ -219,7 +228,8 @@ contains
 
   !> Whether a text has this beginning, blanks at its end included.
   pure logical function starts_with(text, beginning)
-    character(len=*), intent(in) :: text, beginning
+    character(len=*), intent(in) :: text        !< the text that is looked at
+    character(len=*), intent(in) :: beginning   !< the beginning, with all its blanks
 
     starts_with = .false.
     if (len(text) >= len(beginning)) starts_with = text(:len(beginning)) == beginning
@@ -227,8 +237,8 @@ contains
 
   !> Texts in one line, with a separator between them.
   pure function join(strings, separator) result(text)
-    type(string_type), intent(in) :: strings(:)
-    character(len=*), intent(in) :: separator
+    type(string_type), intent(in) :: strings(:)   !< texts, all of them allocated
+    character(len=*), intent(in) :: separator     !< stands between two neighbours
     character(len=joined_length(strings, separator)) :: text
     integer :: i, n
 
@@ -243,10 +253,10 @@ contains
     end do
   end function join
 
-  !> The name that was probably meant: the nearest of the known ones by single-letter edits and
-  !> exchanges of neighbours; empty when none is near (more than a third of the letters differ).
+  !> The name that was probably meant: the known name that the fewest single-letter edits and exchanges of
+  !> neighbours lead to; empty where none is near (more than a third of the letters differ).
   pure function nearest_name(word, known) result(name)
-    character(len=*), intent(in) :: word
+    character(len=*), intent(in) :: word       !< the word that is not known
     character(len=*), intent(in) :: known(:)   !< blank-padded names
     character(len=nearest_length(word, known)) :: name
 
@@ -254,9 +264,10 @@ contains
     if (len(name) > 0) name = known(nearest_place(word, known))
   end function nearest_name
 
-  !> Where the nearest name stands; 0 where none is near.
+  !> Number of the nearest name among the known ones; 0 where none is near.
   pure integer function nearest_place(word, known) result(place)
-    character(len=*), intent(in) :: word, known(:)
+    character(len=*), intent(in) :: word       !< the word that is not known
+    character(len=*), intent(in) :: known(:)   !< blank-padded names
     integer :: i, distance, best
 
     place = 0
@@ -270,9 +281,10 @@ contains
     end do
   end function nearest_place
 
-  !> Fewest insertions, deletions, changes and exchanges of neighbours that turn a into b.
+  !> The least number of insertions, deletions, changes and exchanges of neighbours that turn a into b.
   pure integer function edit_distance(a, b) result(distance)
-    character(len=*), intent(in) :: a, b
+    character(len=*), intent(in) :: a   !< one word, upper and lower case different
+    character(len=*), intent(in) :: b   !< the other word
     integer :: d(-1:len(a), -1:len(b)), i, j, change
 
     do i = 0, len(a)

@@ -9,7 +9,8 @@ contains
 
   !> Tensor in frame A from that in frame B, about the same point.
   pure function inertia_in_axes(r_ab, inertia_b) result(inertia_a)
-    real(wp), intent(in) :: r_ab(3, 3), inertia_b(3, 3)
+    real(wp), intent(in) :: r_ab(3, 3)        !< turns components in B into components in A
+    real(wp), intent(in) :: inertia_b(3, 3)   !< inertia tensor in the axes of B [kg m2]
     real(wp) :: inertia_a(3, 3)
 
     inertia_a = matmul(r_ab, matmul(inertia_b, transpose(r_ab)))
@@ -18,7 +19,7 @@ contains
   !> J'_kl = integral of x_k x_l dm from the inertia tensor: half the trace less J_kk on the diagonal,
   !> -J_kl beside it; (23) with its two cases in their places.
   pure function second_moments(inertia) result(moments)
-    real(wp), intent(in) :: inertia(3, 3)
+    real(wp), intent(in) :: inertia(3, 3)   !< inertia tensor about the origin of its axes [kg m2]
     real(wp) :: moments(3, 3), half_trace
     integer :: k
 

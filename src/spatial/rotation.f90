@@ -1,4 +1,4 @@
-!> Rotations as 3x3 matrices, and vectors.
+!> Rotations as 3x3 matrices, and products of vectors.
 !>
 !> r_ab turns components in frame B into components in frame A.
 module mech9_rotation
@@ -8,18 +8,19 @@ module mech9_rotation
   public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, turn_on, rotation_vector, axial_vector, &
     quaternion
 
-  !> The rotation that turns nothing.
+  !> The rotation by no angle.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, &
                                                    0.0_wp, 1.0_wp, 0.0_wp, &
                                                    0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
 
 contains
 
-  ! Written out for fixed sizes: matmul of sections of unknown size makes temporaries and is slower.
+  ! The products are written out for fixed sizes: matmul of sections of unknown size makes temporaries and is slower.
 
   !> r x: components in A from components in B, for r_ab.
   pure function turn(r, x) result(y)
-    real(wp), intent(in) :: r(3, 3), x(3)
+    real(wp), intent(in) :: r(3, 3)   !< rotation matrix r_ab
+    real(wp), intent(in) :: x(3)      !< vector, components in B
     real(wp) :: y(3)
     integer :: i
 
@@ -30,7 +31,8 @@ contains
 
   !> r^T x: components in B from components in A, for r_ab.
   pure function turn_back(r, x) result(y)
-    real(wp), intent(in) :: r(3, 3), x(3)
+    real(wp), intent(in) :: r(3, 3)   !< rotation matrix r_ab
+    real(wp), intent(in) :: x(3)      !< vector, components in A
     real(wp) :: y(3)
     integer :: i
 
@@ -41,7 +43,8 @@ contains
 
   !> a b: r_ac from r_ab and r_bc.
   pure function combine(a, b) result(c)
-    real(wp), intent(in) :: a(3, 3), b(3, 3)
+    real(wp), intent(in) :: a(3, 3)   !< r_ab
+    real(wp), intent(in) :: b(3, 3)   !< r_bc
     real(wp) :: c(3, 3)
     integer :: i, j
 
@@ -54,7 +57,8 @@ contains
 
   !> Vector product a x b.
   pure function cross(a, b) result(c)
-    real(wp), intent(in) :: a(3), b(3)
+    real(wp), intent(in) :: a(3)   !< left factor
+    real(wp), intent(in) :: b(3)   !< right factor, in the same axes
     real(wp) :: c(3)
 
     c(1) = a(2)*b(3) - a(3)*b(2)
@@ -64,7 +68,7 @@ contains
 
   !> The vector at length one; zero stays zero. Scaled first, so that no square overflows.
   pure function unit(a) result(e)
-    real(wp), intent(in) :: a(3)
+    real(wp), intent(in) :: a(3)   !< a vector
     real(wp) :: e(3), largest
 
     largest = maxval(abs(a))
@@ -78,7 +82,7 @@ contains
 
   !> Cosine and sine of an angle that grows by a small one, to second order.
   pure subroutine turn_on(small, turned)
-    real(wp), intent(in) :: small          !< [rad]
+    real(wp), intent(in) :: small          !< the angle added [rad]
     real(wp), intent(inout) :: turned(2)   !< cosine and sine
     real(wp) :: c, s
 
@@ -90,7 +94,8 @@ contains
 
   !> Rotation by an angle [rad] about a unit axis (Rodrigues).
   pure function about_axis(axis, angle) result(r)
-    real(wp), intent(in) :: axis(3), angle
+    real(wp), intent(in) :: axis(3)   !< of length one
+    real(wp), intent(in) :: angle     !< [rad]
     real(wp) :: r(3, 3), c, s, v
     integer :: i, j
 
@@ -113,7 +118,7 @@ contains
 
   !> Rotation by an angle [rad] about z.
   pure function about_z(angle) result(r)
-    real(wp), intent(in) :: angle
+    real(wp), intent(in) :: angle   !< [rad]
     real(wp) :: r(3, 3)
 
     r = identity
@@ -125,7 +130,7 @@ contains
 
   !> The vector of the skew part of a matrix: w with (r - r^T)/2 = w x.
   pure function axial_vector(r) result(w)
-    real(wp), intent(in) :: r(3, 3)
+    real(wp), intent(in) :: r(3, 3)   !< any matrix
     real(wp) :: w(3)
 
     w(1) = 0.5_wp*(r(3, 2) - r(2, 3))
@@ -133,10 +138,10 @@ contains
     w(3) = 0.5_wp*(r(2, 1) - r(1, 2))
   end function axial_vector
 
-  !> Rotation vector (axis times angle, 0 to pi [rad]) of a rotation matrix. Right at all angles:
-  !> near 180 degrees the axis comes from the symmetric part, where the skew part vanishes.
+  !> Rotation vector (axis times angle, 0 to pi [rad]) of a rotation matrix, accurate at all angles:
+  !> near 180 degrees, where the skew part vanishes, the axis comes from the symmetric part.
   pure function rotation_vector(r) result(phi)
-    real(wp), intent(in) :: r(3, 3)
+    real(wp), intent(in) :: r(3, 3)   !< rotation matrix
     real(wp) :: phi(3), w(3), s, c, angle, axis(3), column(3)
     integer :: k
 
@@ -165,7 +170,7 @@ contains
   !> Unit quaternion (w, x, y, z) of a rotation matrix, w >= 0. Its largest part is found first and divides the
   !> others, so that no digits are lost at any angle.
   pure function quaternion(r) result(q)
-    real(wp), intent(in) :: r(3, 3)
+    real(wp), intent(in) :: r(3, 3)   !< rotation matrix
     real(wp) :: q(4), squares(4), w(3)
     integer :: i, j, k
 

@@ -1,4 +1,4 @@
-!> Screws as six numbers (w, v): rotation and the velocity it gives to the point at the origin of the frame it is written in.
+!> Screws as six numbers (w, v): angular velocity, and velocity of the point at the origin of the frame in which they are written.
 module mech9_screw
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
@@ -10,9 +10,10 @@ module mech9_screw
 
 contains
 
-  !> Lie bracket of two screws: how the second changes when the first moves it.
+  !> Lie bracket of two screws: the rate of change of the second screw when the first moves it.
   pure function bracket(a, b) result(c)
-    real(wp), intent(in) :: a(6), b(6)
+    real(wp), intent(in) :: a(6)   !< the screw that moves, in any frame
+    real(wp), intent(in) :: b(6)   !< the screw that is moved, in the same frame
     real(wp) :: c(6)
 
     c(1:3) = cross(a(1:3), b(1:3))
@@ -21,8 +22,8 @@ contains
 
   !> The screw given in frame B, written in frame A.
   pure function moved_screw(x_ab, screw_b) result(screw_a)
-    type(pose_type), intent(in) :: x_ab
-    real(wp), intent(in) :: screw_b(6)
+    type(pose_type), intent(in) :: x_ab   !< pose of B in A, translations in the unit of length of the screw
+    real(wp), intent(in) :: screw_b(6)    !< the screw in B
     real(wp) :: screw_a(6)
 
     screw_a(1:3) = matmul(x_ab%r, screw_b(1:3))
@@ -32,10 +33,10 @@ contains
   !> Orthonormal basis of the columns of `screws`; singular values below `tolerance` times the
   !> largest do not count. Lengths must be scaled to order one by the caller.
   subroutine orthonormal_basis(screws, tolerance, basis, rank)
-    real(wp), intent(in) :: screws(:, :)      !< (6, n)
-    real(wp), intent(in) :: tolerance
-    real(wp), intent(out) :: basis(6, 6)      !< the first `rank` columns count
-    integer, intent(out) :: rank
+    real(wp), intent(in) :: screws(:, :)   !< (6, n)
+    real(wp), intent(in) :: tolerance      !< part of the largest singular value below which one does not count
+    real(wp), intent(out) :: basis(6, 6)   !< the first `rank` columns count
+    integer, intent(out) :: rank           !< dimension of the space
     real(wp) :: a(6, size(screws, 2)), s(6), vt(1, 1), work(64 + 8*size(screws, 2))
     integer :: info, n
 
@@ -50,13 +51,13 @@ contains
   end subroutine orthonormal_basis
 
   !> Orthonormal basis of the smallest space of screws that holds the given ones and is closed under
-  !> the bracket. Whatever the joints do, the motion stays in it: 3 for planar and spherical chains,
-  !> 1 to 3 for translations, 2 for cylindrical, 4 for planar with a translation across, else 6.
+  !> the bracket. The motion stays in it at all positions of the joints. Its dimension is 3 for planar and spherical chains,
+  !> 1 to 3 for translations, 2 for cylindrical chains, 4 for planar chains with a translation across the plane, else 6.
   subroutine generated_algebra(screws, tolerance, basis, rank)
-    real(wp), intent(in) :: screws(:, :)      !< (6, n), lengths scaled to order one
-    real(wp), intent(in) :: tolerance
-    real(wp), intent(out) :: basis(6, 6)      !< the first `rank` columns count
-    integer, intent(out) :: rank
+    real(wp), intent(in) :: screws(:, :)   !< (6, n), lengths scaled to order one
+    real(wp), intent(in) :: tolerance      !< part of the largest singular value below which one does not count
+    real(wp), intent(out) :: basis(6, 6)   !< the first `rank` columns count
+    integer, intent(out) :: rank           !< dimension of the space
     real(wp) :: extended(6, 21)
     integer :: i, j, n, before
 
@@ -77,13 +78,15 @@ contains
     end do
   end subroutine generated_algebra
 
-  !> Directions that a space of screws turns about, and those that it slides along without turning, each as simple as
-  !> can be: by elimination the first has no part along the leading axis of the second, and so on.
+  !> Directions about which a space of screws turns, and those along which it slides without turning. Elimination makes
+  !> them as simple as possible: none has a component along the leading axis of another one.
   pure subroutine split_space(basis, turns, n_turns, slides, n_slides, screws)
-    real(wp), intent(in) :: basis(:, :)        !< (6, rank), orthonormal
-    real(wp), intent(out) :: turns(3, 3), slides(3, 3)   !< unit vectors; the first n_turns and n_slides count
-    integer, intent(out) :: n_turns, n_slides
-    logical, intent(out) :: screws             !< its only turning goes with sliding along the same direction
+    real(wp), intent(in) :: basis(:, :)     !< (6, rank), orthonormal
+    real(wp), intent(out) :: turns(3, 3)    !< unit vectors of the axes of turning; the first n_turns count
+    real(wp), intent(out) :: slides(3, 3)   !< unit vectors of the directions of sliding; the first n_slides count
+    integer, intent(out) :: n_turns         !< number of axes of turning
+    integer, intent(out) :: n_slides        !< number of directions of sliding
+    logical, intent(out) :: screws          !< its only turning goes with sliding along the same direction
     real(wp), parameter :: tolerance = 1.0e-9_wp
     real(wp) :: a(6, size(basis, 2)), pivot(6)
     integer :: i, j, row, best
@@ -113,7 +116,7 @@ contains
     do j = 1, n_slides
       slides(:, j) = a(4:6, n_turns + j)/norm2(a(4:6, n_turns + j))
     end do
-    ! one slide goes along the axis, and then no turning needs it; two go across
+    ! an only slide goes along the axis, so that the turning needs none of it; two slides go across the axis
     screws = .false.
     if (n_turns == 1 .and. mod(n_slides, 2) == 0) screws = abs(dot_product(a(1:3, 1), a(4:6, 1))) > tolerance
   end subroutine split_space
