@@ -1,8 +1,8 @@
-!> The memory of a program: where the system has no more of it, the program says so and ends with exit_file.
+!> The memory of a program: where the system grants no more of it, the program says so and ends with exit_file.
 !>
-!> These procedures take the place of the C library's own in the programs, and in nothing else that uses the library of
-!> this project. gfortran's code does not ask whether memory for a copy was granted, and its runtime library ends with a
-!> backtrace. Here nothing may be called that needs memory itself.
+!> These procedures replace those of the C library in the programs, but not in other programs that use the library of
+!> this project. gfortran's code does not check whether memory for a copy was granted, and its runtime library ends with a
+!> backtrace. No procedure that needs memory itself may be called here.
 module mech9_memory_guard
   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t, c_char, c_ptr, c_associated
   use mech9_error, only: exit_file
@@ -19,30 +19,31 @@ module mech9_memory_guard
   interface
     type(c_ptr) function c_malloc(size) bind(c, name='__libc_malloc')
       import :: c_ptr, c_size_t
-      integer(c_size_t), value :: size
+      integer(c_size_t), value :: size   !< [bytes]
     end function c_malloc
 
     type(c_ptr) function c_calloc(count, size) bind(c, name='__libc_calloc')
       import :: c_ptr, c_size_t
-      integer(c_size_t), value :: count, size
+      integer(c_size_t), value :: count   !< elements
+      integer(c_size_t), value :: size    !< of one element [bytes]
     end function c_calloc
 
     type(c_ptr) function c_realloc(memory, size) bind(c, name='__libc_realloc')
       import :: c_ptr, c_size_t
-      type(c_ptr), value :: memory
-      integer(c_size_t), value :: size
+      type(c_ptr), value :: memory       !< as granted before
+      integer(c_size_t), value :: size   !< [bytes]
     end function c_realloc
 
     integer(c_long) function c_write(descriptor, bytes, count) bind(c, name='write')
       import :: c_int, c_long, c_size_t, c_char
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(in) :: bytes(*)
-      integer(c_size_t), value :: count
+      integer(c_int), value :: descriptor              !< an open file
+      character(kind=c_char), intent(in) :: bytes(*)   !< what is written
+      integer(c_size_t), value :: count                !< of the bytes
     end function c_write
 
     subroutine c_exit_at_once(code) bind(c, name='_exit')
       import :: c_int
-      integer(c_int), value :: code
+      integer(c_int), value :: code   !< exit code
     end subroutine c_exit_at_once
   end interface
 
@@ -59,8 +60,8 @@ contains
 
   !> Memory for an array, cleared.
   recursive function guarded_calloc(count, size) result(memory) bind(c, name='calloc')
-    integer(c_size_t), value :: count        !< elements
-    integer(c_size_t), value :: size         !< of one [bytes]
+    integer(c_size_t), value :: count   !< elements
+    integer(c_size_t), value :: size    !< of one [bytes]
     type(c_ptr) :: memory
 
     memory = c_calloc(count, size)
@@ -69,8 +70,8 @@ contains
 
   !> The same memory with another size, perhaps elsewhere.
   recursive function guarded_realloc(memory, size) result(moved) bind(c, name='realloc')
-    type(c_ptr), value :: memory
-    integer(c_size_t), value :: size         !< [bytes]
+    type(c_ptr), value :: memory       !< as granted before; null: none
+    integer(c_size_t), value :: size   !< [bytes]
     type(c_ptr) :: moved
 
     moved = c_realloc(memory, size)

@@ -1,7 +1,7 @@
 !> Another program run to its end: gnuplot, dot.
 !>
-!> It is started with a list of words, without a shell: no word means anything but itself. What it reads
-!> comes from memory, what it says on standard error goes there, so that neither can block the other.
+!> It is started with a list of words, without a shell: no word means anything but itself. Its standard input comes
+!> from a file in memory and its standard error goes to another one, so that neither can block the other.
 module mech9_child_process
   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t, c_char, c_ptr, c_null_ptr, c_null_char, c_loc, &
                                          c_sizeof
@@ -16,19 +16,19 @@ module mech9_child_process
   type :: child_outcome_type
     logical :: found = .false.              !< there is a program of that name, and it was started
     integer :: code = 0                     !< its exit code; 128 + the signal's number where one ended it
-    character(len=:), allocatable :: said   !< on standard error, the beginning of it
+    character(len=:), allocatable :: said   !< beginning of what the program wrote to standard error
   end type child_outcome_type
 
   integer(c_int), parameter :: standard_input = 0, standard_output = 1, standard_error = 2
   !> The setting of prctl that lets a child end with its parent, and by which signal.
   integer(c_int), parameter :: end_with_parent = 1
   integer(c_long), parameter :: signal_terminate = 15
-  !> What the child ends with where the program cannot be started, as shells do. Others end with it too, such as the
-  !> loader that misses a library: why it could not be started is told in a file of its own.
+  !> The exit code of the child where the program cannot be started, as shells have it. A program that was started may
+  !> end with it too, for want of a library: the reason why one could not be started is told in a file of its own.
   integer(c_int), parameter :: not_started = 127
   !> A file in memory that a started program does not see (MFD_CLOEXEC).
   integer(c_int), parameter :: closed_by_exec = 1
-  !> Bytes of what it says that are kept.
+  !> Bytes of its standard error that are kept.
   integer, parameter :: most_said = 4096
 
   interface
@@ -39,78 +39,84 @@ module mech9_child_process
 
     integer(c_int) function c_execvp(file, words) bind(c, name='execvp')
       import :: c_int, c_ptr
-      type(c_ptr), value :: file
-      type(c_ptr), intent(in) :: words(*)
+      type(c_ptr), value :: file   !< the program's name, looked for in PATH; ends with a byte of zero
+      type(c_ptr), intent(in) :: words(*)   !< the name again and the arguments, each ending with a byte of zero, and a null pointer
     end function c_execvp
 
-    ! settings of this process: here the signal that it gets when its parent ends
+    ! a setting of this process: here the signal that it gets when its parent ends
     integer(c_int) function c_prctl(option, signal, none, nothing, no_more) bind(c, name='prctl')
       import :: c_int, c_long
-      integer(c_int), value :: option
-      integer(c_long), value :: signal, none, nothing, no_more
+      integer(c_int), value :: option     !< number of the setting (PR_SET_PDEATHSIG)
+      integer(c_long), value :: signal    !< number of the signal that the process gets when its parent ends
+      integer(c_long), value :: none      !< unused, 0
+      integer(c_long), value :: nothing   !< unused, 0
+      integer(c_long), value :: no_more   !< unused, 0
     end function c_prctl
 
     subroutine c_exit_at_once(code) bind(c, name='_exit')
       import :: c_int
-      integer(c_int), value :: code
+      integer(c_int), value :: code   !< exit code
     end subroutine c_exit_at_once
 
     integer(c_int) function c_waitpid(process, status, options) bind(c, name='waitpid')
       import :: c_int
-      integer(c_int), value :: process, options
-      integer(c_int), intent(out) :: status
+      integer(c_int), value :: process        !< number of the process
+      integer(c_int), value :: options        !< 0: wait for the end
+      integer(c_int), intent(out) :: status   !< how the process ended, as `judge` reads it
     end function c_waitpid
 
     integer(c_int) function c_chdir(path) bind(c, name='chdir')
       import :: c_int, c_char
-      character(kind=c_char), intent(in) :: path(*)
+      character(kind=c_char), intent(in) :: path(*)   !< the folder; ends with a byte of zero
     end function c_chdir
 
     ! a file in memory only, gone with its last descriptor
     integer(c_int) function c_memfd_create(name, flags) bind(c, name='memfd_create')
       import :: c_int, c_char
-      character(kind=c_char), intent(in) :: name(*)
-      integer(c_int), value :: flags
+      character(kind=c_char), intent(in) :: name(*)   !< shown by the system for the file; ends with a byte of zero
+      integer(c_int), value :: flags                  !< 0 or MFD_CLOEXEC
     end function c_memfd_create
 
     integer(c_int) function c_dup2(descriptor, other) bind(c, name='dup2')
       import :: c_int
-      integer(c_int), value :: descriptor, other
+      integer(c_int), value :: descriptor   !< an open file
+      integer(c_int), value :: other        !< the number under which it is open afterwards
     end function c_dup2
 
     integer(c_int) function c_close(descriptor) bind(c, name='close')
       import :: c_int
-      integer(c_int), value :: descriptor
+      integer(c_int), value :: descriptor   !< an open file
     end function c_close
 
     integer(c_long) function c_pwrite(descriptor, bytes, count, place) bind(c, name='pwrite')
       import :: c_int, c_long, c_size_t, c_char
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(in) :: bytes(*)
-      integer(c_size_t), value :: count
-      integer(c_long), value :: place
+      integer(c_int), value :: descriptor              !< an open file
+      character(kind=c_char), intent(in) :: bytes(*)   !< what is written
+      integer(c_size_t), value :: count                !< of the bytes
+      integer(c_long), value :: place                  !< offset of the first byte in the file
     end function c_pwrite
 
     integer(c_long) function c_pread(descriptor, bytes, count, place) bind(c, name='pread')
       import :: c_int, c_long, c_size_t, c_char
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(out) :: bytes(*)
-      integer(c_size_t), value :: count
-      integer(c_long), value :: place
+      integer(c_int), value :: descriptor               !< an open file
+      character(kind=c_char), intent(out) :: bytes(*)   !< what was read
+      integer(c_size_t), value :: count                 !< of the bytes
+      integer(c_long), value :: place                   !< offset of the first byte in the file
     end function c_pread
   end interface
 
 contains
 
   !> Run a program and wait for its end. A program that is not there, or that fails, is no error: the outcome
-  !> says so. One that is there and cannot be started is an error. Its standard output is that of this program, unless it is dropped.
+  !> says so. A program that is there and cannot be started is an error. Its standard output is that of this program,
+  !> unless it is dropped.
   subroutine run_child(words, input, outcome, err, folder, drop_output)
-    type(string_type), intent(in) :: words(:)       !< the program, looked for in PATH, and its arguments
-    character(len=*), intent(in) :: input           !< what it reads from standard input
-    type(child_outcome_type), intent(out) :: outcome
+    type(string_type), intent(in) :: words(:)           !< the program, looked for in PATH, and its arguments
+    character(len=*), intent(in) :: input               !< what it reads from standard input
+    type(child_outcome_type), intent(out) :: outcome    !< how the program ended
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    character(len=*), intent(in), optional :: folder   !< where it works; here unless given
-    logical, intent(in), optional :: drop_output       !< nobody sees its standard output
+    character(len=*), intent(in), optional :: folder    !< where it works; here unless given
+    logical, intent(in), optional :: drop_output        !< nobody sees its standard output
     integer(c_int) :: from, to, drop, failure, process, status, ignored
 
     outcome%said = ''
@@ -144,8 +150,8 @@ contains
 
   !> Write the input from the beginning of its file; the place where the child reads stays there.
   subroutine fill(descriptor, input, err)
-    integer(c_int), intent(in) :: descriptor
-    character(len=*), intent(in) :: input
+    integer(c_int), intent(in) :: descriptor            !< file that the child reads as its standard input
+    character(len=*), intent(in) :: input               !< contents of the file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: done
     integer(c_long) :: written
@@ -162,14 +168,16 @@ contains
     end do
   end subroutine fill
 
-  !> The second process, which becomes the program. Everything it needs is made before it begins: between
+  !> Start the second process, which becomes the program. Everything it needs is made before it begins: between
   !> fork and exec only system calls are safe.
   subroutine start(words, from, to, drop, failure, process, folder)
-    type(string_type), intent(in) :: words(:)
-    integer(c_int), intent(in) :: from, to, drop    !< its standard input, error and output
-    integer(c_int), intent(in) :: failure           !< file that gets the number of the error where it cannot be started
-    integer(c_int), intent(out) :: process          !< negative: it could not be made
-    character(len=*), intent(in), optional :: folder
+    type(string_type), intent(in) :: words(:)          !< the program and its arguments
+    integer(c_int), intent(in) :: from                 !< its standard input
+    integer(c_int), intent(in) :: to                   !< its standard error
+    integer(c_int), intent(in) :: drop                 !< its standard output
+    integer(c_int), intent(in) :: failure              !< file that gets the number of the error where it cannot be started
+    integer(c_int), intent(out) :: process             !< negative: it could not be made
+    character(len=*), intent(in), optional :: folder   !< where it works; here unless given
     character(kind=c_char, len=:), allocatable, target :: letters
     character(len=:), allocatable :: place
     type(c_ptr), allocatable :: list(:)
@@ -199,22 +207,24 @@ contains
     call c_exit_at_once(not_started)
   end subroutine start
 
-  !> The status of waitpid: the low seven bits are the signal that ended it, the next byte its exit code.
+  !> The end of the program, from the status of waitpid: the low seven bits are the signal that ended it, the next byte
+  !> is its exit code.
   pure subroutine judge(status, outcome)
-    integer(c_int), intent(in) :: status
-    type(child_outcome_type), intent(inout) :: outcome
+    integer(c_int), intent(in) :: status                 !< as waitpid gives it
+    type(child_outcome_type), intent(inout) :: outcome   !< gets the exit code
 
     outcome%code = ibits(status, 8, 8)
     if (ibits(status, 0, 7) /= 0) outcome%code = 128 + ibits(status, 0, 7)
     outcome%found = .true.
   end subroutine judge
 
-  !> Whether the program could be started. One that is nowhere in PATH is not found; one that is there is an error.
+  !> Whether the program could be started. Without success, a program that is nowhere in PATH is one that was not
+  !> found; one that is there is an error.
   subroutine judge_start(name, failure, outcome, err)
-    character(len=*), intent(in) :: name               !< of the program, as it was called
-    integer(c_int), intent(in) :: failure              !< file with the number of the error, empty where it was started
-    type(child_outcome_type), intent(inout) :: outcome
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: name                 !< of the program, as it was called
+    integer(c_int), intent(in) :: failure                !< file with the number of the error, empty where it was started
+    type(child_outcome_type), intent(inout) :: outcome   !< `found` becomes false where there is no such program
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     character(kind=c_char) :: bytes(c_sizeof(failure))
     character(len=:), allocatable :: path
 
@@ -227,7 +237,7 @@ contains
 
   !> The first file of this name in the folders of PATH; empty where there is none.
   function place_in_path(name) result(place)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< of the program, with a folder or without
     character(len=:), allocatable :: place, folders
     integer :: length, first, last
     logical :: there
@@ -250,9 +260,10 @@ contains
     place = ''
   end function place_in_path
 
+  !> The beginning of what the program wrote to standard error.
   subroutine read_back(descriptor, text)
-    integer(c_int), intent(in) :: descriptor
-    character(len=:), allocatable, intent(out) :: text
+    integer(c_int), intent(in) :: descriptor             !< file with what the child said
+    character(len=:), allocatable, intent(out) :: text   !< the beginning of its contents
     character(len=most_said) :: buffer
     integer(c_long) :: count
 

@@ -1,23 +1,23 @@
-!> Time that passes: a monotonic clock, and a pacer that tells cheaply when an interval is over.
+!> Time: a monotonic clock, and a pacer that tells cheaply when an interval is over.
 module mech9_clock
   use mech9_kinds, only: wp, long
   implicit none
   private
   public :: seconds, pacer_type
 
-  !> Calls that a pacer lets pass at most between two looks at the clock. A look takes some 30 ns,
+  !> The largest number of calls of a pacer between two readings of the clock. A reading takes some 30 ns,
   !> so that a call takes half a nanosecond; and a loop that slows down is noticed soon.
   integer, parameter :: longest_stride = 64
 
-  !> Asked at each turn of a loop, says about once per interval that it is time. It looks at the
+  !> A pacer is called at each turn of a loop and tells about once per interval that it is over. It reads the
   !> clock at each call while calls are slow, and only at some of them while they are fast.
   type :: pacer_type
     private
-    real(wp) :: interval = 1.0_wp   !< [s]
-    real(wp) :: last_time = 0.0_wp  !< when it last said so [s]
-    real(wp) :: last_look = 0.0_wp  !< when it last looked at the clock [s]
-    integer :: stride = 1
-    integer :: calls = 0            !< since the last look
+    real(wp) :: interval = 1.0_wp    !< [s]
+    real(wp) :: last_time = 0.0_wp   !< start of the present interval [s]
+    real(wp) :: last_look = 0.0_wp   !< the last reading of the clock [s]
+    integer :: stride = 1            !< calls from one reading to the next
+    integer :: calls = 0             !< since the last reading
   contains
     procedure :: start
     procedure :: due
@@ -37,7 +37,7 @@ contains
   !> Begin; the first interval starts now.
   subroutine start(self, interval)
     class(pacer_type), intent(inout) :: self   !< the pacer
-    real(wp), intent(in) :: interval   !< [s]
+    real(wp), intent(in) :: interval           !< [s]
 
     self%interval = interval
     self%last_time = seconds()

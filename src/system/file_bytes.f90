@@ -1,6 +1,6 @@
 !> The bytes of a whole file, or of a pipe.
 !>
-!> It calls the C library: a unit of Fortran cannot be opened while another one reads the same file, as
+!> The C library reads them: a unit of Fortran cannot be opened while another one reads the same file, as
 !> two threads may do.
 module mech9_file_bytes
   use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_char, c_ptr, c_null_char, c_associated
@@ -10,40 +10,42 @@ module mech9_file_bytes
   private
   public :: read_bytes
 
-  !> More than this is no description of a mechanism; byte positions stay default integers.
+  !> A larger file is no description of a mechanism; byte positions stay default integers.
   integer, parameter :: largest_size = 1000000000
 
   interface
     type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
       import :: c_ptr, c_char
-      character(kind=c_char), intent(in) :: path(*), mode(*)
+      character(kind=c_char), intent(in) :: path(*)   !< name of the file; ends with a byte of zero
+      character(kind=c_char), intent(in) :: mode(*)   !< 'rb': for reading; ends with a byte of zero
     end function c_fopen
 
     integer(c_size_t) function c_fread(bytes, length, count, stream) bind(c, name='fread')
       import :: c_size_t, c_char, c_ptr
-      character(kind=c_char), intent(inout) :: bytes(*)
-      integer(c_size_t), value :: length, count
-      type(c_ptr), value :: stream
+      character(kind=c_char), intent(inout) :: bytes(*)   !< what was read
+      integer(c_size_t), value :: length                  !< of one element [bytes]
+      integer(c_size_t), value :: count                   !< number of elements
+      type(c_ptr), value :: stream                        !< an open file
     end function c_fread
 
     integer(c_int) function c_ferror(stream) bind(c, name='ferror')
       import :: c_int, c_ptr
-      type(c_ptr), value :: stream
+      type(c_ptr), value :: stream   !< an open file
     end function c_ferror
 
     integer(c_int) function c_fclose(stream) bind(c, name='fclose')
       import :: c_int, c_ptr
-      type(c_ptr), value :: stream
+      type(c_ptr), value :: stream   !< an open file
     end function c_fclose
   end interface
 
 contains
 
-  !> Read all there is. Fails with exit_file, the reason in words.
+  !> Read a whole file. Fails with exit_file, and with the reason in words.
   subroutine read_bytes(path, text, err)
-    character(len=*), intent(in) :: path
-    character(len=:), allocatable, intent(out) :: text
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path                 !< name of the file
+    character(len=:), allocatable, intent(out) :: text   !< all bytes of the file
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(c_ptr) :: stream
     integer(c_int) :: status
 
@@ -64,11 +66,11 @@ contains
     status = c_fclose(stream)   ! nothing was written that it could lose
   end subroutine read_bytes
 
-  !> Pieces of growing size, until the stream ends or shows that it is no text.
+  !> Read pieces of growing size, until the stream ends or shows that it is no text.
   subroutine read_stream(stream, text, err)
-    type(c_ptr), intent(in) :: stream
-    character(len=:), allocatable, intent(out) :: text
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(c_ptr), intent(in) :: stream                    !< an open file
+    character(len=:), allocatable, intent(out) :: text   !< all bytes of the file
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     character(len=:), allocatable :: grown
     integer :: n, taken
 

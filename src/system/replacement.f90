@@ -1,5 +1,5 @@
-!> A file that gets its name when it is whole: until then a file of that name stays as it is, and whoever is killed in between
-!> loses nothing.
+!> A file that gets its name when it is whole: until then a file of that name stays as it is, so that a program that is killed
+!> in between destroys nothing.
 module mech9_replacement
   use, intrinsic :: iso_c_binding, only: c_int, c_char, c_ptr, c_null_char, c_associated
   use mech9_error, only: error_type, raise, exit_file
@@ -10,15 +10,17 @@ module mech9_replacement
   private
   public :: replacement_type, begin_replacement, path_of_part
 
-  !> Of access: may this program write there, may it look for names in that folder?
+  !> Questions to access: may this program write there, may it look for names in that folder?
   integer(c_int), parameter :: may_write = 2, may_search = 1
-  !> Of flock: for this program alone, and at once (LOCK_EX, LOCK_NB); the answer where another one has it (EWOULDBLOCK).
+  !> Requests to flock, for this program alone and at once (LOCK_EX, LOCK_NB); its answer where another program has the
+  !> file (EWOULDBLOCK).
   integer(c_int), parameter :: alone = 2, at_once = 4, would_block = 11
 
+  !> A file that is being written and will replace another one.
   type :: replacement_type
-    character(len=:), allocatable :: path             !< where the file is to be written
-    character(len=:), allocatable, private :: name    !< path of the file that it becomes; empty: it is that file
-    integer, private :: permissions = -1              !< of the file that is there; -1: none
+    character(len=:), allocatable :: path            !< where the file is to be written
+    character(len=:), allocatable, private :: name   !< path of the file that it becomes; empty: it is that file
+    integer, private :: permissions = -1             !< of the file that is there; -1: none
   contains
     procedure :: finish
     procedure :: abandon
@@ -27,28 +29,30 @@ module mech9_replacement
   interface
     integer(c_int) function c_access(path, mode) bind(c, name='access')
       import :: c_int, c_char
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: mode
+      character(kind=c_char), intent(in) :: path(*)   !< of the file or folder; ends with a byte of zero
+      integer(c_int), value :: mode                   !< sum of what is asked: may_write, may_search
     end function c_access
 
     type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
       import :: c_ptr, c_char
-      character(kind=c_char), intent(in) :: path(*), mode(*)
+      character(kind=c_char), intent(in) :: path(*)   !< of the file; ends with a byte of zero
+      character(kind=c_char), intent(in) :: mode(*)   !< 'r+b': for reading and writing; ends with a byte of zero
     end function c_fopen
 
     integer(c_int) function c_fileno(stream) bind(c, name='fileno')
       import :: c_int, c_ptr
-      type(c_ptr), value :: stream
+      type(c_ptr), value :: stream   !< an open file
     end function c_fileno
 
     integer(c_int) function c_flock(descriptor, operation) bind(c, name='flock')
       import :: c_int
-      integer(c_int), value :: descriptor, operation
+      integer(c_int), value :: descriptor   !< an open file
+      integer(c_int), value :: operation    !< sum of `alone` and `at_once`
     end function c_flock
 
     integer(c_int) function c_fclose(stream) bind(c, name='fclose')
       import :: c_int, c_ptr
-      type(c_ptr), value :: stream
+      type(c_ptr), value :: stream   !< an open file
     end function c_fclose
 
     integer(c_int) function c_geteuid() bind(c, name='geteuid')
@@ -57,30 +61,31 @@ module mech9_replacement
 
     integer(c_int) function c_chmod(path, permissions) bind(c, name='chmod')
       import :: c_int, c_char
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: permissions   ! mode_t, an unsigned of the same size
+      character(kind=c_char), intent(in) :: path(*)   !< of the file; ends with a byte of zero
+      integer(c_int), value :: permissions            !< the lower bits of the mode; mode_t is an unsigned integer of this size
     end function c_chmod
 
     integer(c_int) function c_rename(old, new) bind(c, name='rename')
       import :: c_int, c_char
-      character(kind=c_char), intent(in) :: old(*), new(*)
+      character(kind=c_char), intent(in) :: old(*)   !< present path; ends with a byte of zero
+      character(kind=c_char), intent(in) :: new(*)   !< path afterwards; ends with a byte of zero
     end function c_rename
 
     integer(c_int) function c_unlink(path) bind(c, name='unlink')
       import :: c_int, c_char
-      character(kind=c_char), intent(in) :: path(*)
+      character(kind=c_char), intent(in) :: path(*)   !< of the file; ends with a byte of zero
     end function c_unlink
   end interface
 
 contains
 
-  !> Where a file is to be written that becomes the one of a name. Where that cannot be replaced it is written itself:
-  !> a device, a file of another user, a file in a folder that takes no new ones. Fails with exit_file where the
-  !> file is there and may not be written, or another program has it open (HDF5 locks what it writes).
+  !> Begin to make a file of a given name. One that cannot be replaced is written itself: a device, a file of another
+  !> user, a file in a folder in which no new ones can be made. Fails with exit_file where the
+  !> file is there and may not be written, or another program has it open (HDF5 locks the files that it writes).
   subroutine begin_replacement(path, replacement, err)
-    character(len=*), intent(in) :: path
-    type(replacement_type), intent(out) :: replacement
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path                 !< name of the file that is to be made
+    type(replacement_type), intent(out) :: replacement   !< tells where the file is to be written
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(file_place_type) :: place
     integer(c_int) :: user
 
@@ -100,9 +105,9 @@ contains
     replacement%path = path_of_part(place%path)
   end subroutine begin_replacement
 
-  !> Whether a file that is there may be written, and no other program is writing it.
+  !> Fails where a file that is there may not be written, or another program is writing it.
   subroutine refuse_in_use(path, err)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path                !< name of a file that is there
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(c_ptr) :: stream
     integer(c_int) :: status
@@ -119,10 +124,10 @@ contains
     status = c_fclose(stream)   ! nothing was written that it could lose
   end subroutine refuse_in_use
 
-  !> Where a file stands until it is whole: beside its place, and not seen in listings. It has one name at all times, so
-  !> that what a killed run may leave is used by the next one.
+  !> Path of the file until it is whole: beside its final place, and hidden in listings. The path is always the same, so
+  !> that the next run overwrites what a killed run may leave.
   pure function path_of_part(path) result(part)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< of the file that is to be made, without links
     character(len=:), allocatable :: part
 
     part = folder_of(path)//'.'//name_of(path)//'.part'
@@ -130,7 +135,7 @@ contains
 
   !> The file is whole: it gets its name, and the rights of the file that it replaces. Does nothing a second time.
   subroutine finish(self, err)
-    class(replacement_type), intent(inout) :: self   !< the replacement
+    class(replacement_type), intent(inout) :: self      !< the replacement
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer(c_int) :: status
 

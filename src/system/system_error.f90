@@ -1,4 +1,4 @@
-!> What the C library says of a call that failed.
+!> The number of the error of a failed call of the C library, and its meaning in words.
 module mech9_system_error
   use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_char, c_ptr, c_f_pointer, c_associated
   implicit none
@@ -18,18 +18,18 @@ module mech9_system_error
 
     type(c_ptr) function c_strerror(number) bind(c, name='strerror')
       import :: c_int, c_ptr
-      integer(c_int), value :: number
+      integer(c_int), value :: number   !< of the error
     end function c_strerror
 
     integer(c_size_t) function c_strlen(text) bind(c, name='strlen')
       import :: c_size_t, c_ptr
-      type(c_ptr), value :: text
+      type(c_ptr), value :: text   !< ends with a byte of zero
     end function c_strlen
   end interface
 
 contains
 
-  !> The number of the error, errno; of use right after the call that failed.
+  !> The number of the error, errno; valid right after the call that failed.
   integer(c_int) function error_number()
     integer(c_int), pointer :: number
 
@@ -37,7 +37,7 @@ contains
     error_number = number
   end function error_number
 
-  !> Forget earlier errors, before a call whose failure shows in nothing but the number.
+  !> Forget earlier errors, before a call whose failure only the number shows.
   subroutine clear_error_number()
     integer(c_int), pointer :: number
 
@@ -47,7 +47,7 @@ contains
 
   !> The system's words for an error number, padded with blanks.
   function reason(number) result(text)
-    integer(c_int), intent(in) :: number
+    integer(c_int), intent(in) :: number   !< of the error
     character(len=80) :: text
     character(kind=c_char), pointer :: letters(:)
     type(c_ptr) :: words
