@@ -1,22 +1,22 @@
-!> How large a matrix is whatever the units of its coordinates.
+!> Balancing of a matrix, so that its size does not depend on the units of its coordinates.
 module mech9_balance
   use mech9_kinds, only: wp
   implicit none
   private
   public :: balance
 
-  !> Sweeps over all coordinates; the first ones bring nearly all.
+  !> Sweeps over all coordinates; the first one or two do nearly all of the balancing.
   integer, parameter :: sweeps = 3
   !> A coordinate is scaled by no more than this at once.
   real(wp), parameter :: largest_scale = 1.0e4_wp
 
 contains
 
-  !> Scale the coordinates of a square matrix A to D^-1 A D, D a diagonal matrix, so that rows and columns
-  !> outside the diagonal become alike (Osborne). The eigenvalues stay, the root of the sum of squares falls
-  !> towards the least one that units of the coordinates can give it.
+  !> Scale a square matrix A to D^-1 A D with a diagonal matrix D, so that each row and the column of the same number
+  !> become equally long outside the diagonal (Osborne). The eigenvalues stay; the Frobenius norm falls
+  !> towards the least value that any choice of units can give it.
   pure subroutine balance(a)
-    real(wp), intent(inout) :: a(:, :)
+    real(wp), intent(inout) :: a(:, :)   !< (n, n) the matrix, which becomes D^-1 A D
     real(wp) :: row, column, scale
     integer :: sweep, i
 

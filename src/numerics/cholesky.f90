@@ -10,9 +10,9 @@ contains
   !> a = L L^T; only the lower triangle is read and becomes L. `failed_at` is the row where the matrix
   !> turns out not to be positive definite beyond round-off, 0 where all is well.
   pure subroutine cholesky_factorize(n, a, failed_at)
-    integer, intent(in) :: n
-    real(wp), intent(inout) :: a(n, n)
-    integer, intent(out) :: failed_at
+    integer, intent(in) :: n             !< order of the matrix
+    real(wp), intent(inout) :: a(n, n)   !< the matrix, symmetric; L in the lower triangle afterwards
+    integer, intent(out) :: failed_at    !< row of the first pivot that is not positive; 0 where all is well
     real(wp) :: pivot, before
     integer :: i, j, k
 
@@ -23,7 +23,7 @@ contains
       do k = 1, j - 1
         pivot = pivot - a(j, k)**2
       end do
-      ! what is left of a row by round-off is nothing
+      ! a pivot that round-off alone can explain counts as zero
       if (.not. pivot > 8.0_wp*n*epsilon(pivot)*before) then
         failed_at = j
         return
@@ -40,9 +40,9 @@ contains
 
   !> Solve with the factors: b becomes x.
   pure subroutine cholesky_solve(n, factors, b)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: factors(n, n)
-    real(wp), intent(inout) :: b(n)
+    integer, intent(in) :: n                !< order of the matrix
+    real(wp), intent(in) :: factors(n, n)   !< L in the lower triangle, as `cholesky_factorize` leaves it
+    real(wp), intent(inout) :: b(n)         !< the right-hand side; the solution afterwards
     integer :: j
 
     do j = 1, n

@@ -1,8 +1,8 @@
 !> The inverse of a 3 by 3 matrix by its cofactors.
 !>
-!> The cofactors are the products of two columns each. Their lengths give the pivots that a QR factorization
-!> with column pivoting would find: the longest column, the largest area that another one spans with it, and
-!> the volume of all three.
+!> The cofactors are the vector products of two columns each. Their lengths give the pivots that a QR factorization
+!> with column pivoting would find: the length of the longest column, the largest area that another column spans with
+!> it over that length, and the volume of all three over that area.
 module mech9_cofactors
   use mech9_kinds, only: wp
   implicit none
@@ -14,10 +14,10 @@ contains
   !> Inverse and pivots. Where columns depend on each other pivots are zero and the inverse is not set. Where the
   !> least pivot is much below the largest, the inverse is less certain than a solution by reflections.
   pure subroutine invert_by_cofactors(a, inverse, pivots, sign_of_det)
-    real(wp), intent(in) :: a(3, 3)
-    real(wp), intent(inout) :: inverse(3, 3)
-    real(wp), intent(out) :: pivots(3)     !< lengths, not increasing
-    integer, intent(out) :: sign_of_det    !< -1 or 1
+    real(wp), intent(in) :: a(3, 3)            !< the matrix
+    real(wp), intent(inout) :: inverse(3, 3)   !< its inverse; unchanged where columns depend on each other
+    real(wp), intent(out) :: pivots(3)         !< lengths, not increasing
+    integer, intent(out) :: sign_of_det        !< -1 or 1
     real(wp) :: c1(3), c2(3), c3(3), l1, l2, l3, longest, area, volume, per_volume
 
     c1 = product_of(a(:, 2), a(:, 3))
@@ -28,7 +28,7 @@ contains
     l3 = a(1, 3)**2 + a(2, 3)**2 + a(3, 3)**2
     volume = a(1, 1)*c1(1) + a(2, 1)*c1(2) + a(3, 1)*c1(3)
     longest = max(l1, l2, l3)
-    ! areas that the longest column spans with the others
+    ! squares of the areas that the longest column spans with the others
     if (l1 >= longest) then
       area = max(square(c2), square(c3))
     else if (l2 >= longest) then
@@ -50,8 +50,10 @@ contains
     inverse(3, :) = per_volume*c3
   end subroutine invert_by_cofactors
 
+  !> Vector product u x v. (The floor of rotations, which has one too, lies above this one.)
   pure function product_of(u, v) result(w)
-    real(wp), intent(in) :: u(3), v(3)
+    real(wp), intent(in) :: u(3)   !< left factor
+    real(wp), intent(in) :: v(3)   !< right factor
     real(wp) :: w(3)
 
     w(1) = u(2)*v(3) - u(3)*v(2)
@@ -59,8 +61,9 @@ contains
     w(3) = u(1)*v(2) - u(2)*v(1)
   end function product_of
 
+  !> Square of the length of a vector.
   pure real(wp) function square(v)
-    real(wp), intent(in) :: v(3)
+    real(wp), intent(in) :: v(3)   !< any vector
 
     square = v(1)**2 + v(2)**2 + v(3)**2
   end function square

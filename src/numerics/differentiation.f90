@@ -10,10 +10,11 @@ module mech9_differentiation
   private
   public :: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil
 
+  !> Points of the stencil on either side of its middle.
   integer, parameter :: half_width = 8
   !> Values on one stencil: x - 8h ... x + 8h.
   integer, parameter :: stencil_size = 2*half_width + 1
-  !> How many steps h are tried.
+  !> Number of steps h that are tried.
   integer, parameter :: step_count = 7
 
 contains
@@ -21,8 +22,8 @@ contains
   !> The trial step of this number (1 .. step_count), for a function that varies over lengths of `scale`,
   !> from 1/8 of it down by factors of 4.
   pure real(wp) function trial_step(number, scale) result(h)
-    integer, intent(in) :: number
-    real(wp), intent(in) :: scale
+    integer, intent(in) :: number   !< 1 for the longest step, to step_count
+    real(wp), intent(in) :: scale   !< length over which the function changes, greater than 0 [unit of x]
 
     ! powers of two: x + i h is then exact for moderate x
     h = 2.0_wp**exponent(scale)*2.0_wp**(-2 - 2*number)
@@ -31,9 +32,11 @@ contains
   !> First and second derivative from values on a stencil of step h, with an estimate of the error
   !> of the second: the difference between degrees 16 and 14 together with the round-off of the values.
   pure subroutine derivatives_from_stencil(values, h, first, second, error)
-    real(wp), intent(in) :: values(-half_width:half_width)
-    real(wp), intent(in) :: h
-    real(wp), intent(out) :: first, second, error
+    real(wp), intent(in) :: values(-half_width:half_width)   !< at x + i h, i = -8 .. 8
+    real(wp), intent(in) :: h   !< step [unit of x]
+    real(wp), intent(out) :: first   !< derivative at x
+    real(wp), intent(out) :: second   !< second derivative at x
+    real(wp), intent(out) :: error   !< estimated error of the second derivative
     real(wp) :: odd(half_width), even(half_width), second_lower
     integer :: i
 
@@ -57,7 +60,8 @@ contains
 
   !> (-1)^(i+1) (n!)^2 / ((n-i)! (n+i)!): the central-difference weight of order 2n at i.
   pure real(wp) function weight(n, i)
-    integer, intent(in) :: n, i
+    integer, intent(in) :: n   !< half width of the stencil, 1 or more
+    integer, intent(in) :: i   !< number of the point beside the middle, 1 .. n
     integer :: k
 
     weight = merge(1.0_wp, -1.0_wp, mod(i, 2) == 1)

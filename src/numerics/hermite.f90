@@ -7,8 +7,8 @@ module mech9_hermite
 
   !> Newton's form with every abscissa three times over.
   type :: hermite_type
-    real(wp), allocatable :: x(:)         !< (3 points)
-    real(wp), allocatable :: d(:, :)      !< (quantities, 3 points): divided differences
+    real(wp), allocatable :: x(:)      !< (3 points)
+    real(wp), allocatable :: d(:, :)   !< (quantities, 3 points): divided differences
   contains
     procedure :: evaluate
   end type hermite_type
@@ -17,9 +17,11 @@ contains
 
   !> The polynomials of least degree that have these values and first two derivatives.
   pure subroutine build_hermite(x, y, dy, ddy, hermite)
-    real(wp), intent(in) :: x(:)                             !< (points), all different
-    real(wp), intent(in) :: y(:, :), dy(:, :), ddy(:, :)     !< (quantities, points)
-    type(hermite_type), intent(out) :: hermite
+    real(wp), intent(in) :: x(:)                 !< (points), all different
+    real(wp), intent(in) :: y(:, :)              !< (quantities, points) values
+    real(wp), intent(in) :: dy(:, :)             !< (quantities, points) first derivatives
+    real(wp), intent(in) :: ddy(:, :)            !< (quantities, points) second derivatives
+    type(hermite_type), intent(out) :: hermite   !< the polynomials
     integer :: i, j, n
 
     n = 3*size(x)
@@ -43,10 +45,12 @@ contains
 
   !> Values and first two derivatives at x.
   pure subroutine evaluate(self, x, y, dy, ddy, points)
-    class(hermite_type), intent(in) :: self   !< the hermite
-    real(wp), intent(in) :: x
-    real(wp), intent(out) :: y(:), dy(:), ddy(:)
-    integer, intent(in), optional :: points       !< of the polynomials through so many of the first points
+    class(hermite_type), intent(in) :: self   !< the polynomials
+    real(wp), intent(in) :: x                 !< the abscissa
+    real(wp), intent(out) :: y(:)             !< (quantities) values at x
+    real(wp), intent(out) :: dy(:)            !< (quantities) first derivatives at x
+    real(wp), intent(out) :: ddy(:)           !< (quantities) second derivatives at x
+    integer, intent(in), optional :: points   !< of the polynomials through so many of the first points
     integer :: i, n
 
     n = size(self%x)

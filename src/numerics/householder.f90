@@ -1,8 +1,8 @@
 !> QR of small matrices by Householder reflections.
 !>
-!> The loops stand in files of their own and are compiled three times: for any size, and with the size known
-!> to the compiler for those that are met most, three equations of a planar or spherical chain and six of a
-!> spatial one. That unrolls them and takes half the time.
+!> The loops stand in files of their own and are compiled three times: for any size, and, with the size known
+!> to the compiler, for the two most frequent sizes, three equations of a planar or spherical chain and six of a
+!> spatial one. The compiler unrolls these loops, which halves the time.
 module mech9_householder
   use mech9_kinds, only: wp
   implicit none
@@ -13,12 +13,13 @@ contains
 
   !> QR with column pivoting of any small matrix.
   pure subroutine householder(m, n, a, pivot, tau, sign_of_det, norms)
-    integer, intent(in) :: m, n
-    real(wp), intent(inout) :: a(m, n)     !< the factors afterwards
-    integer, intent(out) :: pivot(n)       !< column of the matrix at each place
-    real(wp), intent(out) :: tau(n)        !< of the reflections
-    integer, intent(out) :: sign_of_det    !< of a square matrix: -1 or 1
-    real(wp), intent(out) :: norms(n)      !< scratch
+    integer, intent(in) :: m              !< number of rows
+    integer, intent(in) :: n              !< number of columns
+    real(wp), intent(inout) :: a(m, n)    !< (m,n) the matrix; its factors afterwards
+    integer, intent(out) :: pivot(n)      !< column of the matrix at each place
+    real(wp), intent(out) :: tau(n)       !< scales of the reflections
+    integer, intent(out) :: sign_of_det   !< of a square matrix: -1 or 1
+    real(wp), intent(out) :: norms(n)     !< scratch
 
     if (m == 3 .and. n == 3) then
       call factorize_3(a, pivot, tau, sign_of_det, norms)
@@ -31,9 +32,11 @@ contains
 
   !> b becomes Q^T b, with the first n reflections.
   pure subroutine reflect(m, n, a, tau, b)
-    integer, intent(in) :: m, n
-    real(wp), intent(in) :: a(m, n), tau(n)
-    real(wp), intent(inout) :: b(m)
+    integer, intent(in) :: m          !< number of rows
+    integer, intent(in) :: n          !< number of columns used
+    real(wp), intent(in) :: a(m, n)   !< factors, as `householder` leaves them
+    real(wp), intent(in) :: tau(n)    !< scales of the reflections
+    real(wp), intent(inout) :: b(m)   !< right-hand side; Q^T b afterwards
 
     if (m == 3 .and. n == 3) then
       call reflect_3(a, tau, b)
@@ -46,10 +49,11 @@ contains
 
   !> The first n numbers of b become R^-1 b.
   pure subroutine back_substitute(m, n, a, reciprocal, b)
-    integer, intent(in) :: m, n
-    real(wp), intent(in) :: a(m, n)
+    integer, intent(in) :: m                !< number of rows
+    integer, intent(in) :: n                !< number of columns used
+    real(wp), intent(in) :: a(m, n)         !< factors, as `householder` leaves them
     real(wp), intent(in) :: reciprocal(n)   !< of the diagonal of R
-    real(wp), intent(inout) :: b(n)
+    real(wp), intent(inout) :: b(n)         !< Q^T b; the solution afterwards
 
     if (m == 3 .and. n == 3) then
       call substitute_3(a, reciprocal, b)
@@ -60,46 +64,60 @@ contains
     end if
   end subroutine back_substitute
 
+  ! The arguments that these procedures share are declared and described in the included files.
+
+  !> `householder` for any size.
   pure subroutine factorize(m, n, a, pivot, tau, sign_of_det, norms)
-    integer, intent(in) :: m, n
+    integer, intent(in) :: m   !< number of rows
+    integer, intent(in) :: n   !< number of columns
     include 'factorization.inc'
   end subroutine factorize
 
+  !> `householder` for three rows and columns.
   pure subroutine factorize_3(a, pivot, tau, sign_of_det, norms)
     integer, parameter :: m = 3, n = 3
     include 'factorization.inc'
   end subroutine factorize_3
 
+  !> `householder` for six rows and columns.
   pure subroutine factorize_6(a, pivot, tau, sign_of_det, norms)
     integer, parameter :: m = 6, n = 6
     include 'factorization.inc'
   end subroutine factorize_6
 
+  !> `reflect` for any size.
   pure subroutine reflect_any(m, n, a, tau, b)
-    integer, intent(in) :: m, n
+    integer, intent(in) :: m   !< number of rows
+    integer, intent(in) :: n   !< number of columns
     include 'reflection.inc'
   end subroutine reflect_any
 
+  !> `reflect` for three rows and columns.
   pure subroutine reflect_3(a, tau, b)
     integer, parameter :: m = 3, n = 3
     include 'reflection.inc'
   end subroutine reflect_3
 
+  !> `reflect` for six rows and columns.
   pure subroutine reflect_6(a, tau, b)
     integer, parameter :: m = 6, n = 6
     include 'reflection.inc'
   end subroutine reflect_6
 
+  !> `back_substitute` for any size.
   pure subroutine substitute(m, n, a, reciprocal, b)
-    integer, intent(in) :: m, n
+    integer, intent(in) :: m   !< number of rows
+    integer, intent(in) :: n   !< number of columns
     include 'substitution.inc'
   end subroutine substitute
 
+  !> `back_substitute` for three rows and columns.
   pure subroutine substitute_3(a, reciprocal, b)
     integer, parameter :: m = 3, n = 3
     include 'substitution.inc'
   end subroutine substitute_3
 
+  !> `back_substitute` for six rows and columns.
   pure subroutine substitute_6(a, reciprocal, b)
     integer, parameter :: m = 6, n = 6
     include 'substitution.inc'

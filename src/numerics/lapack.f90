@@ -8,46 +8,73 @@ module mech9_lapack
   interface
     !> The version of the library.
     subroutine ilaver(major, minor, patch)
-      integer, intent(out) :: major, minor, patch
+      integer, intent(out) :: major   !< first number of the version
+      integer, intent(out) :: minor   !< second number of the version
+      integer, intent(out) :: patch   !< third number of the version
     end subroutine ilaver
 
     !> Tridiagonal linear equations.
     subroutine dgtsv(n, nrhs, dl, d, du, b, ldb, info)
       import :: wp
-      integer, intent(in) :: n, nrhs, ldb
-      real(wp), intent(inout) :: dl(*), d(*), du(*), b(ldb, *)
-      integer, intent(out) :: info
+      integer, intent(in) :: n               !< order of the matrix
+      integer, intent(in) :: nrhs            !< number of right-hand sides
+      integer, intent(in) :: ldb             !< rows of `b` in memory
+      real(wp), intent(inout) :: dl(*)       !< (n-1) below the diagonal; overwritten
+      real(wp), intent(inout) :: d(*)        !< (n) the diagonal; overwritten
+      real(wp), intent(inout) :: du(*)       !< (n-1) above the diagonal; overwritten
+      real(wp), intent(inout) :: b(ldb, *)   !< (n,nrhs) right-hand sides; the solutions afterwards
+      integer, intent(out) :: info           !< 0: all is well
     end subroutine dgtsv
 
     !> Singular values and vectors of a matrix.
     subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
       import :: wp
-      character, intent(in) :: jobu, jobvt
-      integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
-      real(wp), intent(inout) :: a(lda, *)
-      real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
-      integer, intent(out) :: info
+      character, intent(in) :: jobu          !< 'A', 'S', 'O' or 'N': which left singular vectors are wanted
+      character, intent(in) :: jobvt         !< 'A', 'S', 'O' or 'N': which right singular vectors are wanted
+      integer, intent(in) :: m               !< number of rows
+      integer, intent(in) :: n               !< number of columns
+      integer, intent(in) :: lda             !< rows of `a` in memory
+      integer, intent(in) :: ldu             !< rows of `u` in memory
+      integer, intent(in) :: ldvt            !< rows of `vt` in memory
+      integer, intent(in) :: lwork           !< size of `work`
+      real(wp), intent(inout) :: a(lda, *)   !< (m,n) the matrix; overwritten
+      real(wp), intent(out) :: s(*)          !< singular values, not increasing
+      real(wp), intent(out) :: u(ldu, *)     !< left singular vectors in columns
+      real(wp), intent(out) :: vt(ldvt, *)   !< right singular vectors in rows
+      real(wp), intent(out) :: work(*)       !< scratch
+      integer, intent(out) :: info           !< 0: all is well
     end subroutine dgesvd
 
     !> Product with the orthogonal factor of a QR factorization.
     subroutine dormqr(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
       import :: wp
-      character, intent(in) :: side, trans
-      integer, intent(in) :: m, n, k, lda, ldc, lwork
-      real(wp), intent(in) :: a(lda, *), tau(*)
-      real(wp), intent(inout) :: c(ldc, *)
-      real(wp), intent(out) :: work(*)
-      integer, intent(out) :: info
+      character, intent(in) :: side          !< 'L': Q stands on the left; 'R': on the right
+      character, intent(in) :: trans         !< 'N': Q; 'T': its transpose
+      integer, intent(in) :: m               !< rows of `c`
+      integer, intent(in) :: n               !< columns of `c`
+      integer, intent(in) :: k               !< number of reflections
+      integer, intent(in) :: lda             !< rows of `a` in memory
+      integer, intent(in) :: ldc             !< rows of `c` in memory
+      integer, intent(in) :: lwork           !< size of `work`
+      real(wp), intent(in) :: a(lda, *)      !< reflections, as dgeqp3 leaves them
+      real(wp), intent(in) :: tau(*)         !< scales of the reflections
+      real(wp), intent(inout) :: c(ldc, *)   !< (m,n) the other factor; the product afterwards
+      real(wp), intent(out) :: work(*)       !< scratch
+      integer, intent(out) :: info           !< 0: all is well
     end subroutine dormqr
 
     !> QR factorization with column pivoting.
     subroutine dgeqp3(m, n, a, lda, jpvt, tau, work, lwork, info)
       import :: wp
-      integer, intent(in) :: m, n, lda, lwork
-      real(wp), intent(inout) :: a(lda, *)
-      integer, intent(inout) :: jpvt(*)
-      real(wp), intent(out) :: tau(*), work(*)
-      integer, intent(out) :: info
+      integer, intent(in) :: m               !< number of rows
+      integer, intent(in) :: n               !< number of columns
+      integer, intent(in) :: lda             !< rows of `a` in memory
+      integer, intent(in) :: lwork           !< size of `work`
+      real(wp), intent(inout) :: a(lda, *)   !< (m,n) the matrix; its factors afterwards
+      integer, intent(inout) :: jpvt(*)      !< (n) zeros on entry; column of the matrix at each place afterwards
+      real(wp), intent(out) :: tau(*)        !< scales of the reflections
+      real(wp), intent(out) :: work(*)       !< scratch
+      integer, intent(out) :: info           !< 0: all is well
     end subroutine dgeqp3
   end interface
 end module mech9_lapack

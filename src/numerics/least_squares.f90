@@ -1,9 +1,9 @@
 !> Least squares by QR with column pivoting: factorized once, solved for several right-hand sides.
 !>
-!> Small matrices, the rule in mechanisms, are factorized by Householder loops of our own,
-!> which beat the call into LAPACK there; larger ones by LAPACK. Three well determined equations in three unknowns
-!> are solved by cofactors, which are faster still; their factors are found only where someone asks for more.
-!> Nothing is allocated after `create`.
+!> Small matrices, the rule in mechanisms, are factorized by the Householder loops of mech9_householder,
+!> which are faster than a call of LAPACK there; larger ones by LAPACK. Three well determined equations in three unknowns
+!> are solved by cofactors, which are faster still; their QR factors are found only where more than a solution is
+!> wanted. Nothing is allocated after `create`.
 module mech9_least_squares
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgeqp3, dormqr
@@ -15,22 +15,23 @@ module mech9_least_squares
 
   !> From this number of columns on LAPACK is called.
   integer, parameter :: lapack_from = 24
-  !> Columns with a pivot below this part of the largest are looked at for noise.
+  !> Columns with a pivot below this part of the largest are nearly dependent: round-off may determine their unknowns.
   real(wp), parameter :: nearly_dependent = 0.05_wp
 
+  !> A matrix, its factors, and scratch of the right size.
   type :: least_squares_type
     integer :: m = 0                            !< equations
     integer :: n = 0                            !< unknowns
     real(wp), allocatable :: a(:, :)            !< (m,n): the matrix; overwritten by `factorize`
     integer, allocatable, private :: pivot(:)   !< column of the matrix at each place
     real(wp), allocatable, private :: lengths(:)      !< of the pivots, not increasing
-    logical :: by_cofactors = .false.           !< a is still the matrix, and `inverse` serves
+    logical :: by_cofactors = .false.           !< a is still the matrix, and `inverse` solves
     real(wp) :: inverse(3, 3) = 0.0_wp          !< of the matrix, where that is solved by cofactors
     integer, allocatable, private :: order(:)
     real(wp), allocatable, private :: tau(:)
     real(wp), allocatable, private :: reciprocal(:)   !< of the pivots that are not lost in round-off
-    integer, private :: safe_rank = 0           !< columns that are independent beyond round-off
-    integer, private :: sign_of_det = 1         !< where the loops of our own are used
+    integer, private :: safe_rank = 0                 !< columns that are independent beyond round-off
+    integer, private :: sign_of_det = 1               !< of the matrix, where cofactors or Householder loops give it
     real(wp), allocatable, private :: norms(:)
     real(wp), allocatable, private :: work(:)
   contains
@@ -49,8 +50,9 @@ contains
 
   !> Make room for m equations in n unknowns.
   pure subroutine create(self, m, n)
-    class(least_squares_type), intent(inout) :: self   !< the least squares
-    integer, intent(in) :: m, n
+    class(least_squares_type), intent(inout) :: self   !< gets room for the matrix and its factors
+    integer, intent(in) :: m                           !< number of equations
+    integer, intent(in) :: n                           !< number of unknowns
 
     self%m = m
     self%n = n
@@ -63,8 +65,8 @@ contains
 
   !> Factorize a matrix, or the one that stands in `a`.
   subroutine factorize(self, matrix)
-    class(least_squares_type), intent(inout) :: self   !< the least squares
-    real(wp), intent(in), contiguous, optional :: matrix(:, :)   !< (m,n)
+    class(least_squares_type), intent(inout) :: self             !< the least squares problem: its matrix and factors
+    real(wp), intent(in), contiguous, optional :: matrix(:, :)   !< (m,n); absent: the one in `a`
 
     if (present(matrix)) call copy(self%m*self%n, matrix, self%a)
     self%by_cofactors = .false.
@@ -81,7 +83,7 @@ contains
 
   !> The QR factorization of the matrix that stands in `a`.
   subroutine find_factors(self)
-    class(least_squares_type), intent(inout) :: self   !< the least squares
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
     integer :: info, j
 
     self%by_cofactors = .false.
@@ -100,24 +102,24 @@ contains
     end do
   end subroutine find_factors
 
-  !> x with |a x - b| least, and the length of what remains; columns at and beyond the numerical rank
-  !> are not used.
+  !> x for which |a x - b| is least, and the length of the residual; columns beyond the numerical rank are not used.
+  !>
+  !> With `noise`, an unknown of a nearly dependent column is left at zero where round-off alone can explain its value:
+  !> its error is larger than that of a well determined one by the square of the ratio of the largest pivot to its own.
   subroutine solve(self, b, x, remainder, tolerance, noise)
-    class(least_squares_type), intent(inout) :: self   !< the least squares
-    real(wp), intent(inout), contiguous :: b(:)  !< (m); overwritten
-    real(wp), intent(out) :: x(:)                !< (n)
-    real(wp), intent(out), optional :: remainder
-    real(wp), intent(in), optional :: tolerance   !< of the rank; round-off unless given
-    !> What of x is noise in a well determined column; in a nearly dependent one it is more, by the square
-    !> of how much smaller the pivot is, and all that does not exceed it is left at zero.
-    real(wp), intent(in), optional :: noise
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
+    real(wp), intent(inout), contiguous :: b(:)        !< (m) right-hand side; overwritten
+    real(wp), intent(out) :: x(:)                      !< (n) the solution
+    real(wp), intent(out), optional :: remainder       !< length of the residual a x - b
+    real(wp), intent(in), optional :: tolerance        !< part of the largest pivot, below which a column is not used
+    real(wp), intent(in), optional :: noise            !< error of x by round-off in a well determined column, in the unit of x
     integer :: j, k, info, rank
 
     rank = self%safe_rank
     if (present(tolerance)) rank = min(rank, rank_within(self, tolerance))
     if (self%by_cofactors) then
       if (rank == 3) then
-        ! no column is nearly dependent, and so there is no noise to be feared
+        ! no column is nearly dependent, so that `noise` has no effect
         do j = 1, 3
           x(j) = self%inverse(j, 1)*b(1) + self%inverse(j, 2)*b(2) + self%inverse(j, 3)*b(3)
         end do
@@ -144,20 +146,21 @@ contains
     end do
   end subroutine solve
 
+  !> Copy the elements of an array in the order of memory.
   pure subroutine copy(n, from, to)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: from(n)
-    real(wp), intent(out) :: to(n)
+    integer, intent(in) :: n          !< number of elements
+    real(wp), intent(in) :: from(n)   !< elements of the matrix
+    real(wp), intent(out) :: to(n)    !< the same elements
 
     to = from
   end subroutine copy
 
-  !> R^-1 b in the first `rank` columns, without what is noise.
+  !> R^-1 b in the first `rank` columns, with zeros for the unknowns that round-off alone can explain.
   pure subroutine substitute_above_noise(self, rank, noise, b)
-    class(least_squares_type), intent(in) :: self   !< the least squares
-    integer, intent(in) :: rank
-    real(wp), intent(in) :: noise
-    real(wp), intent(inout) :: b(:)
+    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
+    integer, intent(in) :: rank                     !< columns that are used
+    real(wp), intent(in) :: noise                   !< error of x by round-off in a well determined column, in the unit of x
+    real(wp), intent(inout) :: b(:)                 !< (m) Q^T b; the solution in its first `rank` numbers afterwards
     real(wp) :: s
     integer :: i, j
 
@@ -173,8 +176,8 @@ contains
 
   !> Number of columns that are independent beyond round-off.
   pure integer function rank(self, tolerance)
-    class(least_squares_type), intent(in) :: self   !< the least squares
-    real(wp), intent(in), optional :: tolerance   !< against the largest; round-off unless given
+    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
+    real(wp), intent(in), optional :: tolerance     !< against the largest; round-off unless given
 
     rank = self%safe_rank
     if (present(tolerance)) rank = rank_within(self, tolerance)
@@ -182,8 +185,8 @@ contains
 
   !> Number of pivots above this part of the largest.
   pure integer function rank_within(self, tolerance) result(rank)
-    class(least_squares_type), intent(in) :: self   !< the least squares
-    real(wp), intent(in) :: tolerance
+    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
+    real(wp), intent(in) :: tolerance               !< part of the largest pivot that a column must exceed
 
     do rank = 0, size(self%lengths) - 1
       if (.not. self%lengths(rank + 1) > tolerance*self%lengths(1)) return
@@ -192,7 +195,7 @@ contains
 
   !> Length of the largest pivot: about the largest singular value; 0 where there is none.
   pure real(wp) function largest_pivot(self)
-    class(least_squares_type), intent(in) :: self   !< the least squares
+    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
 
     largest_pivot = 0.0_wp
     if (size(self%lengths) > 0) largest_pivot = self%lengths(1)
@@ -201,7 +204,7 @@ contains
   !> Length of the least pivot: about the least singular value, somewhat above it; 0 where there are fewer
   !> equations than unknowns, or none.
   pure real(wp) function least_pivot(self)
-    class(least_squares_type), intent(in) :: self   !< the least squares
+    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
 
     least_pivot = 0.0_wp
     if (self%n > 0 .and. self%m >= self%n) least_pivot = self%lengths(self%n)
@@ -210,7 +213,7 @@ contains
   !> Least against largest pivot: about the reciprocal condition number; 0 where columns depend on
   !> each other, 1 where there are none.
   pure real(wp) function conditioning(self)
-    class(least_squares_type), intent(in) :: self   !< the least squares
+    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
 
     conditioning = 1.0_wp
     if (self%n == 0) return
@@ -222,7 +225,7 @@ contains
   !> The least singular value, by inverse iteration with the factors; 0 where columns depend on each
   !> other, huge where there are none.
   function least_singular_value(self) result(least)
-    class(least_squares_type), intent(inout) :: self   !< the least squares
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
     real(wp) :: least
     integer, parameter :: most_iterations = 200
     real(wp) :: before, length
@@ -234,7 +237,8 @@ contains
     least = 0.0_wp
     if (self%rank() < n) return
     if (self%by_cofactors) call find_factors(self)
-    ! pivoting leaves what is nearly lost to the last column; the rest is for the case that it does not
+    ! column pivoting leaves the left singular vector of the least singular value mostly along the last row of R; the
+    ! small other numbers serve where it does not
     do i = 1, n
       self%work(i) = 0.01_wp
     end do
@@ -255,9 +259,9 @@ contains
 
   !> x = R^-1 x with the upper triangle R of a.
   pure subroutine solve_upper(a, n, x)
-    real(wp), intent(in) :: a(:, :)
-    integer, intent(in) :: n
-    real(wp), intent(inout) :: x(:)
+    real(wp), intent(in) :: a(:, :)   !< upper triangle R in its first n rows and columns
+    integer, intent(in) :: n          !< order of R
+    real(wp), intent(inout) :: x(:)   !< right-hand side; the solution afterwards
     integer :: i, j
 
     do j = n, 1, -1
@@ -270,9 +274,9 @@ contains
 
   !> x = R^-T x.
   pure subroutine solve_upper_transposed(a, n, x)
-    real(wp), intent(in) :: a(:, :)
-    integer, intent(in) :: n
-    real(wp), intent(inout) :: x(:)
+    real(wp), intent(in) :: a(:, :)   !< upper triangle R in its first n rows and columns
+    integer, intent(in) :: n          !< order of R
+    real(wp), intent(inout) :: x(:)   !< right-hand side; the solution afterwards
     integer :: i, j
 
     do j = 1, n
@@ -285,7 +289,7 @@ contains
 
   !> Sign of the determinant of a square matrix; 1 for others.
   integer function determinant_sign(self) result(sign)
-    class(least_squares_type), intent(inout) :: self   !< the least squares
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
     integer :: j, place, next
 
     sign = 1

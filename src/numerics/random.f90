@@ -16,7 +16,7 @@ contains
 
   !> The next number, between -1 and 1.
   real(wp) function symmetric(self)
-    class(random_type), intent(inout) :: self   !< the random
+    class(random_type), intent(inout) :: self   !< the generator, which goes on by one number
     integer(long), parameter :: modulus = 2147483647_long
 
     self%seed = mod(48271_long*self%seed, modulus)

@@ -1,15 +1,15 @@
 !> Cosines and sines of many angles at once.
 !>
-!> The intrinsic functions are called for one angle after the other. Here the loop runs over all of them without a
-!> branch, so that the compiler can take several together: whole quarter turns are taken away, and what is left,
-!> at most half of one, goes into the series of sine and cosine.
+!> The intrinsic functions are called for one angle after the other. Here the loop runs over all angles without a
+!> branch, so that the compiler can compute several at once: whole quarter turns are subtracted, and the series of sine
+!> and cosine are taken at the rest, at most half a quarter turn.
 module mech9_sine_cosine
   use mech9_kinds, only: wp
   implicit none
   private
   public :: cosines_and_sines
 
-  !> Angles up to this are reduced exactly enough [rad].
+  !> Angles up to this one are reduced without loss of digits [rad].
   real(wp), parameter :: largest_angle = 1.0e6_wp
   !> A quarter turn in three parts; the first two have 33 bits each, so that multiples of them have no rounding.
   real(wp), parameter :: quarter(3) = [1.57079632673412561417_wp, 6.07710050630396597660e-11_wp, 2.02226624879595063154e-21_wp]
@@ -19,11 +19,11 @@ module mech9_sine_cosine
 
 contains
 
-  !> Right to little more than half of the last digit, like the intrinsic functions.
+  !> Cosines and sines with errors little above half a unit in the last place, as the intrinsic functions have.
   pure subroutine cosines_and_sines(n, angles, turned)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: angles(n)      !< [rad]
-    real(wp), intent(out) :: turned(2, n)  !< cosine and sine of each
+    integer, intent(in) :: n                !< number of angles
+    real(wp), intent(in) :: angles(n)       !< [rad]
+    real(wp), intent(out) :: turned(2, n)   !< cosine and sine of each angle
     real(wp) :: quarters, x, left, z, most, c, s
     integer :: i, k
 
@@ -37,7 +37,7 @@ contains
     do i = 1, n
       quarters = (angles(i)*per_quarter + whole) - whole
       k = int(quarters)
-      ! the rest, and what its last digit leaves out
+      ! the rest x, and its round-off error `left`
       z = angles(i) - quarters*quarter(1)
       most = z - quarters*quarter(2)
       x = most - quarters*quarter(3)
@@ -46,7 +46,7 @@ contains
       s = x + (left*(1.0_wp - 0.5_wp*z) + x*z*(-1.0_wp/6.0_wp + z*(1.0_wp/120.0_wp + z*(-1.0_wp/5040.0_wp + z*(1.0_wp/362880.0_wp &
           + z*(-1.0_wp/39916800.0_wp + z*(1.0_wp/6227020800.0_wp + z*(-1.0_wp/1307674368000.0_wp &
           + z*(1.0_wp/355687428096000.0_wp)))))))))
-      ! what 1 - z/2 loses in its last digit is added with the small terms
+      ! the round-off error of 1 - z/2 is added with the small terms
       most = 1.0_wp - 0.5_wp*z
       c = most + (((1.0_wp - most) - 0.5_wp*z) - x*left + z**2*(1.0_wp/24.0_wp + z*(-1.0_wp/720.0_wp + z*(1.0_wp/40320.0_wp &
           + z*(-1.0_wp/3628800.0_wp + z*(1.0_wp/479001600.0_wp + z*(-1.0_wp/87178291200.0_wp &

@@ -25,8 +25,9 @@ contains
   !> one point ("not a knot"), so that a cubic is reproduced exactly. Needs at least four points
   !> with increasing x.
   subroutine build_spline(x, y, spline, err)
-    real(wp), intent(in) :: x(:), y(:)
-    type(spline_type), intent(out) :: spline
+    real(wp), intent(in) :: x(:)                        !< abscissae, increasing, at least four
+    real(wp), intent(in) :: y(:)                        !< values at x
+    type(spline_type), intent(out) :: spline            !< the curve
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: h(size(x) - 1), slope(size(x) - 1)
     real(wp) :: below(size(x) - 3), diagonal(size(x) - 2), above(size(x) - 3), right(size(x) - 2, 1)
@@ -73,8 +74,10 @@ contains
   !> Value and first two derivatives at x; outside its points the end pieces are continued.
   pure subroutine evaluate(self, x, y, dy, ddy)
     class(spline_type), intent(in) :: self   !< the spline
-    real(wp), intent(in) :: x
-    real(wp), intent(out) :: y, dy, ddy
+    real(wp), intent(in) :: x                !< the abscissa
+    real(wp), intent(out) :: y               !< value at x
+    real(wp), intent(out) :: dy              !< first derivative at x
+    real(wp), intent(out) :: ddy             !< second derivative at x
     integer :: low, high
     real(wp) :: h, a, b
 
@@ -93,7 +96,8 @@ contains
   !> A bound of |dy/dx| for x between two values, from the slope and the bending of each piece there.
   pure real(wp) function steepest(self, from, to)
     class(spline_type), intent(in) :: self   !< the spline
-    real(wp), intent(in) :: from, to      !< from <= to
+    real(wp), intent(in) :: from             !< beginning of the interval of x
+    real(wp), intent(in) :: to               !< its end, not before its beginning
     integer :: i
     real(wp) :: h
 
@@ -108,7 +112,7 @@ contains
   !> Number of the piece in which x lies; the first or the last one for x outside.
   pure integer function piece(self, x) result(low)
     class(spline_type), intent(in) :: self   !< the spline
-    real(wp), intent(in) :: x
+    real(wp), intent(in) :: x                !< the abscissa
     integer :: high, middle
 
     low = 1

@@ -94,7 +94,7 @@ module mech9_taylor
     module procedure hypot_tt, hypot_tr, hypot_rt
   end interface hypot
 
-  !> Of the elements of a vector.
+  !> Sum of the elements of a vector.
   interface sum
     module procedure sum_t
   end interface sum
@@ -112,8 +112,8 @@ module mech9_taylor
 contains
 
   elemental type(taylor) function power_ti(a, n)
-    type(taylor), intent(in) :: a
-    integer, intent(in) :: n
+    type(taylor), intent(in) :: a   !< the base
+    integer, intent(in) :: n        !< the exponent
 
     select case (n)
     case (0)
@@ -128,11 +128,11 @@ contains
   end function power_ti
 
   elemental type(taylor) function power_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< the base
+    real(wp), intent(in) :: b       !< the exponent
     real(wp) :: first, second
 
-    ! a factor of zero stands against an infinite power: x**1.0 at 0
+    ! where the factor is zero the power may be infinite, and their product not a number: x**1.0 at 0
     first = 0.0_wp
     second = 0.0_wp
     if (abs(b) > 0.0_wp) first = b*a%value**(b - 1.0_wp)
@@ -141,24 +141,25 @@ contains
   end function power_tr
 
   elemental type(taylor) function power_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< the base
+    type(taylor), intent(in) :: b   !< the exponent
 
     if (abs(b%first) <= 0.0_wp .and. abs(b%second) <= 0.0_wp) then
-      power_tt = power_tr(a, b%value)   ! also where there is no logarithm
+      power_tt = power_tr(a, b%value)   ! a constant exponent: also for bases without a logarithm
     else
       power_tt = exp_t(b*log_t(a))
     end if
   end function power_tt
 
   elemental type(taylor) function power_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< the base
+    type(taylor), intent(in) :: b   !< the exponent
 
     power_rt = exp_t(log(a)*b)
   end function power_rt
 
   elemental type(taylor) function sqrt_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: f
 
     f = sqrt(a%value)
@@ -166,7 +167,7 @@ contains
   end function sqrt_t
 
   elemental type(taylor) function exp_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: f
 
     f = exp(a%value)
@@ -174,13 +175,13 @@ contains
   end function exp_t
 
   elemental type(taylor) function log_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
 
     log_t = chain(a, log(a%value), 1.0_wp/a%value, -1.0_wp/a%value**2)
   end function log_t
 
   elemental type(taylor) function sin_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: s, c
 
     s = sin(a%value)
@@ -189,7 +190,7 @@ contains
   end function sin_t
 
   elemental type(taylor) function cos_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: s, c
 
     s = sin(a%value)
@@ -198,7 +199,7 @@ contains
   end function cos_t
 
   elemental type(taylor) function tan_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: f
 
     f = tan(a%value)
@@ -206,7 +207,7 @@ contains
   end function tan_t
 
   elemental type(taylor) function asin_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: g
 
     g = 1.0_wp/sqrt((1.0_wp - a%value)*(1.0_wp + a%value))
@@ -214,7 +215,7 @@ contains
   end function asin_t
 
   elemental type(taylor) function acos_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: g
 
     g = 1.0_wp/sqrt((1.0_wp - a%value)*(1.0_wp + a%value))
@@ -222,7 +223,7 @@ contains
   end function acos_t
 
   elemental type(taylor) function atan_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: g
 
     g = 1.0_wp/(1.0_wp + a%value**2)
@@ -230,19 +231,19 @@ contains
   end function atan_t
 
   elemental type(taylor) function sinh_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
 
     sinh_t = chain(a, sinh(a%value), cosh(a%value), sinh(a%value))
   end function sinh_t
 
   elemental type(taylor) function cosh_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
 
     cosh_t = chain(a, cosh(a%value), sinh(a%value), cosh(a%value))
   end function cosh_t
 
   elemental type(taylor) function tanh_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
     real(wp) :: f
 
     f = tanh(a%value)
@@ -250,14 +251,15 @@ contains
   end function tanh_t
 
   elemental type(taylor) function abs_t(a)
-    type(taylor), intent(in) :: a
+    type(taylor), intent(in) :: a   !< the argument
 
     abs_t = merge(a, -a, a%value >= 0.0_wp)
   end function abs_t
 
   !> Angle of the point (b, a), in all four quadrants.
   elemental type(taylor) function atan2_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< ordinate of the point
+    type(taylor), intent(in) :: b   !< abscissa of the point
     real(wp) :: square, turn
 
     square = a%value**2 + b%value**2
@@ -269,129 +271,134 @@ contains
   end function atan2_tt
 
   elemental type(taylor) function atan2_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< ordinate of the point
+    real(wp), intent(in) :: b       !< abscissa of the point
 
     atan2_tr = atan2_tt(a, constant(b))
   end function atan2_tr
 
   elemental type(taylor) function atan2_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< ordinate of the point
+    type(taylor), intent(in) :: b   !< abscissa of the point
 
     atan2_rt = atan2_tt(constant(a), b)
   end function atan2_rt
 
   elemental type(taylor) function min_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< one of the two
+    type(taylor), intent(in) :: b   !< the other one
 
     min_tt = merge(a, b, a%value <= b%value)
   end function min_tt
 
   elemental type(taylor) function min_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< one of the two
+    real(wp), intent(in) :: b       !< the other one
 
     min_tr = merge(a, constant(b), a%value <= b)
   end function min_tr
 
   elemental type(taylor) function min_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< one of the two
+    type(taylor), intent(in) :: b   !< the other one
 
     min_rt = merge(constant(a), b, a <= b%value)
   end function min_rt
 
   elemental type(taylor) function max_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< one of the two
+    type(taylor), intent(in) :: b   !< the other one
 
     max_tt = merge(a, b, a%value >= b%value)
   end function max_tt
 
   elemental type(taylor) function max_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< one of the two
+    real(wp), intent(in) :: b       !< the other one
 
     max_tr = merge(a, constant(b), a%value >= b)
   end function max_tr
 
   elemental type(taylor) function max_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< one of the two
+    type(taylor), intent(in) :: b   !< the other one
 
     max_rt = merge(constant(a), b, a >= b%value)
   end function max_rt
 
   !> |a| with the sign of b.
   elemental type(taylor) function sign_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< the number whose size is taken
+    real(wp), intent(in) :: b       !< the number whose sign is taken
 
     sign_tr = sign(1.0_wp, a%value)*sign(1.0_wp, b)*a
   end function sign_tr
 
   elemental type(taylor) function sign_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< the number whose size is taken
+    type(taylor), intent(in) :: b   !< the number whose sign is taken
 
     sign_tt = sign_tr(a, b%value)
   end function sign_tt
 
   elemental type(taylor) function sign_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< the number whose size is taken
+    type(taylor), intent(in) :: b   !< the number whose sign is taken
 
     sign_rt = constant(sign(a, b%value))
   end function sign_rt
 
   elemental type(taylor) function hypot_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< one side at the right angle
+    type(taylor), intent(in) :: b   !< the other side at the right angle
 
     hypot_tt = norm2_t([a, b])
   end function hypot_tt
 
   elemental type(taylor) function hypot_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< one side at the right angle
+    real(wp), intent(in) :: b       !< the other side at the right angle
 
     hypot_tr = norm2_t([a, constant(b)])
   end function hypot_tr
 
   elemental type(taylor) function hypot_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< one side at the right angle
+    type(taylor), intent(in) :: b   !< the other side at the right angle
 
     hypot_rt = norm2_t([constant(a), b])
   end function hypot_rt
 
   pure type(taylor) function sum_t(a)
-    type(taylor), intent(in) :: a(:)
+    type(taylor), intent(in) :: a(:)   !< the vector
 
     sum_t = taylor(sum(a%value), sum(a%first), sum(a%second))
   end function sum_t
 
   pure type(taylor) function dot_product_tt(a, b)
-    type(taylor), intent(in) :: a(:), b(:)
+    type(taylor), intent(in) :: a(:)   !< one vector
+    type(taylor), intent(in) :: b(:)   !< the other vector, of the same size
 
     dot_product_tt = sum_t(a*b)
   end function dot_product_tt
 
   pure type(taylor) function dot_product_tr(a, b)
-    type(taylor), intent(in) :: a(:)
-    real(wp), intent(in) :: b(:)
+    type(taylor), intent(in) :: a(:)   !< one vector
+    real(wp), intent(in) :: b(:)       !< the other vector, of the same size
 
     dot_product_tr = sum_t(a*b)
   end function dot_product_tr
 
   pure type(taylor) function dot_product_rt(a, b)
-    real(wp), intent(in) :: a(:)
-    type(taylor), intent(in) :: b(:)
+    real(wp), intent(in) :: a(:)       !< one vector
+    type(taylor), intent(in) :: b(:)   !< the other vector, of the same size
 
     dot_product_rt = sum_t(a*b)
   end function dot_product_rt
 
   !> The length of a vector, from |a|^2 differentiated twice, without squares that overflow.
   pure type(taylor) function norm2_t(a)
-    type(taylor), intent(in) :: a(:)
+    type(taylor), intent(in) :: a(:)   !< the vector
     real(wp) :: length, rate
 
     length = norm2(a%value)

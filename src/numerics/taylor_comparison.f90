@@ -33,205 +33,211 @@ module mech9_taylor_comparison
 contains
 
   elemental logical function less_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     less_tt = a%value < b%value
   end function less_tt
 
   elemental logical function less_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    real(wp), intent(in) :: b       !< right side
 
     less_tr = a%value < b
   end function less_tr
 
   elemental logical function less_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     less_rt = a < b%value
   end function less_rt
 
   elemental logical function less_equal_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     less_equal_tt = a%value <= b%value
   end function less_equal_tt
 
   elemental logical function less_equal_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    real(wp), intent(in) :: b       !< right side
 
     less_equal_tr = a%value <= b
   end function less_equal_tr
 
   elemental logical function less_equal_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     less_equal_rt = a <= b%value
   end function less_equal_rt
 
   elemental logical function greater_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     greater_tt = a%value > b%value
   end function greater_tt
 
   elemental logical function greater_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    real(wp), intent(in) :: b       !< right side
 
     greater_tr = a%value > b
   end function greater_tr
 
   elemental logical function greater_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     greater_rt = a > b%value
   end function greater_rt
 
   elemental logical function greater_equal_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     greater_equal_tt = a%value >= b%value
   end function greater_equal_tt
 
   elemental logical function greater_equal_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    real(wp), intent(in) :: b       !< right side
 
     greater_equal_tr = a%value >= b
   end function greater_equal_tr
 
   elemental logical function greater_equal_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     greater_equal_rt = a >= b%value
   end function greater_equal_rt
 
   elemental logical function equal_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     equal_tt = a%value <= b%value .and. a%value >= b%value
   end function equal_tt
 
   elemental logical function equal_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    real(wp), intent(in) :: b       !< right side
 
     equal_tr = a%value <= b .and. a%value >= b
   end function equal_tr
 
   elemental logical function equal_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     equal_rt = a <= b%value .and. a >= b%value
   end function equal_rt
 
   elemental logical function unequal_tt(a, b)
-    type(taylor), intent(in) :: a, b
+    type(taylor), intent(in) :: a   !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     unequal_tt = a%value < b%value .or. a%value > b%value
   end function unequal_tt
 
   elemental logical function unequal_tr(a, b)
-    type(taylor), intent(in) :: a
-    real(wp), intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    real(wp), intent(in) :: b       !< right side
 
     unequal_tr = a%value < b .or. a%value > b
   end function unequal_tr
 
   elemental logical function unequal_rt(a, b)
-    real(wp), intent(in) :: a
-    type(taylor), intent(in) :: b
+    real(wp), intent(in) :: a       !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     unequal_rt = a < b%value .or. a > b%value
   end function unequal_rt
 
   elemental logical function less_ti(a, b)
-    type(taylor), intent(in) :: a
-    integer, intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    integer, intent(in) :: b        !< right side
 
     less_ti = less_tr(a, real(b, wp))
   end function less_ti
 
   elemental logical function less_it(a, b)
-    integer, intent(in) :: a
-    type(taylor), intent(in) :: b
+    integer, intent(in) :: a        !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     less_it = less_rt(real(a, wp), b)
   end function less_it
 
   elemental logical function less_equal_ti(a, b)
-    type(taylor), intent(in) :: a
-    integer, intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    integer, intent(in) :: b        !< right side
 
     less_equal_ti = less_equal_tr(a, real(b, wp))
   end function less_equal_ti
 
   elemental logical function less_equal_it(a, b)
-    integer, intent(in) :: a
-    type(taylor), intent(in) :: b
+    integer, intent(in) :: a        !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     less_equal_it = less_equal_rt(real(a, wp), b)
   end function less_equal_it
 
   elemental logical function greater_ti(a, b)
-    type(taylor), intent(in) :: a
-    integer, intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    integer, intent(in) :: b        !< right side
 
     greater_ti = greater_tr(a, real(b, wp))
   end function greater_ti
 
   elemental logical function greater_it(a, b)
-    integer, intent(in) :: a
-    type(taylor), intent(in) :: b
+    integer, intent(in) :: a        !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     greater_it = greater_rt(real(a, wp), b)
   end function greater_it
 
   elemental logical function greater_equal_ti(a, b)
-    type(taylor), intent(in) :: a
-    integer, intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    integer, intent(in) :: b        !< right side
 
     greater_equal_ti = greater_equal_tr(a, real(b, wp))
   end function greater_equal_ti
 
   elemental logical function greater_equal_it(a, b)
-    integer, intent(in) :: a
-    type(taylor), intent(in) :: b
+    integer, intent(in) :: a        !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     greater_equal_it = greater_equal_rt(real(a, wp), b)
   end function greater_equal_it
 
   elemental logical function equal_ti(a, b)
-    type(taylor), intent(in) :: a
-    integer, intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    integer, intent(in) :: b        !< right side
 
     equal_ti = equal_tr(a, real(b, wp))
   end function equal_ti
 
   elemental logical function equal_it(a, b)
-    integer, intent(in) :: a
-    type(taylor), intent(in) :: b
+    integer, intent(in) :: a        !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     equal_it = equal_rt(real(a, wp), b)
   end function equal_it
 
   elemental logical function unequal_ti(a, b)
-    type(taylor), intent(in) :: a
-    integer, intent(in) :: b
+    type(taylor), intent(in) :: a   !< left side
+    integer, intent(in) :: b        !< right side
 
     unequal_ti = unequal_tr(a, real(b, wp))
   end function unequal_ti
 
   elemental logical function unequal_it(a, b)
-    integer, intent(in) :: a
-    type(taylor), intent(in) :: b
+    integer, intent(in) :: a        !< left side
+    type(taylor), intent(in) :: b   !< right side
 
     unequal_it = unequal_rt(real(a, wp), b)
   end function unequal_it
