@@ -1,4 +1,4 @@
-!> Texts: numbers written as text, lower case, lists, nearest names.
+!> Text helpers for numbers, lower case, lists and nearest names.
 !>
 !> Functions here and wherever threads may meet have results of explicit length: gfortran keeps the length of
 !> a result `character(len=:), allocatable` in a static variable of the caller, which threads would share.

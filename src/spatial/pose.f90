@@ -1,4 +1,4 @@
-!> Poses: position and orientation of a frame B in a frame A, X_A = r_ab X_B + p_ab_a; the paper's (2)-(6), (10).
+!> Position and orientation of a frame B in a frame A as a pose, X_A = r_ab X_B + p_ab_a; the paper's (2)-(6), (10).
 module mech9_pose
   use mech9_kinds, only: wp
   use mech9_rotation, only: identity, cross, unit
@@ -50,7 +50,7 @@ contains
   pure subroutine pose_from_points(r1, r2, r3, pose, ok)
     real(wp), intent(in) :: r1(3)          !< first point, the origin [m]
     real(wp), intent(in) :: r2(3)          !< second point, on the first axis [m]
-    real(wp), intent(in) :: r3(3)          !< third point, on the side of the second axis [m]
+    real(wp), intent(in) :: r3(3)          !< third point, which spans the plane with the others [m]
     type(pose_type), intent(out) :: pose   !< pose of the new frame in that of the points
     logical, intent(out) :: ok             !< whether the points define a frame
     real(wp) :: d(3), f(3), n(3)

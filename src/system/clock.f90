@@ -1,4 +1,4 @@
-!> Time: a monotonic clock, and a pacer that tells cheaply when an interval is over.
+!> A monotonic clock, and a pacer that tells cheaply when an interval is over.
 module mech9_clock
   use mech9_kinds, only: wp, long
   implicit none
