@@ -1,4 +1,5 @@
-!> A scene drawn: where its nodes stand on the page, in which order items cover each other, and the lines they are made of.
+!> A drawing of a scene: the places of its nodes on the page, the order in which items cover each other, and the lines
+!> that make up each item.
 module mech9_drawing
   use mech9_kinds, only: wp
   use mech9_film, only: film_type
@@ -8,18 +9,18 @@ module mech9_drawing
   private
   public :: drawing_type, draw_frame, drawing_order, outline_of
 
-  !> Nodes on the page.
+  !> The places of all nodes on the page.
   type :: drawing_type
     real(wp), allocatable :: xy(:, :)     !< (2,n) [px]
-    real(wp), allocatable :: depth(:)     !< (n) nearness to the viewer [px]
+    real(wp), allocatable :: depth(:)     !< (n) distance from the centre towards the viewer [px]
   end type drawing_type
 
-  !> Depths that differ by less than a part of the page are one: then the order in the scene counts.
+  !> Depths are rounded to steps; items in the same step are drawn in the order of the scene.
   real(wp), parameter :: depth_steps = 0.5_wp   ! steps per px
 
 contains
 
-  !> A frame of the film on the page.
+  !> The drawing of one frame of the film.
   pure function draw_frame(scene, film, projection, frame) result(drawing)
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
@@ -37,8 +38,8 @@ contains
     drawing%depth = drawing%depth*projection%scale
   end function draw_frame
 
-  !> The items in the order in which they are drawn: bodies from the farthest to the nearest, each by the mean
-  !> of its nodes, but none before those that it lies upon.
+  !> The numbers of the items in the order in which they are drawn. Bodies are drawn from the farthest to the nearest,
+  !> each by the mean depth of its nodes, but no body before those that it lies upon.
   pure function drawing_order(scene, drawing) result(order)
     type(scene_type), intent(in) :: scene      !< nodes and items of the picture
     type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
@@ -59,7 +60,7 @@ contains
     call sort(keys, order, scene%first_sorted, scene%last_sorted)
   end function drawing_order
 
-  !> Merge sort of the numbers order(first:last) by their keys; equal ones keep their order.
+  !> The numbers order(first:last) are sorted by their keys; numbers with equal keys keep their order (merge sort).
   pure recursive subroutine sort(keys, order, first, last)
     integer, intent(in) :: keys(:)      !< key of each item, by the number of the item
     integer, intent(in) :: first        !< first place of the part of `order` that is sorted
@@ -91,7 +92,7 @@ contains
     order(first:last) = merged
   end subroutine sort
 
-  !> The corners of a path, of segments, or of the windings of a spring, on the page [px]. None where a facing
+  !> The corners of a path, of segments, or of the windings of a spring, on the page [px]. There are none where a facing
   !> path shows its back.
   pure function outline_of(item, drawing, symbol) result(corners)
     type(item_type), intent(in) :: item        !< one thing to draw
@@ -110,7 +111,7 @@ contains
       return
     end if
     corners = drawing%xy(:, item%nodes)
-    ! y points down on the page: counterclockwise has a negative area
+    ! y points down on the page, so that a counterclockwise path has a negative area
     if (item%shape == facing_path) then
       if (area(corners) > -1.0e-3_wp) corners = corners(:, :0)
     end if
@@ -127,7 +128,7 @@ contains
     end do
   end function area
 
-  !> How many turns a spring has, or a thread of a given length [px].
+  !> The number of turns of a spring, or of a thread of a given length.
   pure integer function coil_count(is_thread, length, symbol)
     logical, intent(in) :: is_thread  !< it is the thread of a helical pair, not a spring
     real(wp), intent(in) :: length    !< distance between the ends [px]
@@ -137,7 +138,7 @@ contains
     if (is_thread) coil_count = max(3, min(60, nint(length/(6.0_wp*symbol))))
   end function coil_count
 
-  !> How far its turns reach to either side [px].
+  !> The distance to which the turns of a spring or a thread reach on either side [px].
   pure real(wp) function coil_height(is_thread, symbol)
     logical, intent(in) :: is_thread  !< it is the thread of a helical pair, not a spring
     real(wp), intent(in) :: symbol    !< scale of symbols, 1 at full size
@@ -145,7 +146,7 @@ contains
     coil_height = merge(3.5_wp, 6.0_wp, is_thread)*symbol
   end function coil_height
 
-  !> A zigzag from one place to another: straight ends of a fifth of its length, of a thread none.
+  !> A zigzag from one place to another. A spring has straight ends, each a fifth of the distance long; a thread has none.
   pure function windings(from, to, is_thread, aside, symbol) result(corners)
     real(wp), intent(in) :: from(2)         !< first end [px]
     real(wp), intent(in) :: to(2)           !< second end [px]
@@ -172,20 +173,20 @@ contains
     end do
   end function windings
 
-  !> A cup with a piston in it, each with its rod: lines by twos.
+  !> A cup with a piston in it, each with its rod. Every two corners are the ends of a line.
   pure function damper(from, to, aside, symbol) result(corners)
     real(wp), intent(in) :: from(2)  !< first end [px]
     real(wp), intent(in) :: to(2)    !< second end [px]
     real(wp), intent(in) :: aside    !< how far it lies to the side of the line between them [px]
     real(wp), intent(in) :: symbol   !< scale of symbols, 1 at full size
     real(wp) :: corners(2, 12)
-    !> Bottom and rim of the cup, and the piston, along the line.
+    !> Places of the bottom and the rim of the cup and of the piston along the line, as parts of its length.
     real(wp), parameter :: bottom = 0.42_wp, rim = 0.66_wp, piston = 0.56_wp
     real(wp), parameter :: places(12) = [0.0_wp, bottom, bottom, bottom, bottom, rim, bottom, rim, piston, piston, piston, 1.0_wp]
-    !> To which side, in halves of the cup's width.
+    !> Distances of the corners from the line, in halves of the cup's width.
     real(wp), parameter :: sides(12) = [0.0_wp, 0.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -0.7_wp, 0.7_wp, &
                                         0.0_wp, 0.0_wp]
-    real(wp), parameter :: half = 5.0_wp         !< of the cup's width [px]
+    real(wp), parameter :: half = 5.0_wp         !< half the width of the cup [px]
     real(wp) :: along(2), across(2)
     integer :: i
 

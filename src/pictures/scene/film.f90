@@ -1,4 +1,5 @@
-!> A film: the poses of all links and the recorded columns at some of the outputs of a run, and the paths of the points.
+!> A film holds the poses of all links and the recorded columns at some of the outputs of a run, and the paths of the
+!> points.
 module mech9_film
   use mech9_kinds, only: wp
   use mech9_text, only: string_type
@@ -13,30 +14,31 @@ module mech9_film
   private
   public :: film_type, new_film
 
-  !> More frames than these nobody sees; mechanisms of many links get fewer, so that a film of a
-  !> thousand links still fits into a few megabytes.
+  !> The number of frames is limited by what a viewer can tell apart. Mechanisms of many links get fewer frames, so that a
+  !> film of a thousand links still fits into a few megabytes.
   integer, parameter :: most_frames = 300, most_poses = 60000
-  !> Points of a path: finer than a line is wide. Between outputs that are few, points are put in, but not
-  !> where a point goes so many times farther than the straight way, so that the curve is not known.
+  !> The points of a path lie closer together than a line is wide. Where outputs are few, points are put in between them,
+  !> except where a point travels more than `detour` times the straight distance, since the curve is then not known well
+  !> enough.
   integer, parameter :: most_path_points = 1200, most_between = 8
   real(wp), parameter :: detour = 2.5_wp
 
-  !> Frames and paths, in the system of link 1. Outputs that are not kept are left out evenly.
+  !> Frames and paths are in the system of link 1. Outputs that are not kept are left out evenly.
   type :: film_type
-    integer :: n_frames = 0                      !< taken so far
-    integer :: n_path_points = 0                 !< taken so far
-    real(wp), allocatable :: times(:)            !< of the frames [s]
+    integer :: n_frames = 0                      !< number taken so far
+    integer :: n_path_points = 0                 !< number taken so far
+    real(wp), allocatable :: times(:)            !< times of the frames [s]
     real(wp), allocatable :: r(:, :, :, :)       !< (3,3,N,frames) rotation of each link
     real(wp), allocatable :: p(:, :, :)          !< (3,N,frames) origin of each link [m]
-    type(string_type), allocatable :: names(:)   !< of the columns, without the time
-    type(string_type), allocatable :: units(:)   !< of the columns
-    real(wp), allocatable :: values(:, :)        !< (columns,frames) what they hold
-    real(wp), allocatable :: paths(:, :, :)      !< (3,points,path points) where the points were [m]
-    integer, private :: n_outputs = 0            !< seen so far
-    integer, private :: expected = 1             !< outputs
+    type(string_type), allocatable :: names(:)   !< names of the columns, without the time
+    type(string_type), allocatable :: units(:)   !< units of the columns
+    real(wp), allocatable :: values(:, :)        !< (columns,frames) values of the columns
+    real(wp), allocatable :: paths(:, :, :)      !< (3,points,path points) places of the points [m]
+    integer, private :: n_outputs = 0            !< number of outputs so far
+    integer, private :: expected = 1             !< expected number of outputs
     integer, private :: frame_stride = 1, path_stride = 1
-    integer, private :: between = 1              !< path points for each output
-    real(wp), allocatable, private :: latest(:, :, :)   !< (3,points,3) where the points were, how fast, acceleration
+    integer, private :: between = 1              !< number of path points for each output
+    real(wp), allocatable, private :: latest(:, :, :)   !< (3,points,3) position, velocity, acceleration at the latest output
     real(wp), private :: latest_time = 0.0_wp
   contains
     procedure :: take
@@ -47,7 +49,7 @@ module mech9_film
 
 contains
 
-  !> A film with room for the frames of a run, and for what they hold of its columns, if they are given.
+  !> A new film with room for the frames of a run, and for the values of its columns if these are given.
   pure function new_film(mechanism, outputs, columns) result(film)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     integer, intent(in) :: outputs                       !< expected number of outputs
@@ -74,7 +76,7 @@ contains
     allocate (film%paths(3, size(mechanism%points), points), film%latest(3, size(mechanism%points), 3), source=0.0_wp)
   end function new_film
 
-  !> The next output of the run; it is kept if its turn has come, or if it is the last.
+  !> The next output of the run is kept if its turn has come or if it is the last one.
   pure subroutine take(self, mechanism, plan, state, row)
     class(film_type), intent(inout) :: self        !< the film
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
@@ -90,7 +92,7 @@ contains
     self%n_outputs = self%n_outputs + 1
   end subroutine take
 
-  !> Go on with the paths of the points.
+  !> The paths of the points are continued to the present output.
   pure subroutine take_points(self, mechanism, plan, state)
     class(film_type), intent(inout) :: self        !< the film
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
@@ -118,7 +120,7 @@ contains
     self%latest_time = state%t
   end subroutine take_points
 
-  !> Points of the way from one output to the next, evenly in time.
+  !> Points on the way from one output to the next, evenly spaced in time.
   pure subroutine curve_to(from, to, duration, way)
     real(wp), intent(in) :: from(3, 3)  !< position [m], velocity [m/s], acceleration [m/s^2] at the first output, by columns
     real(wp), intent(in) :: to(3, 3)    !< position [m], velocity [m/s], acceleration [m/s^2] at the second output, by columns
@@ -159,7 +161,7 @@ contains
     end do
   end subroutine take_frame
 
-  !> Where a point of a link is in a frame of the film [m].
+  !> The place of a point of a link in a frame of the film, in the system of link 1 [m].
   pure function position(self, frame, link, point)
     class(film_type), intent(in) :: self  !< the film
     integer, intent(in) :: frame          !< number of the frame in the film
@@ -170,7 +172,7 @@ contains
     position = self%p(:, link, frame) + turn(self%r(:, :, link, frame), point)
   end function position
 
-  !> A direction of a link, in fixed axes, in a frame of the film.
+  !> A direction of a link in a frame of the film, in the axes of link 1.
   pure function direction(self, frame, link, vector)
     class(film_type), intent(in) :: self  !< the film
     integer, intent(in) :: frame          !< number of the frame in the film
@@ -181,7 +183,7 @@ contains
     direction = turn(self%r(:, :, link, frame), vector)
   end function direction
 
-  !> Which point of a link is at a place of link 1 in a frame of the film [m].
+  !> The point of a link that is at a given place in a frame of the film, in the system of the link [m].
   pure function local(self, frame, link, place)
     class(film_type), intent(in) :: self  !< the film
     integer, intent(in) :: frame          !< number of the frame in the film

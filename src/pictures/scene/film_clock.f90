@@ -1,4 +1,4 @@
-!> The clock of a film: the time of a frame as text, with as many decimals as tell one frame from the next.
+!> The clock of a film is the time of a frame as text, with enough decimals to tell one frame from the next.
 module mech9_film_clock
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -7,19 +7,19 @@ module mech9_film_clock
   private
   public :: clock_decimals, clock_text
 
-  !> More decimals than these, or larger times, are written as powers of ten.
+  !> Times that need more decimals than these, or are larger than this, are written with powers of ten.
   integer, parameter :: most_decimals = 7
   real(wp), parameter :: largest = 1.0e6_wp
-  !> Times agree with so many decimals where they are nearer to them than this part of the last one, or of
-  !> the time between frames where that is less.
+  !> A time agrees with its rounded text if they differ by less than this part of the last decimal, or of the time between
+  !> frames where that is less.
   real(wp), parameter :: near = 0.01_wp
-  !> Frames that are so many units of the last decimal apart are told apart.
+  !> Frames can be told apart if they differ by at least this number of units of the last decimal.
   real(wp), parameter :: enough = 3.0_wp
 
 contains
 
-  !> How many decimals the times of a film have: the fewest that all of them agree with, or those that tell the
-  !> frames apart. None fit where this is negative.
+  !> The number of decimals of the times of a film: the fewest with which all times agree, or else the fewest that tell
+  !> the frames apart. It is negative where no number of decimals serves.
   pure integer function clock_decimals(film) result(decimals)
     type(film_type), intent(in) :: film  !< poses and values at the outputs of the run
     real(wp) :: step, scaled(film%n_frames)
@@ -38,7 +38,7 @@ contains
     decimals = -1
   end function clock_decimals
 
-  !> The time of a frame as it stands below a picture.
+  !> The text of the time of a frame, as it stands below a picture.
   pure function clock_text(time, decimals) result(text)
     real(wp), intent(in) :: time     !< time of the frame [s]
     integer, intent(in) :: decimals  !< negative: four digits, and a power of ten where it needs one

@@ -1,4 +1,4 @@
-!> What labels of a scene should not cover, on the page of its first frame.
+!> The obstacles on the page of the first frame that labels should not cover.
 module mech9_label_obstacles
   use mech9_kinds, only: wp
   use mech9_projection, only: projection_type
@@ -11,20 +11,20 @@ module mech9_label_obstacles
   private
   public :: find_obstacles, clear_radius
 
-  !> How far lines and marks reach to each side, at full size of symbols [px], and how bad it is to cover them, by the
-  !> numbers of mech9_scene; zero: what is no obstacle.
+  !> The distance to which lines and marks reach on each side at full size of symbols [px], and the cost of covering them,
+  !> by the style numbers of mech9_scene. Styles with zeros are no obstacles.
   real(wp), parameter :: reach(*) = [1.0_wp, 1.0_wp, 1.0_wp, 5.0_wp, 0.0_wp, 4.7_wp, 8.7_wp, 7.2_wp, 6.2_wp, 0.0_wp, 6.5_wp, &
                                      4.0_wp, 2.8_wp, 1.0_wp, 7.0_wp, 6.0_wp, 8.5_wp, 4.0_wp, 5.5_wp, 7.5_wp, &
                                      0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 6.0_wp, 13.0_wp, 17.0_wp]
   real(wp), parameter :: weights(*) = [0.9_wp, 0.7_wp, 0.5_wp, 1.2_wp, 0.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.2_wp, 0.0_wp, 0.8_wp, &
                                        0.8_wp, 1.2_wp, 0.7_wp, 0.8_wp, 1.5_wp, 1.5_wp, 1.5_wp, 1.5_wp, 1.5_wp, &
                                        0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.8_wp, 0.7_wp, 0.7_wp]
-  !> Lines of a page that are always there: title and foot.
+  !> The cost of covering the lines that every page has: the title and the foot.
   real(wp), parameter :: furniture = 2.0_wp
 
 contains
 
-  !> All lines and marks of a scene, and what stands around it on the page.
+  !> The obstacles of all lines and marks of a scene, of the title, the foot and the axes.
   pure subroutine find_obstacles(scene, drawing, projection, obstacles)
     type(scene_type), intent(in) :: scene            !< without labels
     type(drawing_type), intent(in) :: drawing        !< of the first frame
@@ -85,7 +85,7 @@ contains
     if (norm2(across) > 0.0_wp) across = across/norm2(across)
   end function across_of
 
-  !> A line of an item. The number of a link may stand on what it is made of.
+  !> One line of an item. The number of a link may stand on the bars and plates of this link.
   pure subroutine add_line(item, from, to, half, obstacles)
     type(item_type), intent(in) :: item               !< one thing to draw
     real(wp), intent(in) :: from(2)                   !< first end of the line [px]
@@ -99,7 +99,7 @@ contains
     call obstacles%add(from, to, half, weights(item%style), owner)
   end subroutine add_line
 
-  !> A stand: from the joint to the ground, and the hatched ground.
+  !> A stand: its triangle from the joint to the ground, and the hatched ground.
   pure subroutine add_stand(at, symbol, obstacles)
     real(wp), intent(in) :: at(2)                     !< place of the joint [px]
     real(wp), intent(in) :: symbol                    !< scale of symbols, 1 at full size; negative for a stand above its joint

@@ -1,51 +1,51 @@
-!> Where labels stand so that they can be read: each at that of its spots where it covers least of what is drawn and of the
-!> other labels.
+!> The places of labels, chosen so that they can be read: each label takes the one of its possible spots that covers least
+!> of the drawing and of the other labels.
 module mech9_label_places
   use mech9_kinds, only: wp
   implicit none
   private
   public :: obstacles_type, spot_type, label_type, spots_around, place_labels
 
-  !> What labels should not cover: lines with a width to both sides, discs as lines without length, and areas.
+  !> Obstacles that labels should not cover: lines with a width to both sides, and discs as lines without length.
   type :: obstacles_type
     integer :: n_lines = 0
-    real(wp), allocatable :: ends(:, :, :)      !< (2,2,n) of the lines [px]
+    real(wp), allocatable :: ends(:, :, :)      !< (2,2,n) ends of the lines [px]
     real(wp), allocatable :: half(:)            !< (n) how far a line reaches to each side [px]
-    real(wp), allocatable :: weight(:)          !< (n) how bad it is to cover it: 1 for a bar
+    real(wp), allocatable :: weight(:)          !< (n) cost of covering the line; 1 for a bar
     integer, allocatable :: owner(:)            !< (n) link whose number may stand on it; 0: none
   contains
     procedure :: add => add_obstacle
   end type obstacles_type
 
-  !> A place for a label: a box, a line that leads there from what is labelled, and how bad it is to stand there whatever
-  !> else is drawn.
+  !> A possible place for a label: a box, a leading line from the labelled thing to the box, and the cost of this place
+  !> whatever else is drawn.
   type :: spot_type
     real(wp) :: low(2) = 0.0_wp, high(2) = 0.0_wp     !< corners of the box [px]
-    real(wp) :: from(2) = 0.0_wp, to(2) = 0.0_wp      !< ends of the leading line; the same: there is none [px]
-    real(wp) :: cost = 0.0_wp                         !< in px of a covered bar
+    real(wp) :: from(2) = 0.0_wp, to(2) = 0.0_wp      !< ends of the leading line [px]; equal ends: no line
+    real(wp) :: cost = 0.0_wp                         !< cost of the spot, in px of a covered bar
   end type spot_type
 
-  !> A label with the spots where it can stand, the best-liked one first.
+  !> A label with the spots where it can stand, in order of preference.
   type :: label_type
     type(spot_type), allocatable :: spots(:)
-    integer :: owner = 0                              !< link whose own lines do not count; 0: all count
-    logical :: of_place = .true.                      !< it names a place, so that it must not stand nearer to another one
-    real(wp) :: at(2) = 0.0_wp                        !< that place [px]
-    integer :: chosen = 1                             !< its spot
+    integer :: owner = 0                              !< link whose own lines are no obstacles; 0: all lines are
+    logical :: of_place = .true.                      !< the label names a place, and must not stand nearer to another one
+    real(wp) :: at(2) = 0.0_wp                        !< the place that it names [px]
+    integer :: chosen = 1                             !< number of the chosen spot
   end type label_type
 
-  !> Room between labels [px], and what it costs that two of them touch, in px of a covered bar.
+  !> Room between labels [px], and the cost where two of them touch, in px of a covered bar.
   real(wp), parameter :: apart = 1.5_wp, clash = 60.0_wp
-  !> What it costs that a leading line runs over a label, and that two of them cross.
+  !> The cost where a leading line runs over a label, and where two leading lines cross.
   real(wp), parameter :: overrun = 30.0_wp, branch_point = 10.0_wp
-  !> Labels are moved so often at most, each in view of the others.
+  !> The largest number of rounds in which every label is placed anew in view of the others.
   integer, parameter :: most_rounds = 6
-  !> More labels than these stand where they like best: nobody could read them.
+  !> Larger numbers of labels cannot be read; each label then takes the spot that it prefers.
   integer, parameter :: most_labels = 150
 
 contains
 
-  !> One more line that labels should not cover.
+  !> One more line is added that labels should not cover.
   pure subroutine add_obstacle(self, from, to, half, weight, owner)
     class(obstacles_type), intent(inout) :: self  !< the obstacles
     real(wp), intent(in) :: from(2)               !< first end of the line [px]
@@ -78,7 +78,7 @@ contains
     if (present(owner)) self%owner(self%n_lines) = owner
   end subroutine add_obstacle
 
-  !> Spots of a box around a place: beside it on eight sides, then on rings farther off, the far ones with a leading line.
+  !> Spots for a box around a place: on eight sides of it, then on rings farther away. The outer rings have leading lines.
   pure function spots_around(at, clear, size_of_box, to_left) result(spots)
     real(wp), intent(in) :: at(2)           !< the place [px]
     real(wp), intent(in) :: clear           !< radius of what is drawn there [px]
@@ -95,7 +95,7 @@ contains
     do i = 1, size(sides, 2)
       side = real(sides(:, i), wp)
       if (to_left) side(1) = -side(1)
-      ! beside a round joint a corner may come nearer
+      ! the corner of a box may come nearer to a round joint than its side
       gap = clear + 1.5_wp
       if (all(sides(:, i) /= 0)) gap = 0.7_wp*clear + 0.5_wp
       spots(i) = box_at(at + side*(0.5_wp*size_of_box + gap), size_of_box, 0.8_wp*(i - 1))
@@ -126,8 +126,8 @@ contains
     spot%cost = cost
   end function box_at
 
-  !> Choose a spot for every label: first each for itself, then again in view of where the others stand, until none moves.
-  !> The order of the labels decides where two could give way.
+  !> A spot is chosen for every label: first for each label alone, then again in view of the others until none moves. The
+  !> order of the labels decides where either of two could give way.
   pure subroutine place_labels(obstacles, page, labels)
     type(obstacles_type), intent(in) :: obstacles  !< lines that labels should not cover
     real(wp), intent(in) :: page(2)                !< width and height of the page [px]
@@ -152,7 +152,7 @@ contains
         do j = 1, size(labels(i)%spots)
           if (labels(i)%spots(j)%cost >= least) cycle
           cost = labels(i)%spots(j)%cost + clashes(labels, i, labels(i)%spots(j))
-          ! hundredths of a px, so that round-off does not choose
+          ! costs that differ by less than 0.01 px count as equal, so that round-off does not choose
           if (cost > least - 0.01_wp) cycle
           least = cost
           best = j
@@ -164,7 +164,7 @@ contains
     end do
   end subroutine place_labels
 
-  !> What it costs that a label would be taken for that of another place, which is as near.
+  !> The cost of a spot where the label would be taken for that of another place, which is as near.
   pure real(wp) function mistakable(labels, own, spot)
     type(label_type), intent(in) :: labels(:)  !< labels with their possible spots
     integer, intent(in) :: own                 !< number of the label that would stand there
@@ -191,7 +191,7 @@ contains
     distance = norm2(max(0.0_wp, spot%low - place, place - spot%high))
   end function distance
 
-  !> How much of what is drawn a spot covers, in px of a bar.
+  !> The cost of what a spot covers, in px of a bar.
   pure real(wp) function covered(obstacles, page, spot, owner)
     type(obstacles_type), intent(in) :: obstacles  !< lines that labels should not cover
     real(wp), intent(in) :: page(2)                !< width and height of the page [px]
@@ -222,7 +222,7 @@ contains
     end do
   end function covered
 
-  !> What it costs that a label stands where other labels and their leading lines are.
+  !> The cost of the overlaps of a spot with other labels and their leading lines.
   pure real(wp) function clashes(labels, own, spot)
     type(label_type), intent(in) :: labels(:)  !< labels with their possible spots
     integer, intent(in) :: own                 !< number of the label that would stand there
@@ -258,7 +258,7 @@ contains
     leads = any(abs(spot%to - spot%from) > 0.0_wp)
   end function leads
 
-  !> Whether a line meets a box, and the length of the part that lies within [px].
+  !> The part of a line that lies within a box.
   pure subroutine look_within(from, to, low, high, length, meets)
     real(wp), intent(in) :: from(2)  !< first end of the line [px]
     real(wp), intent(in) :: to(2)    !< second end of the line [px]
@@ -286,7 +286,7 @@ contains
     if (meets) length = (last - first)*norm2(to - from)
   end subroutine look_within
 
-  !> Whether two lines have a point in common that is no end of them.
+  !> Whether two lines cross at a point that is not an end of either.
   pure logical function cross_each_other(a, b, c, d)
     real(wp), intent(in) :: a(2)  !< first end of the first line [px]
     real(wp), intent(in) :: b(2)  !< second end of the first line [px]
@@ -296,7 +296,7 @@ contains
     cross_each_other = side(a, b, c)*side(a, b, d) < 0.0_wp .and. side(c, d, a)*side(c, d, b) < 0.0_wp
   end function cross_each_other
 
-  !> On which side of a line a point lies: the sign.
+  !> The sign of this number tells on which side of a line a point lies.
   pure real(wp) function side(from, to, point)
     real(wp), intent(in) :: from(2)   !< first point of the line [px]
     real(wp), intent(in) :: to(2)     !< second point of the line [px]

@@ -1,4 +1,4 @@
-!> The shape of a link that has these points: a bar, a plate around them, or bars from one to the next.
+!> The shape of a link is found from its points: a bar, a plate around them, or bars from one to the next.
 module mech9_link_shapes
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross, unit
@@ -8,7 +8,7 @@ module mech9_link_shapes
 
 contains
 
-  !> Which of the points are not the same as one before them.
+  !> The numbers of the points that differ from all points before them.
   pure function distinct_points(points, tolerance) result(chosen)
     real(wp), intent(in) :: points(:, :)  !< (3,n) points in the system of the link [m]
     real(wp), intent(in) :: tolerance     !< distance up to which points are the same [m]
@@ -27,8 +27,8 @@ contains
     chosen = pack([(i, i=1, size(new))], new)
   end function distinct_points
 
-  !> The outline of points, no two of which are the same: `closed` around a plate, where they lie in one
-  !> plane; else, or where all but one lie on a rail, pairs of points that bars join.
+  !> The outline of a set of distinct points. It is closed around a plate where the points lie in one plane; otherwise, or
+  !> where all points but one lie on a rail, it consists of pairs of points that bars join.
   pure subroutine find_shape(points, tolerance, rails, order, closed)
     real(wp), intent(in) :: points(:, :)           !< (3,n) points in the system of the link, all different [m]
     real(wp), intent(in) :: tolerance              !< distance up to which a point lies on a line or in a plane [m]
@@ -66,7 +66,7 @@ contains
     end if
   end subroutine find_shape
 
-  !> How many points do not lie on the first rail; none where there is no rail.
+  !> The number of points that do not lie on the first rail; zero where there is no rail.
   pure integer function beside(points, rails, tolerance)
     real(wp), intent(in) :: points(:, :)  !< (3,n) points in the system of the link [m]
     integer, intent(in) :: rails(:, :)    !< (2,rails) numbers of the two points at the ends of each rail
@@ -90,7 +90,8 @@ contains
     farthest = maxloc([(norm2(points(:, i) - from), i=1, size(points, 2))], dim=1)
   end function farthest
 
-  !> The points around a set in a plane, counterclockwise: from each one to the next so that none lies outside.
+  !> The convex hull of points in a plane, counterclockwise. Each corner is followed by the point that leaves no other
+  !> point outside (gift wrapping).
   pure function hull(x) result(around)
     real(wp), intent(in) :: x(:, :)  !< (2,n) coordinates in the plane [m]
     integer, allocatable :: around(:)
@@ -115,12 +116,12 @@ contains
     around = found(:n)
   end function hull
 
-  !> The shortest bars that hold points in space together: each point is joined to the nearest one that is;
-  !> the ends of a rail are joined to each other.
+  !> The shortest bars that hold points in space together: each point is joined to the nearest point that is joined
+  !> already. The ends of a rail are joined to each other.
   pure function spanning_bars(points, rails) result(ends)
     real(wp), intent(in) :: points(:, :)  !< (3,n) points in the system of the link [m]
     integer, intent(in) :: rails(:, :)    !< (2,rails) numbers of the two ends of each rail; rails have no common points
-    integer, allocatable :: ends(:)       !< two for each bar
+    integer, allocatable :: ends(:)       !< numbers of points, two for each bar
     real(wp) :: distance(size(points, 2))
     integer :: nearest(size(points, 2)), i, n, new
     logical :: joined(size(points, 2))

@@ -1,7 +1,7 @@
-!> The symbols of pairs: rings, pins, balls and blocks, what guides blocks, and stands on the frame.
+!> The symbols of pairs: rings, pins, balls and blocks, the guides of blocks, and stands on the frame.
 !>
-!> Pairs at one place are one joint for the eye: two axes a universal joint, three a ball, an axis along
-!> which a pair slides and about which one turns a cylindrical joint.
+!> Pairs at one place are drawn as one joint. Two axes make a universal joint and three a ball; an axis along which one
+!> pair slides and about which another one turns makes a cylindrical joint.
 module mech9_pair_symbols
   use mech9_kinds, only: wp, pi
   use mech9_rotation, only: cross, unit
@@ -17,26 +17,27 @@ module mech9_pair_symbols
   private
   public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_ground
 
-  !> Nodes of pairs, and which pairs are one joint.
+  !> The nodes of all pairs, and the joints that they make.
   type :: symbols_type
-    logical :: planar = .false.              !< seen along all axes
-    integer, allocatable :: node(:)          !< (M) where each pair is
-    !> (2,M) of a pair that slides the ends of its guide; of a tube and its rod their far ends.
+    logical :: planar = .false.              !< the mechanism is planar and seen along the normal of its plane
+    integer, allocatable :: node(:)          !< (M) node of each pair
+    !> (2,M) nodes of the ends of the guide of a sliding pair; of a tube and its rod, nodes of their far ends.
     integer, allocatable :: guide(:, :)
-    integer, allocatable :: joint(:)         !< (M) the first pair of the joint it is part of
-    logical, allocatable :: hangs(:)         !< (M) the joint of which this is the first pair hangs from its stand
+    integer, allocatable :: joint(:)         !< (M) first pair of the joint that the pair belongs to
+    logical, allocatable :: hangs(:)         !< (M) for the first pair of each joint: it hangs from its stand
   end type symbols_type
 
   !> Sizes on the page [px].
   real(wp), parameter :: block_half = 13.0_wp, guide_more = 9.0_wp, block_side = 10.0_wp, hatch_step = 7.0_wp, &
                          hatch_length = 7.0_wp, pin_half = 10.0_wp, pin_radius = 5.0_wp
-  integer, parameter :: corners = 14         !< of the round end of a pin
-  !> Pairs that near, as a part of the mechanism's size, are one joint; axes that near are parallel.
+  integer, parameter :: corners = 14         !< corners of the round end of a pin
+  !> Pairs nearer to each other than this part of the mechanism's size are one joint; axes with a sine of their angle
+  !> below the second number are parallel.
   real(wp), parameter :: same = 0.004_wp, parallel = 0.01_wp
 
 contains
 
-  !> The nodes of all pairs, and the joints that they make.
+  !> The nodes of all pairs are added to the scene, and the joints that they make are found.
   subroutine prepare_symbols(film, skeleton, projection, planar, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
@@ -73,7 +74,8 @@ contains
     allocate (symbols%hangs(size(symbols%joint)), source=.false.)
   end subroutine prepare_symbols
 
-  !> The first pair of the joint of each pair: pairs that share a link and stand at one place of it.
+  !> The number of the first pair of each pair's joint. Pairs are one joint if they share a link and stand at one place of
+  !> it.
   pure function joints_of(film, skeleton) result(joint)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
@@ -102,7 +104,7 @@ contains
     end do
   end function joints_of
 
-  !> Whether a pair only passes along this link, which guides it.
+  !> Whether a link only guides the pair, so that the pair is no fixed place of it.
   pure logical function at_guide(place, link)
     type(place_type), intent(in) :: place  !< where the pair is drawn
     integer, intent(in) :: link            !< number of the link
@@ -111,7 +113,7 @@ contains
                .and. place%links(place%carrier) /= link
   end function at_guide
 
-  !> Guides on the frame: a centre line, and hatched ground beside it.
+  !> The guides on the frame are added: a centre line, and hatched ground beside it.
   subroutine add_guides(skeleton, projection, scene, symbols)
     type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -136,7 +138,7 @@ contains
     end do
   end subroutine add_guides
 
-  !> A hatched line of the frame, beside a guide or where a spring ends.
+  !> A hatched line of the frame is added, beside a guide or where a spring ends.
   subroutine add_ground(projection, ends, axis, down, aside, scene)
     type(projection_type), intent(in) :: projection !< from space to the page
     real(wp), intent(in) :: ends(3, 2)      !< (3,2) ends of the guide, in the system of link 1 [m]
@@ -163,7 +165,7 @@ contains
     call scene%add_item(segments, in_hatch, hatches)
   end subroutine add_ground
 
-  !> Stands of the joints that turn on the frame. They stand below, unless what they hold hangs from them.
+  !> The stands of the joints that turn on the frame are added. A stand is below its joint, unless the links hang from it.
   subroutine add_stands(film, skeleton, projection, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
@@ -187,7 +189,7 @@ contains
     end do
   end subroutine add_stands
 
-  !> Whether the links at a joint of the frame are below it all the time.
+  !> Whether the links at a joint of the frame are below it in all frames.
   pure logical function hangs(film, skeleton, projection, k)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
@@ -217,7 +219,7 @@ contains
     hangs = hangs .and. below > 0.0_wp
   end function hangs
 
-  !> Symbols of all joints.
+  !> The symbols of all joints are added.
   subroutine add_symbols(film, skeleton, projection, shapes, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
@@ -283,7 +285,8 @@ contains
     end do
   end function names_of
 
-  !> The turning pairs of a joint with axes of their own: neither along one before, nor along one that slides.
+  !> The turning pairs of a joint that have axes of their own: neither parallel to the axis of an earlier pair nor to that
+  !> of a sliding one.
   pure function turning_axes(film, skeleton, pairs) result(chosen)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
@@ -310,7 +313,7 @@ contains
     chosen = pack(pairs, new)
   end function turning_axes
 
-  !> The block of a pair that slides, or the nut of a helical one with the thread it runs on.
+  !> The block of a sliding pair is added, or the nut of a helical one with the thread on which it runs.
   subroutine add_block(place, k, projection, above, names, scene, symbols)
     type(place_type), intent(in) :: place            !< where the pair is drawn
     integer, intent(in) :: k                         !< number of the pair
@@ -331,7 +334,7 @@ contains
     end associate
   end subroutine add_block
 
-  !> A pin: a short cylinder along the axis. Of its ends the one that is turned to the viewer is drawn.
+  !> A pin is added: a short cylinder along the axis. Only the end that is turned to the viewer is drawn.
   subroutine add_pin(place, px, crossed, above, names, scene)
     type(place_type), intent(in) :: place     !< where the pair is drawn
     real(wp), intent(in) :: px                !< length of 1 px in the mechanism [m]
@@ -351,7 +354,7 @@ contains
       across = default_zero(axis)
       across = unit(across - dot_product(across, axis)*axis)
       do i = 1, 2
-        ! seen from outside, each end runs counterclockwise
+        ! each end is counterclockwise as seen from outside
         third = (2*i - 3)*cross(axis, across)
         do j = 1, corners
           angle = 2.0_wp*pi*j/corners

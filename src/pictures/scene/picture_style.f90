@@ -1,7 +1,7 @@
-!> How things look: colours, widths, and the marks of joints and points.
+!> The style of pictures: colours, widths, and the marks of joints and points.
 !>
-!> The colours are those of Okabe and Ito, which people who see colours differently tell apart, each with a
-!> light tint; outlines are dark, so that pictures can be read in grey.
+!> The colours are those of Okabe and Ito, which people with any kind of colour vision can tell apart. Each has a light
+!> tint, and outlines are dark, so that pictures can also be read in grey.
 module mech9_picture_style
   use mech9_kinds, only: wp, pi
   use mech9_xml_text, only: decimal
@@ -11,24 +11,24 @@ module mech9_picture_style
   public :: style_type, styles, dark_colours, light_colours, colour_of, ink, style_sheet, mark_svg, coil_corners, cup_corners
 
   character(len=7), parameter :: ink = '#222222', ground = '#555555', paper = '#ffffff'
-  !> Of links, by turns.
+  !> The colours of links, which take them in turn.
   character(len=7), parameter :: dark_colours(*) = [ &
     '#0072b2', '#b04a00', '#00785a', '#a0457a', '#2f7fb5', '#8a6400', '#5a5a5a']
   character(len=7), parameter :: light_colours(*) = [ &
     '#a9d4ee', '#f7c29b', '#a3dec9', '#ecc4da', '#d6ecfa', '#f7dd8f', '#d9d9d9']
 
-  !> How an item is drawn. One with an edge is a band: a line of the width of the band in the light colour
-  !> and an edge of the dark one on both sides.
+  !> The style in which an item is drawn. A style with an edge is a band: a line of its width in the light colour, with an
+  !> edge of the dark colour on both sides.
   type :: style_type
     character(len=10) :: name = ''
-    character(len=7) :: colour = ''       !< of the line; empty: the dark one of the link
+    character(len=7) :: colour = ''       !< colour of the line; empty: the dark colour of the link
     real(wp) :: width = 1.0_wp            !< [px]
     logical :: has_edge = .false.
-    logical :: butt = .false.             !< its ends are cut, not round
+    logical :: butt = .false.             !< the ends are cut at right angles, not round
     character(len=8) :: dashes = ''       !< [px]
   end type style_type
 
-  !> By the numbers of mech9_scene; those of marks and labels have a name only.
+  !> The styles by the numbers of mech9_scene. Marks and labels have only a name here.
   type(style_type), parameter :: styles(*) = [ &
     style_type('trace', '', 1.5_wp), &
     style_type('curve', '', 1.2_wp, dashes='5 3'), &
@@ -48,12 +48,12 @@ module mech9_picture_style
     style_type('free'), style_type('name'), style_type('number'), style_type('coordinate'), &
     style_type('input'), style_type('leader'), style_type('damper', ink, 1.4_wp), style_type('coil'), style_type('cup')]
 
-  !> Width of an edge [px].
+  !> The width of an edge [px].
   real(wp), parameter, public :: edge = 1.2_wp
 
 contains
 
-  !> Number of a link's colour.
+  !> The number of the colour of a link.
   pure integer function colour_of(link)
     integer, intent(in) :: link  !< number of the link
 
@@ -89,7 +89,7 @@ contains
           '.mech9 .e{stroke:#777;stroke-width:.8}.mech9 .s{stroke:'//ink//';stroke-width:1.4}'//nl
   end function style_sheet
 
-  !> The rule of a style: of a band the edge, which is drawn first, and the inside.
+  !> The rule of one style. A band has two lines: the edge, which is drawn first, and the inside.
   pure function rule_of(style, symbol) result(rule)
     type(style_type), intent(in) :: style  !< how items of one kind are drawn
     real(wp), intent(in) :: symbol         !< scale of symbols, 1 at full size
@@ -120,7 +120,7 @@ contains
             paper//'}.mech9 text'//class//'{fill:'//dark//'}'
   end function colour_rules
 
-  !> A mark as SVG around the place (0, 0).
+  !> The SVG of a mark around the place (0, 0).
   pure function mark_svg(style, direction) result(svg)
     integer, intent(in) :: style          !< number of the mark, one of the as_ numbers of mech9_scene
     real(wp), intent(in) :: direction(2)  !< for a stand, direction from the joint to the ground; for a leading line, its end [px]
@@ -153,7 +153,7 @@ contains
     end select
   end function mark_svg
 
-  !> A spiral spring around a joint [px].
+  !> The corners of a spiral spring around a joint [px].
   pure function coil_corners() result(corners)
     real(wp) :: corners(2, 41)
     real(wp), parameter :: inner = 7.0_wp, outer = 13.0_wp, turns = 2.25_wp
@@ -167,7 +167,7 @@ contains
     end do
   end function coil_corners
 
-  !> The cup of a damper that turns about a joint: a bow above it, closed on both sides [px].
+  !> The corners of the cup of a damper that turns about a joint: an arc above the joint, closed on both sides [px].
   pure function cup_corners() result(corners)
     real(wp) :: corners(2, 15)
     real(wp), parameter :: inner = 10.0_wp, outer = 17.0_wp, half = 0.35_wp*pi
@@ -182,7 +182,7 @@ contains
     corners(:, size(corners, 2)) = inner/outer*corners(:, size(corners, 2) - 1)
   end function cup_corners
 
-  !> The data of a path through corners.
+  !> The path data of lines through corners.
   pure function line_through(corners) result(path)
     real(wp), intent(in) :: corners(:, :)  !< (2,n) corners of the path [px]
     character(len=:), allocatable :: path

@@ -14,11 +14,11 @@ module mech9_projection
   !> Pages are measured in px, x to the right and y down, as browsers do.
   type :: projection_type
     type(view_type) :: view
-    real(wp) :: centre(3) = 0.0_wp     !< what stands in the middle [m]
-    real(wp) :: scale = 1.0_wp         !< px per m
+    real(wp) :: centre(3) = 0.0_wp     !< place in the middle of the picture, in the system of link 1 [m]
+    real(wp) :: scale = 1.0_wp         !< scale of the picture [px/m]
     real(wp) :: width = 640.0_wp, height = 480.0_wp
-    real(wp) :: middle(2) = 0.0_wp     !< where the centre stands [px]
-    real(wp) :: symbol = 1.0_wp        !< size of symbols: 1 as drawn here, less where there is little room
+    real(wp) :: middle(2) = 0.0_wp     !< place of the centre on the page [px]
+    real(wp) :: symbol = 1.0_wp        !< scale of symbols: 1 at full size, less where there is little room
   contains
     procedure :: on_page
     procedure :: metres
@@ -27,22 +27,23 @@ module mech9_projection
   !> Room for the mechanism, and around it for symbols, title and scale [px].
   real(wp), parameter :: widest = 600.0_wp, highest = 480.0_wp, margin = 44.0_wp, above = 34.0_wp, below = 56.0_wp
   real(wp), parameter :: least_width = 400.0_wp, least_height = 150.0_wp
-  !> Pairs of one link are that far apart where symbols have their full size [px].
+  !> Symbols have their full size where the pairs of one link are at least this far apart [px].
   real(wp), parameter :: roomy = 55.0_wp
-  !> Room for a mechanism that is turned, as a part of its diagonal: few are that long from every side.
+  !> The room for a mechanism that can be turned, as a part of its diagonal; few mechanisms are as long as that from every
+  !> side.
   real(wp), parameter :: wide = 0.85_wp
-  !> Frames of a film that are looked at.
+  !> The largest number of frames of a film that are examined.
   integer, parameter :: most_looked_at = 60
 
-  !> What encloses all that has to be seen, in the directions of a view [m].
+  !> The box around everything that has to be seen, in the directions of a view [m].
   type :: box_type
     real(wp) :: low(3) = huge(1.0_wp), high(3) = -huge(1.0_wp)
   end type box_type
 
 contains
 
-  !> The projection in which the whole motion fits the page. One that may be `turned` has room for the
-  !> mechanism seen from everywhere.
+  !> The projection in which the whole motion fits the page. A picture that can be `turned` has room for the mechanism as
+  !> it is seen from every side.
   subroutine fit_projection(mechanism, film, skeleton, view, turned, projection)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(film_type), intent(in) :: film               !< poses and values at the outputs of the run
@@ -57,7 +58,7 @@ contains
     middle = 0.5_wp*(box%low + box%high)
     extent = box%high(:2) - box%low(:2)
     diagonal = norm2(box%high - box%low)
-    ! without any extent, as much room as the mechanism is large
+    ! a motion without extent gets as much room as the mechanism is large
     if (diagonal < 1.0e-6_wp*skeleton%size) then
       diagonal = skeleton%size
       extent = diagonal
@@ -65,7 +66,7 @@ contains
     if (turned) extent = max(extent, wide*diagonal)
     projection%view = view
     projection%centre = middle(1)*view%right + middle(2)*view%up + middle(3)*view%toward
-    ! a mechanism that seems to be one point still has a scale
+    ! a mechanism that is seen as one point still has a scale
     extent = max(extent, 0.001_wp*diagonal)
     projection%scale = min(widest/extent(1), highest/extent(2))
     projection%width = max(least_width, projection%scale*extent(1)) + 2.0_wp*margin
@@ -74,7 +75,7 @@ contains
     projection%symbol = max(0.25_wp, min(1.0_wp, projection%scale*usual_distance(film, skeleton, view)/roomy))
   end subroutine fit_projection
 
-  !> The box around pairs, points, springs and paths, in frames that stand for the film.
+  !> The box around pairs, points, springs and paths, in frames that represent the film.
   subroutine enclose_motion(mechanism, film, skeleton, view, box)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
@@ -90,7 +91,7 @@ contains
           call enclose(view, film%position(frame, place%links(side), place%points(:, side)), box)
           if (place%telescopic) cycle
           if (place%kind == free) call enclose_curve(film, view, place%links, frame, box)
-          ! where a block can be, it is guided
+          ! the guide reaches to every place of the block
           side = 3 - side
           call enclose(view, film%position(frame, place%links(side), &
                                            place%points(:, side) + place%least*place%axes(:, side)), box)
@@ -119,7 +120,8 @@ contains
     end do
   end subroutine enclose_motion
 
-  !> The curve on which the first link guides the origin of the second one, where it is in a frame.
+  !> The box is enlarged by the curve on which the first link guides the origin of the second one, at the place that the
+  !> curve has in a frame.
   pure subroutine enclose_curve(film, view, links, frame, box)
     type(film_type), intent(in) :: film   !< poses and values at the outputs of the run
     type(view_type), intent(in) :: view   !< direction from which the mechanism is seen
@@ -142,7 +144,7 @@ contains
     box%high = max(box%high, view%seen(place))
   end subroutine enclose
 
-  !> The usual distance between the pairs of a link that are farthest apart, as seen [m]: half of the links have no more.
+  !> The usual extent of a link: the median of the largest distances between pairs of one link, as seen [m].
   pure real(wp) function usual_distance(film, skeleton, view)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
@@ -164,7 +166,7 @@ contains
         end do
       end do
     end associate
-    ! the median of the links whose pairs are at more than one place
+    ! the median is taken over links with pairs at more than one place
     allocate (left(size(largest)), source=largest > 0.01_wp*skeleton%size)
     n = min(count(left), count(left)/2 + 1)
     usual_distance = skeleton%size
@@ -183,7 +185,7 @@ contains
     at = film%position(1, place%links(place%carrier), place%points(:, place%carrier))
   end function place_of
 
-  !> Where a place of link 1 stands on the page [px], and how near to the viewer it is [m].
+  !> The place on the page [px] of a place in the system of link 1, and its distance towards the viewer [m].
   pure subroutine on_page(self, place, xy, depth)
     class(projection_type), intent(in) :: self  !< the projection
     real(wp), intent(in) :: place(3)            !< place in the system of link 1 [m]
@@ -196,7 +198,7 @@ contains
     depth = seen(3)
   end subroutine on_page
 
-  !> The length in the mechanism that is so long on the page, for symbols in space [m].
+  !> The length in the mechanism of a symbol that has a given length on the page [m].
   pure real(wp) function metres(self, length)
     class(projection_type), intent(in) :: self  !< the projection
     real(wp), intent(in) :: length              !< length on the page at full size of symbols [px]

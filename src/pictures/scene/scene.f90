@@ -1,5 +1,5 @@
-!> A scene: what a picture shows, as points of links and the lines, plates and marks between them, whatever the view and whoever
-!> draws it.
+!> A scene is the content of a picture, as points of links and the lines, plates and marks between them. It depends
+!> neither on the view nor on the format of the picture.
 module mech9_scene
   use mech9_kinds, only: wp
   use mech9_film, only: film_type
@@ -11,11 +11,11 @@ module mech9_scene
             in_thread, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
             as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_pairs
 
-  !> What an item is made of. A facing path is a flat outline that is drawn only where its front, round which
-  !> it runs counterclockwise, is turned to the viewer. Segments join each odd node to the next one.
+  !> The shape of an item. A facing path is a flat outline that is drawn only if its front, round which it runs
+  !> counterclockwise, is turned to the viewer. Segments join each node of an odd number to the next one.
   integer, parameter :: open_path = 0, closed_path = 1, facing_path = 2, segments = 3, spring = 4, mark = 5, label = 6
 
-  !> What an item stands for: how it is drawn.
+  !> The style of an item, which tells what it stands for and how it is drawn.
   integer, parameter :: in_trace = 1, in_curve = 2, in_guide = 3, in_ground = 4, in_hatch = 5, in_plate = 6, in_block = 7, &
                         in_tube = 8, in_pin = 9, in_pin_end = 10, in_spring = 11, in_thread = 12, in_cross = 13, in_cam = 14, &
                         as_stand = 15, as_ring = 16, as_ball = 17, as_dot = 18, as_centre = 19, as_free = 20, &
@@ -26,21 +26,22 @@ module mech9_scene
   type :: item_type
     integer :: shape = open_path
     integer :: style = in_plate
-    integer :: link = 0                       !< whose colour it has; 0: none
+    integer :: link = 0                       !< link whose colour the item has; 0: none
     integer, allocatable :: nodes(:)
-    integer :: above(4) = 0                   !< items that it lies upon, whatever their depth
-    character(len=:), allocatable :: text     !< of a label; of a joint the names of its coordinates
-    !> Of a label: where it stands from its node, to the right and down [px]; of a stand its direction, of a leading line
-    !> its end, also to the right and down. Of a spring or damper first: how far it lies aside of the line between its nodes.
+    integer :: above(4) = 0                   !< items below this one, whatever their depth
+    character(len=:), allocatable :: text     !< text of a label, or names of the coordinates of a joint
+    !> For a label, its place relative to its node, to the right and down [px]; for a stand, its direction; for a leading
+    !> line, its end, also to the right and down. For a spring or damper, the first number is its distance from the line
+    !> between its nodes.
     real(wp) :: shift(2) = 0.0_wp
   end type item_type
 
-  !> Nodes are points of links. Items stand in the order in which they are drawn; those from `first_sorted`
-  !> to `last_sorted` are bodies in space, of which a nearer one covers a farther one.
+  !> Nodes are points of links. Items stand in the order in which they are drawn; those from `first_sorted` to
+  !> `last_sorted` are bodies in space, and a nearer body covers a farther one.
   type :: scene_type
     integer :: n_nodes = 0, n_items = 0
     integer, allocatable :: node_link(:)
-    real(wp), allocatable :: node_at(:, :)    !< (3,n) in the link's system [m]
+    real(wp), allocatable :: node_at(:, :)    !< (3,n) place of each node in the system of its link [m]
     type(item_type), allocatable :: items(:)
     integer :: first_sorted = 1, last_sorted = 0
   contains
@@ -51,14 +52,14 @@ module mech9_scene
 
 contains
 
-  !> Whether the corners of an item belong together by twos, each pair a line of its own.
+  !> Whether the corners of an item belong together in twos, each two the ends of a line of their own.
   pure logical function in_pairs(item)
     type(item_type), intent(in) :: item  !< one thing to draw
 
     in_pairs = item%shape == segments .or. item%style == in_damper
   end function in_pairs
 
-  !> One more point of a link.
+  !> One more point of a link is added.
   pure subroutine add_node(self, link, at, node)
     class(scene_type), intent(inout) :: self  !< the scene
     integer, intent(in) :: link               !< number of the link that carries the point
@@ -81,7 +82,7 @@ contains
     self%node_at(:, node) = at
   end subroutine add_node
 
-  !> One more thing to draw, above those that are there.
+  !> One more thing to draw is added, above those that are there.
   pure subroutine add_item(self, shape, style, nodes, link, above, text, shift)
     class(scene_type), intent(inout) :: self        !< the scene
     integer, intent(in) :: shape                    !< what the item is made of, one of the numbers from open_path to label
@@ -127,7 +128,7 @@ contains
     if (allocated(from%text)) call move_alloc(from%text, to%text)
   end subroutine move_item
 
-  !> Where all nodes are in a frame of the film, in the system of link 1 [m].
+  !> The places of all nodes in a frame of the film, in the system of link 1 [m].
   pure function places_at(self, film, frame) result(places)
     class(scene_type), intent(in) :: self  !< the scene
     type(film_type), intent(in) :: film    !< poses and values at the outputs of the run

@@ -1,5 +1,5 @@
-!> The labels of a scene: names of points, names of coordinates at their joints, numbers of links. They are placed for the first
-!> frame of a film.
+!> The labels of a scene: names of points, names of coordinates at their joints, and numbers of links. Their places are
+!> chosen for the first frame of a film.
 module mech9_scene_labels
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -16,30 +16,30 @@ module mech9_scene_labels
   private
   public :: add_labels
 
-  !> Links and coordinates are labelled where there are no more than these.
+  !> Links, or coordinates, are labelled if there are at most this many.
   integer, parameter :: most_labelled = 24
-  !> Letters of a point's name, of a coordinate's, of an independent one's, and of a number: width and height [px].
+  !> Widths and heights of letters [px]: of names of points, of coordinates, of independent coordinates, and of numbers.
   real(wp), parameter :: name_letter = 8.2_wp, name_height = 11.0_wp, coordinate_letter = 6.3_wp, input_letter = 7.0_wp, &
                          coordinate_height = 10.0_wp, number_letter = 7.0_wp, number_height = 9.5_wp
-  !> How far letters reach below their line, and the room between two names [px].
+  !> The distance to which letters reach below their line, and the room between two names [px].
   real(wp), parameter :: below = 2.0_wp, between = 4.0_wp
 
-  !> A label that is going to be added to a scene.
+  !> A label that will be added to the scene when its place is chosen.
   type :: entry_type
     integer :: style = as_name
-    integer :: node = 0                          !< where it stands; 0: on a link, at the place of its spot
-    integer :: link = 0                          !< whose colour it has
-    integer :: pairs(most_labelled) = 0          !< whose coordinates it names, zeros behind
+    integer :: node = 0                          !< node of the label; 0: a new node on a link, at the chosen spot
+    integer :: link = 0                          !< link whose colour the label has
+    integer :: pairs(most_labelled) = 0          !< pairs whose coordinates are named, followed by zeros
     integer :: n_pairs = 0
-    integer :: columns = 1                       !< how many of them stand in a row
-    integer :: first_stacked = huge(1)           !< from this spot on they stand one below the other
+    integer :: columns = 1                       !< number of coordinates in a row
+    integer :: first_stacked = huge(1)           !< first of the spots in which the names stand one below the other
     character(len=:), allocatable :: text
-    real(wp), allocatable :: places(:, :)        !< (3,spots) of a number: the point of the link at each spot [m]
+    real(wp), allocatable :: places(:, :)        !< (3,spots) place of a number at each spot, in the system of link 1 [m]
   end type entry_type
 
 contains
 
-  !> Add the labels to a scene that is whole but for them.
+  !> The labels are added to a scene that is otherwise complete.
   subroutine add_labels(mechanism, film, projection, symbols, nodes, shapes, scene)
     type(mechanism_type), intent(in) :: mechanism !< the mechanism
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
@@ -83,7 +83,7 @@ contains
     end do
   end subroutine add_labels
 
-  !> The name of a point.
+  !> The label with the name of a point.
   subroutine enter_name(name, node, scene, drawing, projection, entry, label)
     character(len=*), intent(in) :: name             !< name of the point
     integer, intent(in) :: node                      !< number of the node of the point
@@ -103,7 +103,7 @@ contains
     end associate
   end subroutine enter_name
 
-  !> The names of the coordinates of a joint, in a row or one below the other.
+  !> The label with the names of the coordinates of a joint, in a row or one below the other.
   subroutine enter_coordinates(joint, independent, symbols, scene, drawing, projection, entry, label)
     integer, intent(in) :: joint                     !< number of the first pair of the joint
     logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
@@ -140,8 +140,8 @@ contains
     end associate
   end subroutine enter_coordinates
 
-  !> The number of a link: on its bars or its plate, beside them, or with a line that leads there; of a link that is
-  !> drawn at one place only, beside that.
+  !> The label with the number of a link: on its bars or its plate, beside them, or with a leading line. The number of a
+  !> link that is drawn at one place only stands beside this place.
   subroutine enter_number(link, shape, film, scene, drawing, projection, entry, label)
     integer, intent(in) :: link                      !< number of the link
     integer, intent(in) :: shape(2)                  !< number of the item that shows the link, and of a node of the link; 0: none
@@ -178,7 +178,7 @@ contains
     end associate
   end subroutine enter_number
 
-  !> Spots within a plate: in its middle, and from there towards its corners.
+  !> Spots within a plate: in its middle, and between the middle and its corners.
   subroutine look_in_plate(corners, projection, size_of_box, places, spots)
     real(wp), intent(in) :: corners(:, :)                  !< (3,n) corners in the system of link 1 [m]
     type(projection_type), intent(in) :: projection        !< from space to the page
@@ -208,7 +208,7 @@ contains
     end do
   end subroutine look_in_plate
 
-  !> Spots on bars, beside them, and at the end of a leading line.
+  !> Spots on bars, beside bars, and at the end of a leading line.
   subroutine look_on_bars(ends, apart, projection, size_of_box, places, spots)
     real(wp), intent(in) :: ends(:, :)     !< (3,n) ends of the bars in the system of link 1 [m]
     logical, intent(in) :: apart           !< each bar has two ends of its own; else each bar goes on from the end of the one before
@@ -216,13 +216,13 @@ contains
     real(wp), intent(in) :: size_of_box(2) !< width and height of the number [px]
     real(wp), allocatable, intent(out) :: places(:, :) !< (3,spots) in the system of link 1 [m]
     type(spot_type), allocatable, intent(out) :: spots(:) !< the spots, in order of preference
-    !> Not quite in the middle first, where the mass centre is often.
+    !> Parts of a bar's length. The first ones are not quite in the middle, where the mass centre often is.
     real(wp), parameter :: parts(11) = [0.4_wp, 0.6_wp, 0.5_wp, 0.33_wp, 0.67_wp, 0.25_wp, 0.75_wp, 0.18_wp, 0.82_wp, 0.12_wp, &
                                         0.88_wp]
-    !> On a bar, beside it, and farther off: how far from it [px], and how much less it is liked.
+    !> Distances from the bar [px] of spots on it, beside it and farther away, and their additional costs.
     real(wp), parameter :: offsets(5) = [0.0_wp, 11.0_wp, -11.0_wp, 26.0_wp, -26.0_wp]
     real(wp), parameter :: prices(5) = [0.0_wp, 9.0_wp, 9.5_wp, 20.0_wp, 20.5_wp]
-    !> A long bar is liked better than a short one, by a part of its length; none is longer on a page [px].
+    !> A long bar is preferred to a short one by this part of its length; no bar is longer than this on a page [px].
     real(wp), parameter :: by_length = 0.02_wp, longest = 1000.0_wp
     real(wp) :: along(2), across(2), place(3), first(2), last(2), cost, depth
     integer :: bars, i, j, k, n, at
@@ -250,7 +250,7 @@ contains
     end do
   end subroutine look_on_bars
 
-  !> A spot beside a place; a line leads to one that is far.
+  !> A spot beside a place. A distant spot has a leading line.
   pure function spot_at(place, offset, projection, size_of_box, cost) result(spot)
     real(wp), intent(in) :: place(3)                 !< place in the system of link 1 [m]
     real(wp), intent(in) :: offset(2)                !< from that place to the middle of the box, to the right and down [px]
@@ -270,7 +270,7 @@ contains
     spot%to = at + offset*(1.0_wp - 0.6_wp*number_height/norm2(offset))
   end function spot_at
 
-  !> Add a label where it has been placed, with the line that leads to it.
+  !> A label is added at its chosen spot, with its leading line.
   subroutine add_entry(entry, placed, independent, film, drawing, projection, scene)
     type(entry_type), intent(in) :: entry            !< what the label says and where its node is
     type(label_type), intent(in) :: placed           !< the label with its chosen spot
@@ -303,7 +303,8 @@ contains
     end associate
   end subroutine add_entry
 
-  !> The names of coordinates within their common box, each a label of its own: only independent ones have their colour.
+  !> The names of coordinates are added within their common box, each as a label of its own, since only independent
+  !> coordinates have a colour.
   subroutine add_coordinates(entry, node, spot, stacked, at, independent, scene)
     type(entry_type), intent(in) :: entry     !< what the label says and where its node is
     integer, intent(in) :: node               !< number of the node at the joint

@@ -1,4 +1,4 @@
-!> From a mechanism and its film to a scene: paths and guides, links, springs, pairs, points and labels.
+!> The making of a scene from a mechanism and its film: paths and guides, links, springs, pairs, points and labels.
 module mech9_scene_making
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
@@ -18,10 +18,10 @@ module mech9_scene_making
   private
   public :: make_scene
 
-  !> Points of a link nearer than this part of the mechanism's size are one for the eye.
+  !> Points of a link nearer to each other than this part of the mechanism's size are drawn as one.
   real(wp), parameter :: same = 0.004_wp
 
-  !> Points that give a link its shape, in the link's system, with the nodes that stand there.
+  !> The points that give a link its shape, in the system of the link, and the nodes at these points.
   type :: outline_type
     integer :: count = 0
     real(wp), allocatable :: points(:, :)   !< (3,count)
@@ -30,7 +30,7 @@ module mech9_scene_making
 
 contains
 
-  !> The scene of a film. It is drawn for one projection: symbols have their size on the page.
+  !> The scene of a film. It is made for one projection, since the symbols have a fixed size on the page.
   subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, scene)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
@@ -41,7 +41,7 @@ contains
     type(scene_type), intent(out) :: scene           !< nodes and items of the picture
     type(symbols_type) :: symbols
     type(outline_type) :: outlines(skeleton%graph%n_links)
-    integer :: shapes(skeleton%graph%n_links)   !< item of each link, 0: none
+    integer :: shapes(skeleton%graph%n_links)   !< number of the item of each link; 0: none
     logical :: cams(size(skeleton%places))
     integer :: nodes(size(mechanism%points)), link
 
@@ -56,7 +56,7 @@ contains
       call find_outline(mechanism, skeleton, symbols, link, scene, outlines(link))
       call add_shape(skeleton, symbols, link, .true., scene, outlines(link), shapes(link))
     end do
-    ! bars above plates that are as near
+    ! bars are drawn above plates at the same depth
     do link = 2, size(outlines)
       if (shapes(link) == 0) call add_shape(skeleton, symbols, link, .false., scene, outlines(link), shapes(link))
       call add_reach(skeleton, symbols, cams, link, scene, outlines(link), shapes(link))
@@ -68,8 +68,8 @@ contains
     call add_labels(mechanism, film, projection, symbols, nodes, shown_by(outlines, shapes, scene), scene)
   end subroutine make_scene
 
-  !> The points that a link joins: its pairs, traced points, ends of springs; where it has one pair only, its
-  !> mass centre besides.
+  !> The points that a link joins: its pairs, traced points and ends of springs, and its mass centre if it has one pair
+  !> only.
   subroutine find_outline(mechanism, skeleton, symbols, link, scene, outline)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
@@ -105,7 +105,7 @@ contains
         if (load%links(2) == link) call add_place(scene, link, load%positions(:, 2), outline)
       end select
     end do
-    ! what hangs on one pair reaches to its mass at least
+    ! a link with one pair reaches at least to its mass centre
     if (skeleton%graph%first(link + 1) - skeleton%graph%first(link) > 1) return
     do i = 1, size(mechanism%bodies)
       if (mechanism%bodies(i)%link == link) call add_place(scene, link, mechanism%bodies(i)%centre, outline)
@@ -143,7 +143,7 @@ contains
     outline%nodes(outline%count) = node
   end subroutine add_to_outline
 
-  !> The plate of a link, or its bars.
+  !> The plate of a link is added, or its bars.
   subroutine add_shape(skeleton, symbols, link, plates, scene, outline, shape)
     type(skeleton_type), intent(in) :: skeleton   !< where each pair is drawn
     type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
@@ -167,7 +167,7 @@ contains
     shape = scene%n_items
   end subroutine add_shape
 
-  !> Which points of an outline are the ends of a guide that is part of the link.
+  !> The numbers of the points of an outline that are the ends of a guide of the link.
   pure function rails_of(skeleton, symbols, link, outline) result(rails)
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
     type(symbols_type), intent(in) :: symbols    !< nodes and joints of the pairs
@@ -188,7 +188,7 @@ contains
     end do
   end function rails_of
 
-  !> What reaches from a link to pairs that move along it.
+  !> The lines from a link to the pairs that move along it are added.
   subroutine add_reach(skeleton, symbols, cams, link, scene, outline, shape)
     type(skeleton_type), intent(in) :: skeleton   !< where each pair is drawn
     type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
@@ -220,7 +220,7 @@ contains
     end associate
   end subroutine add_reach
 
-  !> Points and mass centres.
+  !> The marks of points and mass centres are added.
   subroutine add_points(mechanism, with_masses, nodes, scene)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     logical, intent(in) :: with_masses             !< mark the mass centres
@@ -241,7 +241,8 @@ contains
     end do
   end subroutine add_points
 
-  !> The item that shows each link, and a node of it; a cam has an item of its own; 0: none.
+  !> The numbers of the item that shows each link and of a node of the link; zeros where there is none. A cam has an item
+  !> of its own.
   pure function shown_by(outlines, shapes, scene) result(shown)
     type(outline_type), intent(in) :: outlines(:)  !< (links) points that give each link its shape
     integer, intent(in) :: shapes(:)               !< (links) number of the item of each link; 0: none

@@ -1,4 +1,4 @@
-!> Curves of a scene: where points have been, and where users' pairs lead their links.
+!> The curves of a scene: the paths of points, and the curves along which users' pairs guide their links.
 module mech9_scene_paths
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
@@ -10,13 +10,14 @@ module mech9_scene_paths
   private
   public :: add_paths, add_curves
 
-  !> Lines may leave a curve by so much [px], and pass so many points of it.
+  !> A straight line may replace part of a curve if it leaves the curve by at most this distance [px] and skips at most
+  !> this number of points.
   real(wp), parameter :: straight = 0.15_wp
   integer, parameter :: longest_straight = 40
 
 contains
 
-  !> Where the points have been.
+  !> The paths of the points are added.
   subroutine add_paths(mechanism, film, px, scene)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
@@ -38,7 +39,8 @@ contains
     end do
   end subroutine add_paths
 
-  !> Which points of a path have to be kept so that none of the others lies farther than `tolerance` from the line.
+  !> The numbers of the points of a path that are kept, chosen so that no other point lies farther than `tolerance` from
+  !> the lines between them.
   pure function bends_of(path, tolerance) result(kept)
     real(wp), intent(in) :: path(:, :)  !< (3,n) points of the path, in the system of link 1 [m]
     real(wp), intent(in) :: tolerance   !< largest distance of a point that is left out from the line [m]
@@ -50,7 +52,7 @@ contains
     keep([1, size(keep)]) = .true.
     from = 1
     do to = 3, size(keep)
-      ! a bound on how many are looked at again and again
+      ! the length of a line is bounded, since its points are examined again for each new end
       if (to - from < longest_straight) then
         if (all([(distance(path(:, i), path(:, from), path(:, to)) <= tolerance, i=from + 1, to - 1)])) cycle
       end if
@@ -74,7 +76,8 @@ contains
     distance = norm2(point - from - part*along)
   end function distance
 
-  !> The curves on which users' pairs guide the origins of their moving links; one that closes is the edge of a cam.
+  !> The curves on which users' pairs guide the origins of their moving links are added. A closed curve is the edge of a
+  !> cam.
   subroutine add_curves(film, skeleton, scene, cams)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
@@ -101,7 +104,7 @@ contains
     end do
   end subroutine add_curves
 
-  !> Whether a curve comes back to where it began, up to two of its steps.
+  !> Whether a curve ends within two of its mean steps from where it began.
   pure logical function closes(curve)
     real(wp), intent(in) :: curve(:, :)  !< (3,n) points of the curve, in one system [m]
     real(wp) :: length

@@ -1,8 +1,7 @@
-!> The skeleton of a mechanism's picture: at which point of its axis each pair is drawn.
+!> The skeleton of a mechanism's picture: the point of its axis at which each pair is drawn.
 !>
-!> A data file may give any point of an axis. Mostly it gives the one where a designer would put the
-!> bearing, so that it is kept, unless it lies far from everything else: then the pair moves along its axis
-!> to where its links are.
+!> A data file may give any point of an axis. It usually gives the one where a designer would put the bearing, and this
+!> point is kept unless it lies far from everything else; then the pair is moved along its axis to its links.
 module mech9_skeleton
   use mech9_kinds, only: wp
   use mech9_link_graph, only: link_graph_type, graph_from_structure
@@ -14,34 +13,34 @@ module mech9_skeleton
   private
   public :: skeleton_type, place_type, make_skeleton
 
-  !> Where a pair is drawn. Side 1 is its reference link, side 2 its moving link.
+  !> The place where a pair is drawn. Side 1 is the reference link, side 2 the moving link.
   type, extends(pair_axes_type) :: place_type
-    !> The side whose link carries what is drawn; it slides along the axis of the other side.
+    !> The side whose link carries the drawn symbol; the symbol slides along the axis of the other side.
     integer :: carrier = 1
     !> Travel of the carrier's point along the other side's axis, from that side's point [m].
     real(wp) :: least = 0.0_wp, most = 0.0_wp
-    !> Its two links are a tube and a rod in it; the carrier's point is the mouth of the tube, `pins` its
-    !> far end and that of the rod, each in its link.
+    !> The two links are a tube and a rod in it. The carrier's point is the mouth of the tube; `pins` are the far ends of
+    !> the tube and of the rod, each in the system of its link.
     logical :: telescopic = .false.
     real(wp) :: pins(3, 2) = 0.0_wp
   end type place_type
 
-  !> Places of all pairs, and who meets whom.
+  !> The places of all pairs, and the graph of links and pairs.
   type :: skeleton_type
     type(place_type), allocatable :: places(:)
     type(link_graph_type) :: graph
-    real(wp) :: size = 1.0_wp          !< of the mechanism at the start: diagonal of what encloses it [m]
+    real(wp) :: size = 1.0_wp          !< size of the mechanism at the start: diagonal of its box [m]
   end type skeleton_type
 
-  !> A given point is too far off where the nearest pair of its links is farther along the axis than the mechanism
-  !> is wide, this many times ...
+  !> A given point is moved if its distance along the axis from the nearest pair of its links exceeds two bounds. One
+  !> bound is this multiple of the width of the mechanism.
   real(wp), parameter :: far = 1.5_wp
-  !> ... and this many times farther than for other pairs.
+  !> The other bound is this multiple of the median of these distances over all turning pairs.
   real(wp), parameter :: unusual = 4.0_wp
 
 contains
 
-  !> Places of all pairs but the sliding ones, which follow from these.
+  !> The places of all pairs but the sliding ones, which mech9_slide_places finds from these.
   subroutine make_skeleton(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses of the run; only the first frame is used
@@ -57,7 +56,7 @@ contains
     skeleton%size = size_of(mechanism, film, skeleton%places)
   end subroutine make_skeleton
 
-  !> Move points that are far off along their axes.
+  !> Points that are far from everything else are moved along their axes.
   subroutine draw_near(film, skeleton)
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
     type(skeleton_type), intent(inout) :: skeleton  !< where each pair is drawn
@@ -84,8 +83,8 @@ contains
     end associate
   end subroutine draw_near
 
-  !> How far along the axis of a turning pair the nearest pair of its links is, in that sense. `widest` grows to the
-  !> distance of the axis from one of them.
+  !> The signed distance along the axis of a turning pair to the nearest pair of its links. `widest` grows to the largest
+  !> distance of such a pair from the axis.
   pure subroutine look_along(skeleton, given, axis, k, along, widest)
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
     real(wp), intent(in) :: given(:, :)          !< (3,M) given point of each axis, in the system of link 1 [m]
@@ -117,7 +116,7 @@ contains
     real(wp) :: least
     integer :: i
 
-    ! the least value that at least half of them do not exceed
+    ! the median is the least value that at least half of the values do not exceed
     median = huge(median)
     do i = 1, size(values)
       least = values(i)
@@ -125,7 +124,7 @@ contains
     end do
   end function median
 
-  !> Diagonal of the box around everything of the mechanism that has a place.
+  !> The diagonal of the box around all places of the mechanism in the first frame [m].
   pure real(wp) function size_of(mechanism, film, places)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run

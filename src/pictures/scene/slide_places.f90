@@ -1,5 +1,5 @@
-!> Where pairs that slide are drawn: which link carries the block and which one guides it, where the block sits, how far it
-!> travels, and which pairs are a tube and a rod in it.
+!> The places of sliding pairs: the link that carries the block and the one that guides it, the seat of the block, its
+!> travel, and the pairs that are a tube and a rod in it.
 module mech9_slide_places
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
@@ -10,15 +10,15 @@ module mech9_slide_places
   private
   public :: place_slides
 
-  !> Places that near, as a part of the mechanism's size, are the same for the eye.
+  !> Places nearer to each other than this part of the mechanism's size count as one.
   real(wp), parameter :: same = 0.01_wp
-  !> Where the mouth of a tube is, as a part of the least distance between the ends.
+  !> The place of the mouth of a tube, as a part of the least distance between the ends.
   real(wp), parameter :: mouth = 0.62_wp
 
-  !> Pins of one link: the places of its other pairs, in the link's system.
+  !> The pins of one link: the places of its other pairs, in the system of the link.
   type :: pins_type
     integer :: count = 0
-    logical :: alone = .true.           !< the link has no traced points elsewhere
+    logical :: alone = .true.           !< the link has no traced points at other places
     real(wp), allocatable :: at(:, :)   !< (3,count)
   contains
     procedure :: all_at_one_place
@@ -26,7 +26,7 @@ module mech9_slide_places
 
 contains
 
-  !> Places of all pairs that slide; the others have theirs.
+  !> The places of all sliding pairs are found; those of the other pairs must be known.
   subroutine place_slides(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
@@ -48,7 +48,8 @@ contains
     end do
   end subroutine place_slides
 
-  !> The places of a link's other pairs that turn or are the user's; without any, its points.
+  !> The places of the other pairs of a link that turn or are the user's; if there are none, the places of its traced
+  !> points.
   subroutine find_pins(mechanism, skeleton, k, link, pins)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
@@ -86,7 +87,7 @@ contains
     pins%at(:, pins%count) = point
   end subroutine add_pin
 
-  !> Whether a link has pins, all at one place, on a line.
+  !> Whether a link has pins that are all at one place of a line.
   pure logical function all_at_one_place(self, point, axis, tolerance)
     class(pins_type), intent(in) :: self  !< the pins
     real(wp), intent(in) :: point(3)      !< a point of the line, in the system of the link [m]
@@ -101,7 +102,7 @@ contains
     end do
   end function all_at_one_place
 
-  !> From a line to a point, across the line.
+  !> The vector from a line to a point, perpendicular to the line.
   pure function off_line(place, point, axis) result(across)
     real(wp), intent(in) :: place(3)  !< the point [m]
     real(wp), intent(in) :: point(3)  !< a point of the line [m]
@@ -112,8 +113,8 @@ contains
     across = across - dot_product(across, axis)*axis
   end function off_line
 
-  !> A tube and a rod: each of the two moving links has its pins at one place of the axis, and these two never
-  !> come together.
+  !> A sliding pair is a tube and a rod if each of its two moving links has its pins at one place of the axis, and these
+  !> places never come together.
   subroutine judge_telescopic(film, pins, size, place)
     type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
     type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
@@ -142,7 +143,8 @@ contains
     place%points(:, 1) = place%pins(:, 1) + mouth*least*place%axes(:, 1)
   end subroutine judge_telescopic
 
-  !> The frame guides; else the link whose only pin is on the axis is a block; else the moving link is.
+  !> The frame always guides. Otherwise the link whose pins are all at one place of the axis carries the block; if this
+  !> holds for neither link the moving link does.
   subroutine choose_carrier(pins, size, place)
     type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
     real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
@@ -155,14 +157,14 @@ contains
     end do
     place%carrier = 2
     if (is_block(1) .and. .not. is_block(2)) place%carrier = 1
-    ! a lever has its pivot on the axis too, but more besides
+    ! a lever has its pivot on the axis too, but it also has other points
     if (all(is_block) .and. pins(1)%alone .and. .not. pins(2)%alone) place%carrier = 1
     if (place%links(1) == 1) place%carrier = 2
     if (place%links(2) == 1) place%carrier = 1
   end subroutine choose_carrier
 
-  !> Put the block to the nearest pin of its link if that is on the axis; else beside that pin, unless the given
-  !> point is near that place.
+  !> The block is put at the nearest pin of its link if that is on the axis, and otherwise beside that pin, unless the
+  !> given point is near that place.
   subroutine seat_block(pins, size, place)
     type(pins_type), intent(in) :: pins       !< pins of the link that carries the block
     real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
@@ -179,7 +181,7 @@ contains
         nearest = distance
         across = off_line(pins%at(:, i), point, axis)
         foot = pins%at(:, i) - across
-        ! the line itself is nobody's own where it is far from the link: only its direction counts
+        ! where the axis is far from the link only its direction has a meaning, and the block is drawn at the pin
         if (norm2(across) > 0.75_wp*size .and. place%kind == sliding) foot = pins%at(:, i)
         if (norm2(across) > same*size .and. norm2(foot - point) < 0.3_wp*size) foot = point
       end do
@@ -187,7 +189,7 @@ contains
     end associate
   end subroutine seat_block
 
-  !> How far the carrier's point travels in the other link.
+  !> The travel of the carrier's point in the other link.
   subroutine find_travel(film, place)
     type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
     type(place_type), intent(inout) :: place  !< where the sliding pair is drawn

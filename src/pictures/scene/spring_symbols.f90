@@ -1,4 +1,4 @@
-!> The symbols of springs and dampers, between points and on coordinates, and of the walls that hold their fixed ends.
+!> The symbols of springs and dampers, between points and on coordinates, and of the walls that hold fixed ends.
 module mech9_spring_symbols
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross, unit
@@ -15,14 +15,15 @@ module mech9_spring_symbols
   private
   public :: add_springs
 
-  !> Half the length of a wall, and how far a spring and a damper between the same points lie aside [px].
+  !> Half the length of a wall, and the distance of a spring and of a damper between the same points from the line between
+  !> these [px].
   real(wp), parameter :: half_wall = 11.0_wp, beside = 7.0_wp
-  !> Places nearer than this part of the mechanism's size are one for the eye.
+  !> Places nearer to each other than this part of the mechanism's size are drawn as one.
   real(wp), parameter :: same = 0.004_wp
 
 contains
 
-  !> All springs and dampers. A load that has neither, such as a constant force on a coordinate, is not drawn.
+  !> All springs and dampers are added. A load that has neither, such as a constant force on a coordinate, is not drawn.
   subroutine add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
@@ -52,7 +53,7 @@ contains
     end do
   end subroutine add_springs
 
-  !> A spring, a damper, or both side by side.
+  !> A spring, a damper, or both side by side are added.
   subroutine add_between(nodes, is_spring, is_damper, above, scene)
     integer, intent(in) :: nodes(2)           !< numbers of the nodes at its ends
     logical, intent(in) :: is_spring          !< there is a spring
@@ -67,8 +68,8 @@ contains
     if (is_damper) call scene%add_item(spring, in_damper, nodes, above=above, shift=-aside)
   end subroutine add_between
 
-  !> A spring and damper on a coordinate: around a joint that turns, along the guide of one that slides, between the
-  !> block and a place beyond an end of the guide, or in a tube from end to end.
+  !> A spring and damper on a coordinate are added. For a turning pair they are around the joint; for a sliding pair they
+  !> are along the guide, between the block and a support beyond an end of the guide, or in a tube from end to end.
   subroutine add_on_coordinate(load, film, skeleton, projection, above, scene, symbols)
     type(coordinate_load_type), intent(in) :: load   !< stiffness and damping on the coordinate
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
@@ -101,8 +102,8 @@ contains
     end associate
   end subroutine add_on_coordinate
 
-  !> A place beyond an end of a guide, with the guide lengthened to there, so that a spring to the block is seen: beyond
-  !> the first end, or the other one where the page ends before.
+  !> A support beyond an end of a guide is added, and the guide is lengthened to it, so that a spring to the block can be
+  !> seen. It is beyond the first end, or beyond the second one if the page ends before.
   subroutine add_support(guide, projection, node, scene)
     integer, intent(in) :: guide(2)                  !< numbers of the nodes at the ends of the guide
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -116,7 +117,7 @@ contains
     do side = 1, 2
       at = scene%node_at(:, guide(side)) + (2*side - 3)*projection%metres(beyond)*along
       node = guide(side)
-      ! of a link that moves nobody knows where the page ends
+      ! a moving link can be anywhere on the page, so that its first end is taken
       if (scene%node_link(node) /= 1) exit
       call projection%on_page(at, xy, depth)
       if (all(xy > edge) .and. all(xy < [projection%width, projection%height] - edge)) exit
@@ -125,8 +126,8 @@ contains
     call scene%add_item(open_path, in_guide, [guide(min(side, 2)), node])
   end subroutine add_support
 
-  !> The hatched wall that holds the fixed end of a spring, across it as it is seen in the first frame. A joint of the
-  !> frame at the same place has a stand already.
+  !> The hatched wall that holds the fixed end of a spring is added, at right angles to the spring as it is seen in the
+  !> first frame. There is no wall where a joint of the frame has a stand already.
   subroutine add_wall(film, skeleton, projection, fixed, other, scene)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn

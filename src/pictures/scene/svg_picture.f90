@@ -17,17 +17,17 @@ module mech9_svg_picture
   public :: save_sketch, put_picture, put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of, &
             scale_length
 
-  !> Of the axes in the corner [px], and where their names stand beyond their tips.
+  !> The length of the axes in the corner [px], and the distance of their names as a multiple of this length.
   real(wp), parameter, public :: axis_length = 26.0_wp, beyond_axis = 1.36_wp
-  !> Axes seen shorter than this point to the viewer [px].
+  !> Axes that are seen shorter than this are taken to point to the viewer [px].
   real(wp), parameter, public :: shortest_axis = 2.0_wp
 
-  !> Width of a letter of a title, and of small letters [px].
+  !> The widths of a letter of a title and of a small letter [px].
   real(wp), parameter :: title_letter = 9.0_wp, small_letter = 6.6_wp
 
 contains
 
-  !> Write a frame of the film as a picture of its own. Errors are exit_file.
+  !> One frame of the film is written as a picture of its own. Errors are exit_file.
   subroutine save_sketch(path, title, scene, film, projection, frame, err)
     character(len=*), intent(in) :: path               !< name of the file
     character(len=*), intent(in) :: title              !< title of the mechanism, any text
@@ -43,7 +43,7 @@ contains
     call page%save(path, err)
   end subroutine save_sketch
 
-  !> The picture of a frame, into a page.
+  !> The picture of one frame is appended to a page.
   subroutine put_picture(title, scene, film, projection, frame, all_axes, page)
     character(len=*), intent(in) :: title           !< title of the mechanism, any text
     type(scene_type), intent(in) :: scene           !< nodes and items of the picture
@@ -71,7 +71,7 @@ contains
     call page%line('</svg>')
   end subroutine put_picture
 
-  !> The beginning of a picture, up to what it shows.
+  !> The beginning of a picture, up to its items, is appended to a page.
   subroutine put_opening(title, projection, page)
     character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -86,7 +86,7 @@ contains
     call page%line('<rect width="100%" height="100%" fill="#ffffff"/>')
   end subroutine put_opening
 
-  !> One item of the scene; `number` tells a script which.
+  !> One item of the scene is appended; scripts find it by its `number`.
   subroutine put_item(item, number, drawing, symbol, page)
     type(item_type), intent(in) :: item        !< one thing to draw
     integer, intent(in) :: number              !< number of the item in the scene
@@ -111,7 +111,8 @@ contains
     call page%line('')
   end subroutine put_item
 
-  !> The opening tag of an item, still open: its classes, its number, of a joint its coordinates.
+  !> The opening tag of an item without its closing bracket. It holds the classes and the number of the item, and the
+  !> coordinates of a joint.
   pure function opening_of(item, number) result(tag)
     type(item_type), intent(in) :: item  !< one thing to draw
     integer, intent(in) :: number        !< number of the item in the scene
@@ -122,7 +123,7 @@ contains
     if (allocated(item%text) .and. item%shape /= label) tag = tag//' data-joint="'//item%text//'"'
   end function opening_of
 
-  !> A label as SVG at the place (0, 0).
+  !> The SVG of a label at the place (0, 0).
   pure function label_svg(item) result(svg)
     type(item_type), intent(in) :: item  !< one thing to draw
     character(len=:), allocatable :: svg
@@ -140,7 +141,7 @@ contains
     if (item%link > 1) classes = classes//' l'//to_text(colour_of(item%link))
   end function classes_of
 
-  !> Where a mark or a label stands.
+  !> The place of a mark or a label, as two numbers.
   pure function place_of(item, drawing) result(text)
     type(item_type), intent(in) :: item        !< one thing to draw
     type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
@@ -152,7 +153,7 @@ contains
     text = decimal(at(1))//' '//decimal(at(2))
   end function place_of
 
-  !> Corners as the data of a path.
+  !> The path data of lines through the corners of an item.
   pure function path_of(item, corners) result(path)
     type(item_type), intent(in) :: item    !< one thing to draw
     real(wp), intent(in) :: corners(:, :)  !< (2,n) corners of the path [px]
@@ -161,7 +162,7 @@ contains
     integer :: i, used, length
     logical :: starts
 
-    ! room for the longest numbers, as growing letter by letter would take long paths their square
+    ! there is room for the longest numbers, since lengthening the text letter by letter would take quadratic time
     allocate (character(len=24*size(corners, 2) + 1) :: path)
     used = 0
     do i = 1, size(corners, 2)
@@ -178,7 +179,7 @@ contains
     path = path(:used)
   end function path_of
 
-  !> Title, scale and the directions of the axes.
+  !> The title, the scale and the axes are appended.
   subroutine put_surroundings(title, projection, all_axes, page)
     character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -196,7 +197,7 @@ contains
     call put_axes(projection, all_axes, page)
   end subroutine put_surroundings
 
-  !> The title: in one line if it fits, else smaller in up to three.
+  !> The title is appended, in one line if it fits, otherwise in up to three smaller ones.
   subroutine put_title(title, projection, page)
     character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -215,14 +216,14 @@ contains
     end do
   end subroutine put_title
 
-  !> The length that the bar of a picture's scale stands for [m].
+  !> The length that the bar of the scale stands for [m].
   pure real(wp) function scale_length(projection)
     type(projection_type), intent(in) :: projection  !< from space to the page
 
     scale_length = round_length(90.0_wp/projection%scale)
   end function scale_length
 
-  !> The largest of 1, 2, 5, 10, ... that is not longer.
+  !> The largest of the numbers 1, 2, 5, 10, 20, ... and 0.5, 0.2, 0.1, ... that is not greater than the length.
   pure real(wp) function round_length(length)
     real(wp), intent(in) :: length  !< the length, positive [m]
     real(wp) :: power
@@ -236,7 +237,7 @@ contains
     end if
   end function round_length
 
-  !> The axes of link 1, as they are seen; one that points to the viewer is not drawn.
+  !> The axes of link 1 are appended as they are seen. An axis that points to the viewer is not drawn.
   subroutine put_axes(projection, all_axes, page)
     type(projection_type), intent(in) :: projection  !< from space to the page
     logical, intent(in) :: all_axes                  !< draw also an axis that points to the viewer

@@ -1,4 +1,4 @@
-!> A view: from where a mechanism is looked at, in parallel projection.
+!> A view is the direction from which a mechanism is seen in parallel projection.
 module mech9_view
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise
@@ -22,7 +22,7 @@ module mech9_view
 
 contains
 
-  !> What is seen of a vector: its parts to the right, upwards, and towards the viewer.
+  !> The components of a vector to the right, upwards, and towards the viewer.
   pure function seen(self, vector)
     class(view_type), intent(in) :: self  !< the view
     real(wp), intent(in) :: vector(3)     !< the vector, in the axes of link 1
@@ -31,8 +31,7 @@ contains
     seen = [dot_product(self%right, vector), dot_product(self%up, vector), dot_product(self%toward, vector)]
   end function seen
 
-  !> The view of somebody who stands in a direction from the mechanism; `upward` points up in the picture
-  !> as far as it can.
+  !> The view from a given direction; `upward` points up in the picture as far as possible.
   pure function view_from(direction, upward) result(view)
     real(wp), intent(in) :: direction(3)  !< direction from the mechanism to the viewer, in the axes of link 1, not zero
     real(wp), intent(in) :: upward(3)     !< direction that points up in the picture, in the axes of link 1, not zero
@@ -41,7 +40,7 @@ contains
 
     view%toward = unit(direction)
     helper = unit(upward)
-    ! looked at from above or below: y up, or z where that is the direction itself
+    ! for a view along `upward` itself y points up, or z for a view along y
     if (norm2(cross(helper, view%toward)) < 1.0e-6_wp) helper = [0.0_wp, 1.0_wp, 0.0_wp]
     if (norm2(cross(helper, view%toward)) < 1.0e-6_wp) helper = [0.0_wp, 0.0_wp, 1.0_wp]
     view%right = unit(cross(helper, view%toward))
@@ -61,8 +60,8 @@ contains
     view%toward = cross(view%right, view%up)
   end function view_of_axes
 
-  !> A view as it is written: two axes, the first to the right and the second up (xy, xz, zy ...); `iso`;
-  !> or a direction towards the viewer as three numbers with commas. An error has the code asked for.
+  !> A view is read from text: two axes, the first to the right and the second up (xy, xz, zy, and so on); `iso`; or a
+  !> direction towards the viewer as three numbers with commas. An error gets the exit code `code`.
   pure subroutine read_view(text, code, view, err)
     character(len=*), intent(in) :: text               !< the view as the user wrote it
     integer, intent(in) :: code                        !< exit code of the error, one of the exit_ codes
@@ -95,7 +94,7 @@ contains
                'or the direction towards the viewer, as in 1,-2,0.5')
   end subroutine read_view
 
-  !> Three numbers with commas between, not all zero.
+  !> A direction is read: three numbers with commas between them, not all zero.
   pure subroutine read_direction(text, direction, known)
     character(len=*), intent(in) :: text   !< the text, in small letters
     real(wp), intent(out) :: direction(3)  !< the direction, in the axes of link 1

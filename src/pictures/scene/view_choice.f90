@@ -1,5 +1,5 @@
-!> The view that shows a mechanism best: a planar one along the normal of its plane, a spatial one from where its links are long
-!> and its pairs lie apart.
+!> The choice of the view that shows a mechanism best. A planar mechanism is seen along the normal of its plane, a spatial
+!> one from a direction in which its links are long and its pairs lie apart.
 module mech9_view_choice
   use mech9_kinds, only: wp, pi
   use mech9_rotation, only: cross, unit, turn, turn_back
@@ -12,16 +12,16 @@ module mech9_view_choice
   private
   public :: choose_view, is_planar
 
-  !> Directions are parallel or across up to this.
+  !> Directions are parallel, or perpendicular, if the sine, or cosine, of their angle is at most this.
   real(wp), parameter :: aligned = 1.0e-6_wp
-  !> Of larger mechanisms only so many pairs are looked at.
+  !> The largest number of pairs that are examined.
   integer, parameter :: most_looked_at = 60
-  !> Frames that are looked at.
+  !> The number of frames that are examined.
   integer, parameter :: looks = 4
 
 contains
 
-  !> The view unless the user asks for another one.
+  !> The view that is taken unless the user asks for another one.
   pure subroutine choose_view(mechanism, film, skeleton, view, planar)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
@@ -47,8 +47,8 @@ contains
     end if
   end subroutine choose_view
 
-  !> Whether all links move parallel to one plane: every pair turns about its normal, or slides across it; a user's
-  !> pair does so in all frames of the film.
+  !> Whether all links move parallel to one plane: every pair turns about the normal of the plane or slides in the plane,
+  !> and every user's pair does one of these in all frames of the film.
   pure subroutine is_planar(film, skeleton, planar, normal)
     type(film_type), intent(in) :: film      !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton !< where each pair is drawn
@@ -77,7 +77,8 @@ contains
     end do
   end subroutine is_planar
 
-  !> The axis of a turning pair; without any, the normal of two sliding directions; zero where there is none.
+  !> A possible normal of the plane of motion: the axis of a turning pair, or the normal of two sliding directions if no
+  !> pair turns, or zero.
   pure subroutine find_normal(film, skeleton, normal)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
@@ -98,13 +99,13 @@ contains
       end if
     end do
     if (norm2(normal) > 0.0_wp) return
-    ! one direction only, or user's pairs: the plane of x and y, if it holds that direction
+    ! a single sliding direction, or users' pairs alone, leave a choice: the plane of x and y, if it holds that direction
     normal = [0.0_wp, 0.0_wp, 1.0_wp]
     if (abs(first(3)) > aligned) normal = [0.0_wp, 1.0_wp, 0.0_wp]
     if (abs(dot_product(first, normal)) > aligned) normal = 0.0_wp
   end subroutine find_normal
 
-  !> Whether the second link moves in the first one parallel to a plane, in all frames.
+  !> Whether the second link moves relative to the first one parallel to a plane, in all frames.
   pure logical function moves_in_plane(film, links, normal, size) result(planar)
     type(film_type), intent(in) :: film  !< poses and values at the outputs of the run
     integer, intent(in) :: links(2)      !< the reference link and the moving link
@@ -125,7 +126,7 @@ contains
     end do
   end function moves_in_plane
 
-  !> Of some views from around and a little above, the one with the best score.
+  !> The view with the best score among views from all sides and a little above.
   pure function best_view(film, skeleton, upward) result(best)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
@@ -135,7 +136,7 @@ contains
     real(wp) :: ahead(3), aside(3), azimuth, elevation, score, highest
     integer :: i, j, n, frame
 
-    ! x to the right and a little towards the viewer is what one expects
+    ! the expected view has x to the right and a little towards the viewer
     ahead = [0.0_wp, -1.0_wp, 0.0_wp]
     if (norm2(cross(ahead, upward)) < 0.5_wp) ahead = [0.0_wp, 0.0_wp, 1.0_wp]
     ahead = unit(ahead - dot_product(ahead, upward)*upward)
@@ -158,8 +159,8 @@ contains
     end do
   end function best_view
 
-  !> How well a view shows the mechanism: how much of the links' length is seen, and how far apart the pairs
-  !> are that lie nearest to each other.
+  !> The score of a view: the part of the links' length that is seen, and the distance between the two pairs that lie
+  !> nearest to each other.
   pure real(wp) function score_of(film, skeleton, view, frame) result(score)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn

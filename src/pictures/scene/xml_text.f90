@@ -1,4 +1,4 @@
-!> What pictures in XML need of texts and numbers.
+!> Texts and numbers as pictures in XML need them.
 module mech9_xml_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -9,7 +9,7 @@ module mech9_xml_text
 
 contains
 
-  !> Any text as text of an XML document: nothing in it is taken for markup.
+  !> Any text as text of an XML document, in which no part of it is taken for markup.
   pure function xml_text(text) result(xml)
     character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: xml
@@ -17,7 +17,7 @@ contains
     xml = with_escapes(printable(text), '&<>"''', [character(len=6) :: '&amp;', '&lt;', '&gt;', '&quot;', '&#39;'])
   end function xml_text
 
-  !> A number with at most two decimals and no more letters than it needs: 12.5, -0.25, 7.
+  !> A number with at most two decimals and without trailing zeros, such as 12.5, -0.25 or 7.
   pure function decimal(number) result(text)
     real(wp), intent(in) :: number  !< the number, of a size that a picture has
     character(len=:), allocatable :: text
