@@ -74,24 +74,24 @@ Measured by \`bench/run\`, which builds the programs with every instruction of t
 - machine: $(machine)
 - build: $(build_words)
 
-Times are medians on one core. Other machines have other times: what carries over are the ratios.
+Times are medians on one core. Other machines have other times; the ratios carry over.
 
 ## Time per position
 
 Driven mechanisms over one cycle. The four-bar linkage (0.40, 0.15, 0.35, 0.30 m) is also written by hand in closed form, for this
 one mechanism only (\`bench/closed_four_bar.f90\`); ratios are to that. The six-bar is the same four-bar with two
-links more. Both columns are what \`mech9k\` computes of a position besides writing it, the branch watched: with \`&output
-derivatives=0\`, and with all derivatives.
+links more. Both columns are the whole work of
+\`mech9k\` for a position except writing it, the checks of the branch included: with \`&output derivatives=0\`, and with all derivatives.
 
 $(position_table)
 
-Largest difference of the four-bar's accelerations from the closed form, against the largest acceleration:
+Largest difference of the four-bar's accelerations from the closed form, relative to the largest acceleration:
 $(awk '$1 == "four_bar" { print $6 }' "$work/positions.dat").
 
 ## Work and precision
 
 Wall time of an integration and evaluations of the motion against the error at its end, over the tolerances 1e-3 to 1e-13. Errors
-are against references in extended precision in \`tests/reference\`; of the spatial slider-crank, against a run at
+are differences to references in extended precision in \`tests/reference\`; for the spatial slider-crank, to a run at
 1e-13 by another method. The tables show the shortest time in which a method came below an error, and its evaluations.
 EOT
   for problem in $problems; do
