@@ -18,7 +18,7 @@ contains
   !> no chain that could determine them, the plan is left as it is, in no blocks.
   subroutine make_blocks(plan, undetermined)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    integer, allocatable, intent(out) :: undetermined(:)   !< coordinates
+    integer, allocatable, intent(out) :: undetermined(:)   !< numbers of the coordinates that no closed chain can determine
     integer :: owner(plan%n_coordinates)                   ! chain that determines the coordinate of each step
     integer :: block_of_step(plan%n_coordinates), block_of_closure(size(plan%closures)), n_blocks, s
 
@@ -78,8 +78,10 @@ contains
   !> step and, behind them, one for each closure; each leads to what must be there before it.
   subroutine find_blocks(plan, owner, block_of_step, block_of_closure, n_blocks)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: owner(:)
-    integer, intent(out) :: block_of_step(:), block_of_closure(:), n_blocks
+    integer, intent(in) :: owner(:)   !< (M) number of the closure that determines the coordinate of each step; 0 if none
+    integer, intent(out) :: block_of_step(:)   !< (M) number of the block of each step; 0 where its coordinate is given
+    integer, intent(out) :: block_of_closure(:)   !< number of the block of each closure
+    integer, intent(out) :: n_blocks   !< number of blocks
     type(graph_type) :: requested
     integer :: component(plan%n_coordinates + size(plan%closures))
     integer :: block_of(plan%n_coordinates + size(plan%closures))
@@ -107,7 +109,7 @@ contains
   !> closure needs all steps of its loop.
   function graph_of_needs(plan, owner) result(requested)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: owner(:)
+    integer, intent(in) :: owner(:)   !< (M) number of the closure that determines the coordinate of each step; 0 if none
     type(graph_type) :: requested
     integer :: m, c, s, n
 
@@ -135,7 +137,7 @@ contains
   contains
 
     subroutine add(head)
-      integer, intent(in) :: head
+      integer, intent(in) :: head   !< node that must come before the present one
 
       n = n + 1
       requested%heads(n) = head
@@ -146,8 +148,10 @@ contains
   !> are open chains, each of which has its own block at the end.
   pure subroutine place_free_steps(plan, owner, block_of_closure, block_of_step, n_blocks)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: owner(:), block_of_closure(:)
-    integer, intent(inout) :: block_of_step(:), n_blocks
+    integer, intent(in) :: owner(:)   !< (M) number of the closure that determines the coordinate of each step; 0 if none
+    integer, intent(in) :: block_of_closure(:)   !< number of the block of each closure
+    integer, intent(inout) :: block_of_step(:)   !< (M) number of the block of each step; gets those of the given coordinates
+    integer, intent(inout) :: n_blocks   !< number of blocks; raised by those of open chains
     integer :: c, i, s, chain
 
     do s = 1, plan%n_coordinates
@@ -176,7 +180,8 @@ contains
   !> Steps and closures in the order of their blocks, otherwise as before, and the ranges of the blocks.
   pure subroutine sort_plan(plan, block_of_step, block_of_closure)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: block_of_step(:), block_of_closure(:)
+    integer, intent(in) :: block_of_step(:)   !< (M) number of the block of each step
+    integer, intent(in) :: block_of_closure(:)   !< number of the block of each closure
     integer :: place(0:plan%n_coordinates)      ! new number of each step, and of the frame it makes
     integer :: last(0:size(plan%blocks))
     integer :: order(size(plan%closures))
@@ -195,9 +200,9 @@ contains
   !> New place of each item by its key; items of one key keep their order.
   pure subroutine counting_sort(keys, n_keys, last, place)
     integer, intent(in) :: keys(:)          !< 1 .. n_keys
-    integer, intent(in) :: n_keys
+    integer, intent(in) :: n_keys   !< number of keys
     integer, intent(out) :: last(0:)        !< last place of each key
-    integer, intent(out) :: place(:)
+    integer, intent(out) :: place(:)   !< new place of each item
     integer :: next(n_keys), i
 
     last = 0
@@ -216,7 +221,7 @@ contains
 
   pure subroutine renumber_steps(plan, place)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: place(0:)
+    integer, intent(in) :: place(0:)   !< (0:M) new number of each step and of the frame that it makes
     type(step_type), allocatable :: steps(:)
     integer :: s
 

@@ -20,9 +20,9 @@ contains
 
   !> The chain that determines each unknown, 0 for none.
   subroutine match_chains(loops, offers, owner)
-    type(loop_lists_type), intent(in) :: loops
+    type(loop_lists_type), intent(in) :: loops   !< the unknowns on the loop of each chain
     integer, intent(in) :: offers(:)      !< (n_chains) equations of each chain
-    integer, intent(out) :: owner(:)      !< (n_unknowns)
+    integer, intent(out) :: owner(:)   !< (n_unknowns) chain that determines each unknown; 0 if none
     type(loop_lists_type) :: passing
     integer :: free(loops%n_chains), c, i
 
@@ -42,7 +42,7 @@ contains
 
   !> The chains whose loops pass through each unknown: lists with chains and unknowns exchanged.
   pure function chains_through(loops) result(passing)
-    type(loop_lists_type), intent(in) :: loops
+    type(loop_lists_type), intent(in) :: loops   !< the unknowns on the loop of each chain
     type(loop_lists_type) :: passing
     integer :: place(loops%n_unknowns + 1), c, i, u
 
@@ -69,9 +69,10 @@ contains
 
   !> Chains that can determine all that is unknown on their loops take it; their successors follow.
   subroutine take_alone(loops, passing, offers, owner, free)
-    type(loop_lists_type), intent(in) :: loops, passing
-    integer, intent(in) :: offers(:)
-    integer, intent(inout) :: owner(:)
+    type(loop_lists_type), intent(in) :: loops   !< the unknowns on the loop of each chain
+    type(loop_lists_type), intent(in) :: passing   !< the chains whose loops pass through each unknown
+    integer, intent(in) :: offers(:)   !< (n_chains) number of equations of each chain
+    integer, intent(inout) :: owner(:)   !< (n_unknowns) chain that determines each unknown; 0 if none
     integer, intent(out) :: free(:)       !< equations that are left to each chain
     integer :: unknown(loops%n_chains), queue(loops%n_chains), head, tail, c, i, j, u
     logical :: queued(loops%n_chains)
@@ -102,7 +103,7 @@ contains
   contains
 
     subroutine append(chain)
-      integer, intent(in) :: chain
+      integer, intent(in) :: chain   !< number of the chain
 
       if (queued(chain)) return
       queued(chain) = .true.
@@ -114,8 +115,10 @@ contains
   !> Give the unknowns without a chain one by exchanges, where exchanges can. The search goes through
   !> chains in breadth; a chain that led nowhere once never will, so that failures cost little.
   subroutine augment(loops, passing, owner, free)
-    type(loop_lists_type), intent(in) :: loops, passing
-    integer, intent(inout) :: owner(:), free(:)
+    type(loop_lists_type), intent(in) :: loops   !< the unknowns on the loop of each chain
+    type(loop_lists_type), intent(in) :: passing   !< the chains whose loops pass through each unknown
+    integer, intent(inout) :: owner(:)   !< (n_unknowns) chain that determines each unknown; 0 if none
+    integer, intent(inout) :: free(:)   !< (n_chains) number of equations that are left to each chain
     integer :: queue(loops%n_chains), wish(loops%n_chains), head, tail, u, i, c
     logical :: seen(loops%n_chains), found
 
@@ -142,7 +145,7 @@ contains
 
     !> Ask all chains through an unknown that were not asked yet; stop at one with an equation left.
     subroutine visit(unknown)
-      integer, intent(in) :: unknown
+      integer, intent(in) :: unknown   !< number of the unknown
       integer :: j, chain
 
       found = .false.
@@ -161,8 +164,10 @@ contains
 
   !> Along a path that ends at a chain with an equation left, each unknown moves to the next chain.
   pure subroutine exchange(last, wish, owner, free)
-    integer, intent(in) :: last, wish(:)
-    integer, intent(inout) :: owner(:), free(:)
+    integer, intent(in) :: last   !< chain at the end of the augmenting path
+    integer, intent(in) :: wish(:)   !< (n_chains) the unknown from which the search came to each chain
+    integer, intent(inout) :: owner(:)   !< (n_unknowns) chain that determines each unknown; 0 if none
+    integer, intent(inout) :: free(:)   !< (n_chains) number of equations that are left to each chain
     integer :: c, before
 
     free(last) = free(last) - 1

@@ -31,7 +31,7 @@ contains
   !> in ascending order.
   subroutine find_offers(plan, guess)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    real(wp), intent(in) :: guess(:)       !< (M)
+    real(wp), intent(in) :: guess(:)   !< (M) guesses of all coordinates [rad, m]
     integer :: c, n
 
     do c = 1, size(plan%closures)
@@ -46,8 +46,8 @@ contains
   !> Rank of a loop at closed positions near the guess: the largest of two. `rank` stays as it is
   !> where the loop does not close.
   subroutine find_rank_alone(loop, guess, rank)
-    type(plan_type), intent(in) :: loop
-    real(wp), intent(in) :: guess(:)
+    type(plan_type), intent(in) :: loop   !< plan of the loop alone
+    real(wp), intent(in) :: guess(:)   !< (coordinates of the loop) guesses of its coordinates [rad, m]
     integer, intent(inout) :: rank         !< on entry the most that is possible
     real(wp), parameter :: amounts(4) = [0.3_wp, 0.1_wp, 0.5_wp, 0.03_wp]
     type(state_type) :: state
@@ -82,7 +82,7 @@ contains
   !> A plan of one loop alone: its base frame is frame 0 and all its coordinates are unknown.
   function loop_alone(plan, closure) result(loop)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(closure_type), intent(in) :: closure
+    type(closure_type), intent(in) :: closure   !< the closure of the loop, with its whole loop
     type(plan_type) :: loop
     integer :: i, k, n
 
@@ -115,7 +115,8 @@ contains
 
   !> Place of a frame in a list of frames; 0 where it is not there.
   pure integer function place_of(frame, frames)
-    integer, intent(in) :: frame, frames(:)
+    integer, intent(in) :: frame   !< number of the frame to find
+    integer, intent(in) :: frames(:)   !< numbers of frames
 
     do place_of = size(frames), 1, -1
       if (frames(place_of) == frame) return

@@ -24,7 +24,7 @@ contains
   !> space they generate does not depend on the position, whether the loops are closed or not.
   subroutine find_loop_spaces(plan, guess, err)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    real(wp), intent(in) :: guess(:)       !< (M)
+    real(wp), intent(in) :: guess(:)   !< (M) guesses of the coordinates [rad, m]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: state
     type(random_type) :: random
@@ -47,7 +47,7 @@ contains
   subroutine find_space(plan, state, closure)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(closure_type), intent(inout) :: closure
+    type(closure_type), intent(inout) :: closure   !< the closure; gets its rank and rows
     real(wp) :: screws(6, 2*size(closure%loop%steps))
     integer :: i, n, s
     real(wp) :: within

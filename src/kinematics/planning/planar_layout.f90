@@ -64,8 +64,8 @@ contains
   !> The axes of the plane, from the first revolute pair. `fits` is false where there is none.
   pure subroutine find_axes(plan, planar, fits)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(planar_plan_type), intent(inout) :: planar
-    logical, intent(out) :: fits
+    type(planar_plan_type), intent(inout) :: planar   !< the planar part of the plan
+    logical, intent(out) :: fits   !< there is a revolute pair and its axis gives a normal
     real(wp) :: normal(3), r(3, 3)
     type(pose_type) :: frame
     integer :: s, f
@@ -93,10 +93,10 @@ contains
   !> One step. `to_frame` turns components in a frame of the plan into those of the same frame in the plane.
   pure subroutine lay_out_step(plan, s, planar, to_frame, fits)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: s
-    type(planar_plan_type), intent(inout) :: planar
-    real(wp), intent(inout) :: to_frame(:, :, 0:)
-    logical, intent(out) :: fits
+    integer, intent(in) :: s   !< number of the step
+    type(planar_plan_type), intent(inout) :: planar   !< the planar part of the plan
+    real(wp), intent(inout) :: to_frame(:, :, 0:)   !< (3,3,0:M) turns components from a frame of the plan to that of the plane
+    logical, intent(out) :: fits   !< the step stays in the plane
     real(wp) :: r(3, 3), p(3), side
 
     associate (step => plan%steps(s), flat => planar%steps(s))
@@ -128,10 +128,10 @@ contains
   !> Where a closing frame must be, if that is in the plane.
   pure subroutine lay_out_closure(plan, c, to_frame, planar, fits)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: c
-    real(wp), intent(in) :: to_frame(:, :, 0:)
-    type(planar_plan_type), intent(inout) :: planar
-    logical, intent(out) :: fits
+    integer, intent(in) :: c   !< number of the closure
+    real(wp), intent(in) :: to_frame(:, :, 0:)   !< (3,3,0:M) turns components from a frame of the plan to that of the plane
+    type(planar_plan_type), intent(inout) :: planar   !< the planar part of the plan
+    logical, intent(out) :: fits   !< the chain closes in the plane
     real(wp) :: r_closing(3, 3), r(3, 3), p(3)
 
     associate (closure => plan%closures(c), flat => planar%closures(c))
@@ -151,10 +151,10 @@ contains
 
   !> A pose in a frame of the plan, in the same frame in the plane and at the height of frame 0.
   pure function seen_from_plane(planar, to_frame, frame, pose) result(seen)
-    type(planar_plan_type), intent(in) :: planar
-    real(wp), intent(in) :: to_frame(:, :, 0:)
-    integer, intent(in) :: frame
-    type(pose_type), intent(in) :: pose
+    type(planar_plan_type), intent(in) :: planar   !< the planar part of the plan
+    real(wp), intent(in) :: to_frame(:, :, 0:)   !< (3,3,0:M) turns components from a frame of the plan to that of the plane
+    integer, intent(in) :: frame   !< number of the frame
+    type(pose_type), intent(in) :: pose   !< pose in this frame of the plan
     type(pose_type) :: seen
 
     seen%r = matmul(to_frame(:, :, frame), pose%r)

@@ -68,12 +68,12 @@ contains
   !> One chain: an open one, and the stem of one that closes on itself, from its known end outwards.
   subroutine lay_out_chain(mechanism, chain, links, coordinates, closed, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: chain
-    integer, intent(in) :: links(0:)         !< the known link it starts at, then the link of each step
-    integer, intent(in) :: coordinates(:)
-    logical, intent(in) :: closed
+    integer, intent(in) :: chain   !< number of the chain
+    integer, intent(in) :: links(0:)   !< (0:) the known link at which the chain starts, then the link of each step
+    integer, intent(in) :: coordinates(:)   !< number of the coordinate of each step
+    logical, intent(in) :: closed   !< the chain is closed
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(inout) :: layout
+    type(layout_type), intent(inout) :: layout   !< what is known of the frames made so far
     integer :: i, n, stem, frame, reached
 
     n = size(coordinates)
@@ -95,11 +95,11 @@ contains
   !> New links between two known ones, reached from both ends, and the closure where they meet.
   subroutine lay_out_loop(mechanism, chain, links, coordinates, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: chain
-    integer, intent(in) :: links(0:)         !< known, new ..., known
-    integer, intent(in) :: coordinates(:)
+    integer, intent(in) :: chain   !< number of the chain
+    integer, intent(in) :: links(0:)   !< (0:) a known link, the new links, a known link
+    integer, intent(in) :: coordinates(:)   !< number of the coordinate of each step
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(inout) :: layout
+    type(layout_type), intent(inout) :: layout   !< what is known of the frames made so far
     integer :: n, here, there, from_here, i, reached
 
     n = size(coordinates)
@@ -126,9 +126,11 @@ contains
   !> A frame of each of two links, so that there are few steps from one to the other.
   pure subroutine nearest_frames(plan, layout, a, b, frame_a, frame_b)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(in) :: layout
-    integer, intent(in) :: a, b
-    integer, intent(out) :: frame_a, frame_b
+    type(layout_type), intent(in) :: layout   !< what is known of the frames made so far
+    integer, intent(in) :: a   !< number of the first link
+    integer, intent(in) :: b   !< number of the second link
+    integer, intent(out) :: frame_a   !< frame of the first link
+    integer, intent(out) :: frame_b   !< frame of the second link
     integer :: frames_a(0:most_remembered), frames_b(0:most_remembered), i, j, most, distance, least
 
     frames_a = [plan%frame_of(a), layout%further(:, a)]
@@ -155,9 +157,10 @@ contains
 
   !> The frame by which a link is known.
   pure subroutine make_first(link, frame, plan, layout)
-    integer, intent(in) :: link, frame
+    integer, intent(in) :: link   !< number of the link
+    integer, intent(in) :: frame   !< its frame, made last
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(in) :: layout
+    type(layout_type), intent(in) :: layout   !< what is known of the frames made so far
 
     plan%frame_of(link) = frame
     plan%link_in_frame(link) = layout%link_in(frame)
@@ -166,11 +169,14 @@ contains
   !> One more step, from a frame of one link through a pair to a new frame of another.
   subroutine add_step(mechanism, chain, from, to, coordinate, parent, plan, layout, reached)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: chain, from, to, coordinate
-    integer, intent(in) :: parent            !< frame of link `from`
+    integer, intent(in) :: chain   !< number of the chain
+    integer, intent(in) :: from   !< number of the link where the step starts
+    integer, intent(in) :: to   !< number of the link that it reaches
+    integer, intent(in) :: coordinate   !< number of the pair's coordinate
+    integer, intent(in) :: parent   !< number of the frame of link `from` where the step starts
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(inout) :: layout
-    integer, intent(out) :: reached
+    type(layout_type), intent(inout) :: layout   !< what is known of the frames made so far
+    integer, intent(out) :: reached   !< number of the new frame
 
     layout%steps = layout%steps + 1
     reached = layout%steps
@@ -186,11 +192,13 @@ contains
   !> link's system in the new frame.
   subroutine make_step(mechanism, from, to, coordinate, link_in_frame, plan, step, after)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: from, to, coordinate
-    type(pose_type), intent(in) :: link_in_frame    !< the departing link's system in the frame it departs from
+    integer, intent(in) :: from   !< number of the link where the step starts
+    integer, intent(in) :: to   !< number of the link that it reaches
+    integer, intent(in) :: coordinate   !< number of the pair's coordinate
+    type(pose_type), intent(in) :: link_in_frame   !< system of link `from` in the frame where the step starts
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(step_type), intent(out) :: step
-    type(pose_type), intent(out) :: after
+    type(step_type), intent(out) :: step   !< the step
+    type(pose_type), intent(out) :: after   !< the reached link's system in the new frame
     type(screw_factors_type) :: factors
     real(wp) :: direction
 
@@ -223,9 +231,10 @@ contains
   !> The closure where two frames of a link must coincide, and the loop it belongs to.
   subroutine make_closure(plan, layout, closing, target, closure)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(in) :: layout
-    integer, intent(in) :: closing, target
-    type(closure_type), intent(out) :: closure
+    type(layout_type), intent(in) :: layout   !< what is known of the frames made so far
+    integer, intent(in) :: closing   !< number of the frame that the last step made
+    integer, intent(in) :: target   !< number of the link's other frame, with which it must coincide
+    type(closure_type), intent(out) :: closure   !< the closure, with its loop
 
     closure%chain = layout%closures
     closure%closing = closing

@@ -17,10 +17,10 @@ contains
   !> Number of the component of each node. Components are numbered as they are completed, searching
   !> from the nodes in the order given.
   subroutine strong_components(graph, order, component, n_components)
-    type(graph_type), intent(in) :: graph
-    integer, intent(in) :: order(:)           !< every node once
-    integer, intent(out) :: component(:)      !< (n)
-    integer, intent(out) :: n_components
+    type(graph_type), intent(in) :: graph   !< the graph
+    integer, intent(in) :: order(:)   !< every node once, in the order in which searches start
+    integer, intent(out) :: component(:)   !< (n) number of the component of each node
+    integer, intent(out) :: n_components   !< number of components
     integer :: number(graph%n)      ! order of discovery, 0: not yet
     integer :: low(graph%n)         ! the earliest node of its component known so far
     integer :: next(graph%n)        ! edge to follow next
@@ -58,7 +58,7 @@ contains
   contains
 
     subroutine enter(new)
-      integer, intent(in) :: new
+      integer, intent(in) :: new   !< node that the search reaches for the first time
 
       n_found = n_found + 1
       number(new) = n_found
@@ -72,7 +72,7 @@ contains
 
     !> The nodes that are open since `root` was found are a component.
     subroutine complete(root)
-      integer, intent(in) :: root
+      integer, intent(in) :: root   !< the node of the component that was found first
       integer :: last
 
       n_components = n_components + 1

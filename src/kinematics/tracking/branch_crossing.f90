@@ -46,9 +46,9 @@ contains
   subroutine build_crossing(mechanism, plan, stepper, t, crossing, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    real(wp), intent(in) :: t
-    type(branch_crossing_type), intent(inout) :: crossing
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper at a regular position near the crossing
+    real(wp), intent(in) :: t   !< time of the crossing [s]
+    type(branch_crossing_type), intent(inout) :: crossing   !< the crossing and the motion through it
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(branch_stepper_type) :: probe
     real(wp) :: half
@@ -71,9 +71,10 @@ contains
   subroutine try_crossing(mechanism, plan, probe, t, half, crossing, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: probe       !< departs at t - half
-    real(wp), intent(in) :: t, half
-    type(branch_crossing_type), intent(inout) :: crossing
+    type(branch_stepper_type), intent(inout) :: probe   !< a copy of the branch stepper, at time t - half
+    real(wp), intent(in) :: t   !< time of the crossing [s]
+    real(wp), intent(in) :: half   !< half of the time that the polynomial is to cover, negative backwards [s]
+    type(branch_crossing_type), intent(inout) :: crossing   !< the crossing and the motion through it
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: no_drive
     real(wp), dimension(plan%n_coordinates, 4) :: q, dq, ddq
@@ -108,7 +109,7 @@ contains
   contains
 
     subroutine take(i)
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< column of the position in q, dq and ddq
 
       q(:, i) = probe%predictor%q
       dq(:, i) = probe%predictor%dq
@@ -130,9 +131,9 @@ contains
   subroutine step_until(mechanism, plan, stepper, t, arrived, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: stepper
-    real(wp), intent(in) :: t
-    logical, intent(out) :: arrived
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
+    real(wp), intent(in) :: t   !< time to reach [s]
+    logical, intent(out) :: arrived   !< the time was reached
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical :: stuck
     integer :: refused_by
@@ -149,9 +150,9 @@ contains
   subroutine close_from_rates(mechanism, plan, t, stepper, ok, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    real(wp), intent(in) :: t
-    type(branch_stepper_type), intent(inout) :: stepper
-    logical, intent(out) :: ok
+    real(wp), intent(in) :: t   !< time of the position to close [s]
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
+    logical, intent(out) :: ok   !< the position was closed and is certain
     type(error_type), allocatable, intent(out) :: err        !< a pair has no pose, or a drive no value
     type(error_type), allocatable :: no_drive
     type(hermite_type) :: polynomial
@@ -169,11 +170,11 @@ contains
   subroutine close_all_blocks(mechanism, plan, polynomial, t, slack, stepper, ok, err, no_drive)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(hermite_type), intent(in) :: polynomial
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: slack                            !< how many times as far off it may be
-    type(branch_stepper_type), intent(inout) :: stepper
-    logical, intent(out) :: ok
+    type(hermite_type), intent(in) :: polynomial   !< all coordinates over time
+    real(wp), intent(in) :: t   !< time of the position to close [s]
+    real(wp), intent(in) :: slack   !< factor on the distances from the prediction that are trusted
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
+    logical, intent(out) :: ok   !< the position was closed and is certain
     type(error_type), allocatable, intent(out) :: err        !< a pair has no pose
     type(error_type), allocatable, intent(out) :: no_drive   !< a drive has no value
     real(wp), dimension(plan%n_coordinates) :: q, dq, ddq
@@ -210,11 +211,11 @@ contains
   subroutine position_within(mechanism, plan, crossing, t, state, work, monitors, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_crossing_type), intent(in) :: crossing
-    real(wp), intent(in) :: t
+    type(branch_crossing_type), intent(in) :: crossing   !< the crossing and the motion through it
+    real(wp), intent(in) :: t   !< time, within the crossing [s]
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work(:)
-    type(singularity_monitor_type), intent(inout) :: monitors(:)
+    type(block_work_type), intent(inout) :: work(:)   !< scratch of all blocks
+    type(singularity_monitor_type), intent(inout) :: monitors(:)   !< what is known of the Jacobians of all blocks
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
     real(wp), dimension(plan%n_coordinates) :: dq, ddq
@@ -254,8 +255,8 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    type(singularity_monitor_type), intent(in) :: monitor
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
+    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
@@ -273,8 +274,8 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    type(singularity_monitor_type), intent(in) :: monitor
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
+    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
 
     associate (k => block%coordinates)
       call spread_velocities(plan, block, state)
@@ -292,8 +293,8 @@ contains
 
   !> The least change that makes up for what stands on the right, the directions of the least pivots left out.
   subroutine solve_where_determined(work, monitor)
-    type(block_work_type), intent(inout) :: work
-    type(singularity_monitor_type), intent(in) :: monitor
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
+    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
 
     work%right = -work%right
     call work%equations%solve(work%right, work%change, tolerance=near*monitor%largest_pivot/work%equations%largest_pivot())

@@ -69,8 +69,10 @@ contains
   !> Independent coordinates and their derivatives at a time, from the drives.
   subroutine set_inputs(mechanism, t, q, dq, ddq, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    real(wp), intent(in) :: t
-    real(wp), intent(inout) :: q(:), dq(:), ddq(:)   !< (M)
+    real(wp), intent(in) :: t   !< time [s]
+    real(wp), intent(inout) :: q(:)   !< (M) coordinates [rad, m]: the driven ones are set
+    real(wp), intent(inout) :: dq(:)   !< (M) their rates: the driven ones are set
+    real(wp), intent(inout) :: ddq(:)   !< (M) their accelerations: the driven ones are set
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, k
 
@@ -85,7 +87,7 @@ contains
   pure function new_branch_stepper(mechanism, plan, assembled) result(stepper)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: assembled
+    type(state_type), intent(in) :: assembled   !< an assembled position
     type(branch_stepper_type) :: stepper
     integer :: b, m
 
@@ -127,7 +129,7 @@ contains
   !> Take the state, complete with its accelerations, as the place of departure with nothing known before it.
   !> The Jacobians of all blocks must be on trial (see mech9_watch) or unchanged.
   pure subroutine accept_start(stepper)
-    type(branch_stepper_type), intent(inout) :: stepper
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
 
     stepper%state%known = acceleration_known
     call begin_prediction(stepper%state, stepper%predictor)
@@ -140,10 +142,10 @@ contains
   subroutine step_towards(mechanism, plan, stepper, t, stuck, refused_by, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: stepper
-    real(wp), intent(in) :: t
-    logical, intent(out) :: stuck
-    integer, intent(out) :: refused_by
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
+    real(wp), intent(in) :: t   !< time to go towards [s]
+    logical, intent(out) :: stuck   !< even the shortest step is refused, or too many steps led nearly nowhere
+    integer, intent(out) :: refused_by   !< number of the block that refused the last step, 0 if none
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: remaining, h, worst
     logical :: no_drive, driven, complete
@@ -182,8 +184,8 @@ contains
   !> search would be as good as endless.
   pure subroutine count_creeping(plan, stepper, too_many, slowest)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: stepper
-    logical, intent(out) :: too_many
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
+    logical, intent(out) :: too_many   !< more steps led nearly nowhere than are allowed
     integer, intent(inout) :: slowest         !< too many: the block that is nearest to a singular position
     integer :: b
 
@@ -203,7 +205,7 @@ contains
   subroutine limit_by_drives(mechanism, plan, stepper, direction, h, driven)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: stepper
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     real(wp), intent(in) :: direction         !< +1, or -1 backwards in time
     real(wp), intent(inout) :: h              !< > 0
     logical, intent(out) :: driven            !< it was shortened
@@ -229,7 +231,7 @@ contains
   subroutine try_step(mechanism, plan, stepper, complete, worst, refused_by, no_drive, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: stepper
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     logical, intent(in) :: complete             !< with accelerations
     real(wp), intent(out) :: worst              !< at most 1: accepted; else about how much too long it was
     integer, intent(out) :: refused_by          !< number of the block
@@ -274,12 +276,12 @@ contains
   !> Judge a block's prediction against its correction, and its movement against its rates.
   pure subroutine judge_step(block, per_unit, predictor, state, newton, pivot, worst)
     type(block_type), intent(in) :: block   !< the block
-    real(wp), intent(in), contiguous :: per_unit(:)
-    type(predictor_type), intent(in) :: predictor
+    real(wp), intent(in), contiguous :: per_unit(:)   !< (M) reciprocals of the coordinates' units
+    type(predictor_type), intent(in) :: predictor   !< the position accepted last, where the step starts
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(newton_outcome_type), intent(in) :: newton
-    real(wp), intent(in) :: pivot
-    real(wp), intent(inout) :: worst
+    type(newton_outcome_type), intent(in) :: newton   !< outcome of Newton's method for the block
+    real(wp), intent(in) :: pivot   !< least pivot of the block's Jacobian at the end of the step
+    real(wp), intent(inout) :: worst   !< raised to at least the measure of this step: at most 1 where it can be accepted
     real(wp) :: move, rate_change
 
     if (size(block%unknowns) == 0) return
@@ -295,8 +297,12 @@ contains
 
   !> Largest difference of some coordinates, in their units.
   pure real(wp) function largest_change(n, coordinates, m, per_unit, now, before) result(largest)
-    integer, intent(in) :: n, coordinates(n), m
-    real(wp), intent(in) :: per_unit(m), now(m), before(m)
+    integer, intent(in) :: n   !< number of coordinates to compare
+    integer, intent(in) :: coordinates(n)   !< their numbers
+    integer, intent(in) :: m   !< number of all coordinates
+    real(wp), intent(in) :: per_unit(m)   !< (M) reciprocals of the coordinates' units
+    real(wp), intent(in) :: now(m)   !< (M) values at the end of the step
+    real(wp), intent(in) :: before(m)   !< (M) values at its start
     integer :: i, k
 
     largest = 0.0_wp
@@ -309,7 +315,7 @@ contains
   !> The trial becomes the place of departure.
   pure subroutine accept_step(plan, stepper, complete)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: stepper
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     logical, intent(in) :: complete             !< its accelerations are known
 
     stepper%steps = stepper%steps + 1
@@ -321,7 +327,7 @@ contains
   !> The accelerations at the place of departure, where the follower is, if it goes without them.
   subroutine add_accelerations(plan, stepper)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(inout) :: stepper
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     integer :: b
 
     if (stepper%state%known == acceleration_known) return
@@ -334,7 +340,7 @@ contains
 
   !> After a step that was given up: the coordinates of the last position again.
   pure subroutine restore_last_position(stepper)
-    type(branch_stepper_type), intent(inout) :: stepper
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
 
     stepper%state%t = stepper%predictor%t
     stepper%state%q = stepper%predictor%q

@@ -42,7 +42,7 @@ contains
 
   !> Room for m coordinates.
   pure function new_past_motion(m) result(past)
-    integer, intent(in) :: m
+    integer, intent(in) :: m   !< number of coordinates
     type(past_motion_type) :: past
 
     allocate (past%q(m, 0:most), past%dq(m, 0:most), source=0.0_wp)
@@ -50,7 +50,7 @@ contains
 
   !> The past is not what comes now.
   pure subroutine clear_past(past)
-    type(past_motion_type), intent(inout) :: past
+    type(past_motion_type), intent(inout) :: past   !< positions and rates at the last times
 
     past%count = 0
     past%with_positions = .false.
@@ -59,7 +59,7 @@ contains
 
   !> Take positions and rates at the next time. Where the motion turns back, only the turning point is kept of what was before.
   pure subroutine add_to_past(past, t, q, dq)
-    type(past_motion_type), intent(inout) :: past
+    type(past_motion_type), intent(inout) :: past   !< positions and rates at the last times
     real(wp), intent(in) :: t                 !< [s]
     real(wp), intent(in) :: q(:)              !< (M) [rad, m]
     real(wp), intent(in) :: dq(:)             !< (M) their rates
@@ -76,9 +76,11 @@ contains
 
   ! Of known shape: no strides.
   pure subroutine copy(m, q, dq, kept_q, kept_dq)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: q(m), dq(m)
-    real(wp), intent(out) :: kept_q(m), kept_dq(m)
+    integer, intent(in) :: m   !< number of coordinates
+    real(wp), intent(in) :: q(m)   !< (M) coordinates [rad, m]
+    real(wp), intent(in) :: dq(m)   !< (M) their rates
+    real(wp), intent(out) :: kept_q(m)   !< (M) copy of the coordinates
+    real(wp), intent(out) :: kept_dq(m)   !< (M) copy of their rates
     integer :: k
 
     do k = 1, m
@@ -89,8 +91,8 @@ contains
 
   !> Slot of the time that lies `back` times before the latest.
   pure integer function slot(past, back)
-    type(past_motion_type), intent(in) :: past
-    integer, intent(in) :: back
+    type(past_motion_type), intent(in) :: past   !< positions and rates at the last times
+    integer, intent(in) :: back   !< number of times back from the latest, 0 ... most
 
     slot = past%latest - back
     if (slot < 0) slot = slot + most + 1
@@ -99,7 +101,7 @@ contains
   !> Whether positions should be used from now on: from a step on whose prediction by rates was far off, until steps are
   !> half as long.
   pure subroutine choose_formula(past, h, correction)
-    type(past_motion_type), intent(inout) :: past
+    type(past_motion_type), intent(inout) :: past   !< positions and rates at the last times
     real(wp), intent(in) :: h                 !< length of the step that was accepted [s]
     real(wp), intent(in) :: correction        !< of its prediction, in units of the coordinates
 
@@ -116,7 +118,7 @@ contains
 
   !> Find the weights of a prediction, unless they are there.
   pure subroutine find_weights(past, h)
-    type(past_motion_type), intent(inout) :: past
+    type(past_motion_type), intent(inout) :: past   !< positions and rates at the last times
     real(wp), intent(in) :: h                 !< from the latest time [s], not 0
     real(wp) :: nodes(most), per_h
     integer :: i, n
@@ -162,9 +164,9 @@ contains
 
   !> From the latest rates and their mean slope since the earliest that are kept.
   pure subroutine weigh_slope(kept, nodes, of_rates)
-    integer, intent(in) :: kept
-    real(wp), intent(in) :: nodes(most)
-    real(wp), intent(inout) :: of_rates(0:most)
+    integer, intent(in) :: kept   !< number of times before the latest that are kept
+    real(wp), intent(in) :: nodes(most)   !< the times before, counted from the latest one in steps of the prediction; negative
+    real(wp), intent(inout) :: of_rates(0:most)   !< gets the weights of the rates, the latest first, in parts of the step
 
     of_rates(0) = 1.0_wp
     if (kept == 0) return
@@ -174,9 +176,9 @@ contains
 
   !> Integral from 0 to 1 of the polynomial through the rates at the latest time, 0, and at n before it.
   pure subroutine weigh_rates(n, nodes, of_rates)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: nodes(most)
-    real(wp), intent(inout) :: of_rates(0:most)
+    integer, intent(in) :: n   !< number of times before the latest that are used
+    real(wp), intent(in) :: nodes(most)   !< the times before, counted from the latest one in steps of the prediction; negative
+    real(wp), intent(inout) :: of_rates(0:most)   !< gets the weights of the rates, the latest first, in parts of the step
     real(wp) :: x(0:most), product(0:most), denominator
     integer :: i, j, k, degree
 
@@ -203,9 +205,10 @@ contains
 
   !> Value at 1 of the polynomial through positions and rates at the latest time, 0, and at n before it (Hermite's).
   pure subroutine weigh_positions(n, nodes, of_positions, of_rates)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: nodes(most)
-    real(wp), intent(inout) :: of_positions(most), of_rates(0:most)
+    integer, intent(in) :: n   !< number of times before the latest that are used
+    real(wp), intent(in) :: nodes(most)   !< the times before, counted from the latest one in steps of the prediction; negative
+    real(wp), intent(inout) :: of_positions(most)   !< gets the weights of differences from the latest position
+    real(wp), intent(inout) :: of_rates(0:most)   !< gets the weights of the rates, the latest first, in parts of the step
     real(wp) :: x(0:most), all_positions(0:most), lagrange, slope
     integer :: i, k
 
@@ -227,9 +230,9 @@ contains
 
   !> Predict some coordinates, for the step whose weights were found.
   pure subroutine predict_from_past(past, coordinates, q)
-    type(past_motion_type), intent(in) :: past
-    integer, intent(in), contiguous :: coordinates(:)
-    real(wp), intent(inout) :: q(:)           !< (M)
+    type(past_motion_type), intent(in) :: past   !< positions and rates at the last times
+    integer, intent(in), contiguous :: coordinates(:)   !< numbers of the coordinates to predict
+    real(wp), intent(inout) :: q(:)   !< (M) gets the predicted coordinates [rad, m]
     integer :: a, b, c, d
 
     a = slot(past, 1)
@@ -247,12 +250,18 @@ contains
 
   !> The latest position and what the rates make of it.
   pure subroutine add_rates(n, coordinates, m, h, w, latest, a, b, c, d, e, q)
-    integer, intent(in) :: n, coordinates(n), m
+    integer, intent(in) :: n   !< number of coordinates to predict
+    integer, intent(in) :: coordinates(n)   !< their numbers
+    integer, intent(in) :: m   !< number of all coordinates
     real(wp), intent(in) :: h                                  !< the step [s]
     real(wp), intent(in) :: w(0:most)                          !< weights
     real(wp), dimension(m), intent(in) :: latest               !< position
-    real(wp), dimension(m), intent(in) :: a, b, c, d, e        !< rates, the latest first
-    real(wp), intent(inout) :: q(m)
+    real(wp), dimension(m), intent(in) :: a   !< rates at the latest time
+    real(wp), dimension(m), intent(in) :: b   !< rates one time before
+    real(wp), dimension(m), intent(in) :: c   !< rates two times before
+    real(wp), dimension(m), intent(in) :: d   !< rates three times before
+    real(wp), dimension(m), intent(in) :: e   !< rates four times before
+    real(wp), intent(inout) :: q(m)   !< (M) gets the predicted coordinates [rad, m]
     integer :: i, k
 
     do i = 1, n
@@ -263,10 +272,15 @@ contains
 
   !> What the positions before the latest add.
   pure subroutine add_positions(n, coordinates, m, w, latest, a, b, c, q)
-    integer, intent(in) :: n, coordinates(n), m
+    integer, intent(in) :: n   !< number of coordinates to predict
+    integer, intent(in) :: coordinates(n)   !< their numbers
+    integer, intent(in) :: m   !< number of all coordinates
     real(wp), intent(in) :: w(most)                            !< weights
-    real(wp), dimension(m), intent(in) :: latest, a, b, c      !< positions, the latest first
-    real(wp), intent(inout) :: q(m)
+    real(wp), dimension(m), intent(in) :: latest   !< latest position
+    real(wp), dimension(m), intent(in) :: a   !< position one time before
+    real(wp), dimension(m), intent(in) :: b   !< position two times before
+    real(wp), dimension(m), intent(in) :: c   !< position three times before
+    real(wp), intent(inout) :: q(m)   !< (M) the prediction from rates, gets the part of the positions [rad, m]
     integer :: i, k
 
     do i = 1, n
@@ -277,8 +291,8 @@ contains
 
   !> Acceleration of a coordinate at the latest time, by the polynomial through its rates; 0 where only that time is known.
   pure real(wp) function acceleration_from_past(past, k) result(ddq)
-    type(past_motion_type), intent(in) :: past
-    integer, intent(in) :: k                  !< its number
+    type(past_motion_type), intent(in) :: past   !< positions and rates at the last times
+    integer, intent(in) :: k   !< number of the coordinate
     real(wp) :: x(0:most), product
     integer :: i, j, n
 

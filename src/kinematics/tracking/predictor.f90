@@ -31,7 +31,7 @@ contains
 
   !> Room for m coordinates.
   pure function new_predictor(m) result(predictor)
-    integer, intent(in) :: m
+    integer, intent(in) :: m   !< number of coordinates
     type(predictor_type) :: predictor
 
     allocate (predictor%q(m), predictor%dq(m), predictor%ddq(m), predictor%higher(m, 3), source=0.0_wp)
@@ -41,7 +41,7 @@ contains
   !> A place with nothing known before it; its accelerations are.
   pure subroutine begin_prediction(state, predictor)
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(predictor_type), intent(inout) :: predictor
+    type(predictor_type), intent(inout) :: predictor   !< the predictor
 
     predictor%t = state%t
     predictor%q = state%q
@@ -60,7 +60,7 @@ contains
     real(wp), intent(in) :: unit_of(:)          !< (M)
     logical, intent(in) :: complete             !< its accelerations are known
     real(wp), intent(in) :: correction          !< of the prediction, in units of the coordinates
-    type(predictor_type), intent(inout) :: predictor
+    type(predictor_type), intent(inout) :: predictor   !< the predictor
     real(wp) :: h
     integer :: k
 
@@ -87,7 +87,7 @@ contains
   !> Prepare predictions for a time other than that of the departure.
   pure subroutine prepare_prediction(t, predictor)
     real(wp), intent(in) :: t                   !< [s]
-    type(predictor_type), intent(inout) :: predictor
+    type(predictor_type), intent(inout) :: predictor   !< the predictor
 
     if (predictor%uses_past) call find_weights(predictor%past, t - predictor%t)
   end subroutine prepare_prediction
@@ -95,7 +95,7 @@ contains
   !> Polynomial prediction of a block's dependent coordinates, for the time that was aimed at.
   pure subroutine predict(block, predictor, state)
     type(block_type), intent(in) :: block   !< the block
-    type(predictor_type), intent(in) :: predictor
+    type(predictor_type), intent(in) :: predictor   !< the predictor
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     real(wp) :: h, near
 
@@ -114,7 +114,7 @@ contains
   !> The accelerations at the place have been found.
   pure subroutine set_accelerations(ddq, predictor)
     real(wp), intent(in) :: ddq(:)              !< (M)
-    type(predictor_type), intent(inout) :: predictor
+    type(predictor_type), intent(inout) :: predictor   !< the predictor
 
     predictor%ddq = ddq
     predictor%complete = .true.
@@ -122,7 +122,7 @@ contains
 
   !> Acceleration of a coordinate at the place: as found, or else by the polynomial through the last rates.
   pure real(wp) function acceleration_of(predictor, k) result(ddq)
-    type(predictor_type), intent(in) :: predictor
+    type(predictor_type), intent(in) :: predictor   !< the predictor
     integer, intent(in) :: k                    !< number of the coordinate
 
     if (predictor%complete) then
@@ -136,9 +136,11 @@ contains
 
   !> Positions and rates of the place.
   pure subroutine copy_motion(m, q, dq, place_q, place_dq)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: q(m), dq(m)
-    real(wp), intent(out) :: place_q(m), place_dq(m)
+    integer, intent(in) :: m   !< number of coordinates
+    real(wp), intent(in) :: q(m)   !< (M) coordinates [rad, m]
+    real(wp), intent(in) :: dq(m)   !< (M) their rates
+    real(wp), intent(out) :: place_q(m)   !< (M) copy of the coordinates
+    real(wp), intent(out) :: place_dq(m)   !< (M) copy of their rates
     integer :: k
 
     do k = 1, m
@@ -149,9 +151,16 @@ contains
 
   !> The polynomial of some coordinates at time h, its higher terms at time `near`.
   pure subroutine evaluate_polynomial(n, coordinates, m, h, near, q, dq, ddq, higher, q_then)
-    integer, intent(in) :: n, coordinates(n), m
-    real(wp), intent(in) :: h, near, q(m), dq(m), ddq(m), higher(m, 3)
-    real(wp), intent(inout) :: q_then(m)
+    integer, intent(in) :: n   !< number of coordinates to predict
+    integer, intent(in) :: coordinates(n)   !< their numbers
+    integer, intent(in) :: m   !< number of all coordinates
+    real(wp), intent(in) :: h   !< time from the last position [s]
+    real(wp), intent(in) :: near   !< the same time for the terms above the second order; 0 leaves them out [s]
+    real(wp), intent(in) :: q(m)   !< (M) coordinates at the last position [rad, m]
+    real(wp), intent(in) :: dq(m)   !< (M) rates there
+    real(wp), intent(in) :: ddq(m)   !< (M) accelerations there
+    real(wp), intent(in) :: higher(m, 3)   !< (M,3) factors of h^3, h^4, h^5
+    real(wp), intent(inout) :: q_then(m)   !< (M) gets the predicted coordinates [rad, m]
     integer :: i, k
 
     do i = 1, n
@@ -163,11 +172,16 @@ contains
   !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
   !> order. The later position takes the place of the earlier one.
   pure subroutine fit_polynomial(m, h, unit_of, q, dq, ddq, last_q, last_dq, last_ddq, higher)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: h
-    real(wp), dimension(m), intent(in) :: unit_of, q, dq, ddq
-    real(wp), dimension(m), intent(inout) :: last_q, last_dq, last_ddq
-    real(wp), intent(out) :: higher(m, 3)
+    integer, intent(in) :: m   !< number of coordinates
+    real(wp), intent(in) :: h   !< time from the earlier position to the later one, negative backwards [s]
+    real(wp), dimension(m), intent(in) :: unit_of   !< (M) units of the coordinates
+    real(wp), dimension(m), intent(in) :: q   !< (M) coordinates at the later position [rad, m]
+    real(wp), dimension(m), intent(in) :: dq   !< (M) rates there
+    real(wp), dimension(m), intent(in) :: ddq   !< (M) accelerations there
+    real(wp), dimension(m), intent(inout) :: last_q   !< (M) coordinates at the earlier position, then at the later one
+    real(wp), dimension(m), intent(inout) :: last_dq   !< (M) rates at the earlier position, then at the later one
+    real(wp), dimension(m), intent(inout) :: last_ddq   !< (M) accelerations at the earlier position, then at the later one
+    real(wp), intent(out) :: higher(m, 3)   !< (M,3) factors of h^3, h^4, h^5 about the later position
     real(wp) :: d0, d1, d2, x, y, z, per_h, per_cube
     logical :: is_round_off
     integer :: k

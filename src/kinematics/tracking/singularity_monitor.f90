@@ -45,8 +45,8 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    type(singularity_monitor_type), intent(inout) :: monitor
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
+    type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
 
     if (size(block%unknowns) == 0) return
     call factorize_block(plan, block, state, work)
@@ -55,8 +55,8 @@ contains
 
   !> Put the Jacobian that stands factorized in `work` on trial.
   subroutine read_factors(work, monitor)
-    type(block_work_type), intent(inout) :: work
-    type(singularity_monitor_type), intent(inout) :: monitor
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
+    type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
 
     monitor%trial_pivot = work%equations%least_pivot()
     monitor%trial_sign = work%equations%determinant_sign()
@@ -68,10 +68,10 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    logical, intent(in) :: factorized
-    type(block_work_type), intent(inout) :: work
-    type(singularity_monitor_type), intent(inout) :: monitor
-    real(wp), intent(inout) :: worst
+    logical, intent(in) :: factorized   !< the factors in `work` belong to the position in `state`
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
+    type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
+    real(wp), intent(inout) :: worst   !< raised to at least the measure of this step; up to 1 no singular matrix lies on the way
     real(wp) :: change
 
     if (.not. factorized) call factorize_block(plan, block, state, work)
@@ -91,8 +91,9 @@ contains
 
   !> Root of the sum of squares of the differences.
   pure real(wp) function distance(n, a, b)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: a(n), b(n)
+    integer, intent(in) :: n   !< number of elements
+    real(wp), intent(in) :: a(n)   !< the first matrix, element by element
+    real(wp), intent(in) :: b(n)   !< the second one
     integer :: i
 
     distance = 0.0_wp
@@ -103,9 +104,9 @@ contains
   end function distance
 
   pure subroutine copy(n, from, to)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: from(n)
-    real(wp), intent(out) :: to(n)
+    integer, intent(in) :: n   !< number of elements
+    real(wp), intent(in) :: from(n)   !< the original
+    real(wp), intent(out) :: to(n)   !< the copy
 
     to = from
   end subroutine copy
@@ -113,8 +114,8 @@ contains
   !> The change of the Jacobian in a step divided by the Jacobian at its end, as a sum of squares in the units of
   !> the coordinates that make it least; hopeless where that is singular.
   real(wp) function relative_change(work, monitor) result(change)
-    type(block_work_type), intent(inout) :: work
-    type(singularity_monitor_type), intent(inout) :: monitor
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
+    type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
     integer :: j
 
     change = unbounded
@@ -130,8 +131,8 @@ contains
 
   !> The Jacobians on trial become those of the departure.
   pure subroutine accept_jacobians(work, monitors)
-    type(block_work_type), intent(in) :: work(:)
-    type(singularity_monitor_type), intent(inout) :: monitors(:)
+    type(block_work_type), intent(in) :: work(:)   !< scratch of all blocks, with their Jacobians at the end of the step
+    type(singularity_monitor_type), intent(inout) :: monitors(:)   !< what is known of the Jacobians of all blocks
     integer :: b
 
     do b = 1, size(monitors)
@@ -146,14 +147,14 @@ contains
 
   !> Whether a block is near a singular position.
   pure elemental logical function is_near(monitor)
-    type(singularity_monitor_type), intent(in) :: monitor
+    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
 
     is_near = monitor%pivot < near*monitor%largest_pivot
   end function is_near
 
   !> Least pivot of the trial against the largest it was.
   pure real(wp) function nearness(monitor)
-    type(singularity_monitor_type), intent(in) :: monitor
+    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
 
     nearness = monitor%trial_pivot/max(monitor%largest_pivot, tiny(nearness))
   end function nearness

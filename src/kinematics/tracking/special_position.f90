@@ -64,10 +64,10 @@ contains
   subroutine look_ahead(mechanism, plan, stepper, b, direction, finding)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    integer, intent(in) :: b
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper, near a singular position of block b
+    integer, intent(in) :: b   !< number of the block
     real(wp), intent(in) :: direction          !< +1, or -1 backwards in time
-    type(finding_type), intent(out) :: finding
+    type(finding_type), intent(out) :: finding   !< kind and time of the special position ahead
     type(branch_stepper_type) :: probe
     type(error_type), allocatable :: err
     real(wp) :: usual, speed, growth, part, pivot_before, t_before, t, step
@@ -124,9 +124,9 @@ contains
   !> Whether the fastest coordinate of a block escapes, and when it is beyond all bounds.
   pure subroutine find_escape(plan, stepper, b, stuck, finding)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    integer, intent(in) :: b
-    logical, intent(in) :: stuck                   !< it cannot go on, however far the coordinate is
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper
+    integer, intent(in) :: b   !< number of the block
+    logical, intent(in) :: stuck   !< no step is accepted any more, however far the coordinate is
     type(finding_type), intent(inout) :: finding   !< changed where one escapes
     real(wp) :: speed, usual
     integer :: k
@@ -147,8 +147,8 @@ contains
   !> Whether a dependent coordinate of a block slides and is far.
   pure logical function slides_far(plan, stepper, b)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    integer, intent(in) :: b
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper
+    integer, intent(in) :: b   !< number of the block
     integer :: i, k
 
     slides_far = .false.
@@ -165,8 +165,8 @@ contains
   !> Whether the fastest coordinate of a block slides, is far, and moves as a power of 1/(T - t).
   pure logical function follows_power_law(plan, stepper, b) result(follows)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    integer, intent(in) :: b
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper
+    integer, intent(in) :: b   !< number of the block
     real(wp) :: quotient
     integer :: i, k
 
@@ -187,10 +187,10 @@ contains
   !> Largest rate of a block's dependent coordinates, and of all that drives it if that is more than `usual`.
   pure subroutine find_speeds(plan, stepper, b, speed, usual)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    integer, intent(in) :: b
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper
+    integer, intent(in) :: b   !< number of the block
     real(wp), intent(out) :: speed              !< [rad/s, lengths of the mechanism/s]
-    real(wp), intent(inout) :: usual
+    real(wp), intent(inout) :: usual   !< raised to the largest rate of the coordinates that drive the block, in the same units
     integer :: s, k
 
     speed = 0.0_wp
@@ -207,8 +207,8 @@ contains
   !> When the square-root law ends: x = x* + c sqrt(T - t) has x'/x'' = 2 (T - t).
   pure real(wp) function time_of_dead_point(plan, stepper, b) result(t)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    integer, intent(in) :: b
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper
+    integer, intent(in) :: b   !< number of the block
     integer :: k
 
     k = fastest_of(plan, stepper, b)
@@ -221,8 +221,8 @@ contains
   !> The dependent coordinate of a block that moves fastest.
   pure integer function fastest_of(plan, stepper, b) result(fastest)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    integer, intent(in) :: b
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper
+    integer, intent(in) :: b   !< number of the block
     integer :: i, k
 
     fastest = plan%blocks(b)%coordinates(1)

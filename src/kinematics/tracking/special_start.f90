@@ -43,8 +43,8 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    type(starting_rates_type), intent(out) :: starting
+    type(block_work_type), intent(inout) :: work   !< scratch of the block
+    type(starting_rates_type), intent(out) :: starting   !< the rates with which the block can start
     real(wp), dimension(block%equations, block%equations) :: u
     real(wp), dimension(size(block%unknowns), size(block%unknowns)) :: vt
     real(wp) :: s(size(block%unknowns)), particular(size(block%unknowns)), right(block%equations)
@@ -81,8 +81,10 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(in) :: work
-    real(wp), intent(out) :: u(:, :), s(:), vt(:, :)
+    type(block_work_type), intent(in) :: work   !< scratch of the block
+    real(wp), intent(out) :: u(:, :)   !< (equations,equations) left singular vectors
+    real(wp), intent(out) :: s(:)   !< (unknowns) singular values, the largest first
+    real(wp), intent(out) :: vt(:, :)   !< (unknowns,unknowns) right singular vectors, one in each row
     real(wp) :: a(size(u, 1), size(s)), scratch(20*(size(u, 1) + size(s)))
     integer :: info
 
@@ -94,7 +96,7 @@ contains
   pure subroutine set_rates(plan, block, rates, state)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
-    real(wp), intent(in) :: rates(:)
+    real(wp), intent(in) :: rates(:)   !< (unknowns) rates in the units of the coordinates [1/s]
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     integer :: i, k
 
@@ -110,10 +112,10 @@ contains
   !> Real roots of the quadratic with these values at -1, 0 and 1, in the direction in which it is largest.
   !> Equations that hold always have nothing in any direction.
   pure subroutine find_roots(values, n_roots, roots, undetermined)
-    real(wp), intent(in) :: values(:, :)
-    integer, intent(out) :: n_roots
-    real(wp), intent(out) :: roots(2)
-    logical, intent(out) :: undetermined
+    real(wp), intent(in) :: values(:, :)   !< (equations,3) terms of the equations at -1, 0 and 1
+    integer, intent(out) :: n_roots   !< number of real roots, 0 to 2
+    real(wp), intent(out) :: roots(2)   !< the roots
+    logical, intent(out) :: undetermined   !< there is a double root, or no term decides
     real(wp) :: square(size(values, 1)), linear(size(values, 1)), constant(size(values, 1)), a, b, c, root
 
     constant = values(:, 2)
@@ -153,8 +155,8 @@ contains
   subroutine start_crossing(mechanism, plan, stepper, crossing, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(branch_stepper_type), intent(in) :: stepper
-    type(branch_crossing_type), intent(inout) :: crossing
+    type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper at the singular start, with its rates
+    type(branch_crossing_type), intent(inout) :: crossing   !< gets the motion off the start
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(branch_stepper_type) :: probe
     real(wp), dimension(plan%n_coordinates, 3) :: q, dq, ddq
