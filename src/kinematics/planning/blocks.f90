@@ -1,8 +1,9 @@
-!> The smallest blocks: which chains must be solved together, and in which order.
+!> The smallest blocks of chains that must be solved together, and the order of these blocks.
 !>
-!> Each unknown is given to a closed chain that can determine it. A chain then needs the unknowns on
-!> its loop that belong to other chains, and those that place the links its loop stands on. Chains
-!> that need each other, directly or around, are a block; blocks come in the order of these needs.
+!> Each unknown is assigned to a closed chain that can determine it (a matching). A chain then depends on the unknowns of its
+!> loop that are assigned to other chains, and on those that place the links on which its loop stands. Chains that depend
+!> on each other, directly or through others, are a block (a strongly connected component); each block comes after those on
+!> which it depends. Matching and components together are the decomposition of Dulmage and Mendelsohn.
 module mech9_blocks
   use mech9_tree_paths, only: find_loop, split_loops
   use mech9_plan, only: plan_type, step_type, closure_type, block_type
@@ -14,8 +15,8 @@ module mech9_blocks
 
 contains
 
-  !> Divide a plan into blocks and put its steps and closures in their order. Where some unknowns have
-  !> no chain that could determine them, the plan is left as it is, in no blocks.
+  !> Divide a plan into blocks and sort its steps and closures by them. If no chain can determine some of the unknowns, the
+  !> plan is left unchanged, without blocks.
   subroutine make_blocks(plan, undetermined)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer, allocatable, intent(out) :: undetermined(:)   !< numbers of the coordinates that no closed chain can determine
@@ -48,7 +49,7 @@ contains
     block%chains = plan%closures(block%first_closure:block%last_closure)%chain
   end subroutine count_block
 
-  !> The steps with unknown coordinates on each loop, outermost first: these belong to the chain itself.
+  !> The steps with unknown coordinates on each loop, outermost first: the outermost steps are those of the chain itself.
   pure function loops_of(plan) result(loops)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(loop_lists_type) :: loops
@@ -74,22 +75,22 @@ contains
     end do
   end function loops_of
 
-  !> Blocks of the closures and of the steps with unknown coordinates. The graph has a node for each
-  !> step and, behind them, one for each closure; each leads to what must be there before it.
+  !> Blocks of the closures and of the steps with unknown coordinates. The graph has a node for each step and, after these,
+  !> one for each closure; the edges of a node lead to the nodes on which it depends.
   subroutine find_blocks(plan, owner, block_of_step, block_of_closure, n_blocks)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: owner(:)   !< (M) number of the closure that determines the coordinate of each step; 0 if none
     integer, intent(out) :: block_of_step(:)   !< (M) number of the block of each step; 0 where its coordinate is given
     integer, intent(out) :: block_of_closure(:)   !< number of the block of each closure
     integer, intent(out) :: n_blocks   !< number of blocks
-    type(graph_type) :: requested
+    type(graph_type) :: graph
     integer :: component(plan%n_coordinates + size(plan%closures))
     integer :: block_of(plan%n_coordinates + size(plan%closures))
     integer :: m, n, i, c
 
     m = plan%n_coordinates
-    requested = graph_of_needs(plan, owner)
-    call strong_components(requested, [(m + c, c=1, size(plan%closures)), (i, i=1, m)], component, n)
+    graph = dependence_graph(plan, owner)
+    call strong_components(graph, [(m + c, c=1, size(plan%closures)), (i, i=1, m)], component, n)
     ! components without a closure are single steps whose coordinates are given
     block_of = 0
     do c = 1, size(plan%closures)
@@ -105,47 +106,48 @@ contains
     block_of_closure = block_of(component(m + 1:))
   end subroutine find_blocks
 
-  !> A step needs its parent and, where its coordinate is unknown, the closure that determines it; a
-  !> closure needs all steps of its loop.
-  function graph_of_needs(plan, owner) result(requested)
+  !> A step depends on its parent and, where its coordinate is unknown, on the closure that determines it; a closure depends on
+  !> all steps of its loop.
+  function dependence_graph(plan, owner) result(graph)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: owner(:)   !< (M) number of the closure that determines the coordinate of each step; 0 if none
-    type(graph_type) :: requested
+    type(graph_type) :: graph
     integer :: m, c, s, n
 
     m = plan%n_coordinates
-    requested%n = m + size(plan%closures)
+    graph%n = m + size(plan%closures)
     n = 2*m
     do c = 1, size(plan%closures)
       n = n + size(plan%closures(c)%loop%steps)
     end do
-    allocate (requested%first(requested%n + 1), requested%heads(n))
+    allocate (graph%first(graph%n + 1), graph%heads(n))
     n = 0
     do s = 1, m
-      requested%first(s) = n + 1
+      graph%first(s) = n + 1
       if (plan%steps(s)%parent > 0) call add(plan%steps(s)%parent)
       if (owner(s) > 0) call add(m + owner(s))
     end do
     do c = 1, size(plan%closures)
-      requested%first(m + c) = n + 1
+      graph%first(m + c) = n + 1
       do s = 1, size(plan%closures(c)%loop%steps)
         call add(plan%closures(c)%loop%steps(s))
       end do
     end do
-    requested%first(requested%n + 1) = n + 1
+    graph%first(graph%n + 1) = n + 1
 
   contains
 
+    !> Add an edge from the present node.
     subroutine add(head)
       integer, intent(in) :: head   !< node that must come before the present one
 
       n = n + 1
-      requested%heads(n) = head
+      graph%heads(n) = head
     end subroutine add
-  end function graph_of_needs
+  end function dependence_graph
 
-  !> Steps whose coordinates are given go into the first block that needs them; what no closure needs
-  !> are open chains, each of which has its own block at the end.
+  !> Steps whose coordinates are given go into the first block that depends on them. Steps on which no closure depends are open
+  !> chains, each of which has its own block at the end.
   pure subroutine place_free_steps(plan, owner, block_of_closure, block_of_step, n_blocks)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: owner(:)   !< (M) number of the closure that determines the coordinate of each step; 0 if none
@@ -177,7 +179,7 @@ contains
     end do
   end subroutine place_free_steps
 
-  !> Steps and closures in the order of their blocks, otherwise as before, and the ranges of the blocks.
+  !> Sort steps and closures by their blocks, in the same order within each block, and set the ranges of the blocks.
   pure subroutine sort_plan(plan, block_of_step, block_of_closure)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer, intent(in) :: block_of_step(:)   !< (M) number of the block of each step
@@ -219,6 +221,7 @@ contains
     end do
   end subroutine counting_sort
 
+  !> Put the steps, and the frames they make, in their new order.
   pure subroutine renumber_steps(plan, place)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer, intent(in) :: place(0:)   !< (0:M) new number of each step and of the frame that it makes
@@ -235,6 +238,7 @@ contains
     plan%frame_of = place(plan%frame_of)
   end subroutine renumber_steps
 
+  !> Put the closures in their new order, with the new numbers of steps and frames.
   pure subroutine renumber_closures(plan, place, order)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer, intent(in) :: place(0:)      !< new number of each step and frame

@@ -1,8 +1,8 @@
-!> Which closed chain determines which unknown: pure integers.
+!> Matching of unknowns with the closed chains that determine them.
 !>
-!> Each chain can determine as many unknowns of its loop as it offers equations. Chains whose unknowns
-!> it can all determine go first and alone, one making the next possible; what then remains is matched
-!> so that as many unknowns as possible have a chain (augmenting paths).
+!> Each chain can determine as many unknowns of its loop as it offers equations. Chains that can determine all unknowns of
+!> their loops are assigned first, which often leaves others with few enough unknowns. The rest is matched by augmenting paths
+!> (Hopcroft and Karp's problem, with a breadth-first search for each unknown) so that as many unknowns as possible have a chain.
 module mech9_chain_matching
   implicit none
   private
@@ -10,10 +10,10 @@ module mech9_chain_matching
 
   !> The unknowns of each chain's loop, one list behind the other.
   type :: loop_lists_type
-    integer :: n_chains = 0
-    integer :: n_unknowns = 0
+    integer :: n_chains = 0               !< number of chains
+    integer :: n_unknowns = 0             !< number of unknowns
     integer, allocatable :: first(:)      !< (n_chains+1): the loop of chain c is unknowns(first(c):first(c+1)-1)
-    integer, allocatable :: unknowns(:)
+    integer, allocatable :: unknowns(:)   !< numbers of the unknowns, loop after loop
   end type loop_lists_type
 
 contains
@@ -67,7 +67,7 @@ contains
     end do
   end function chains_through
 
-  !> Chains that can determine all that is unknown on their loops take it; their successors follow.
+  !> Assign to each chain that can determine all unknowns of its loop those unknowns, until there is no such chain.
   subroutine take_alone(loops, passing, offers, owner, free)
     type(loop_lists_type), intent(in) :: loops   !< the unknowns on the loop of each chain
     type(loop_lists_type), intent(in) :: passing   !< the chains whose loops pass through each unknown
@@ -102,6 +102,7 @@ contains
 
   contains
 
+    !> Put a chain into the queue once.
     subroutine append(chain)
       integer, intent(in) :: chain   !< number of the chain
 
@@ -112,8 +113,8 @@ contains
     end subroutine append
   end subroutine take_alone
 
-  !> Give the unknowns without a chain one by exchanges, where exchanges can. The search goes through
-  !> chains in breadth; a chain that led nowhere once never will, so that failures cost little.
+  !> Match the unknowns that have no chain by exchanges along augmenting paths, where there are any. The search is
+  !> breadth-first; a chain from which no path was found is not searched again, because it never has one later.
   subroutine augment(loops, passing, owner, free)
     type(loop_lists_type), intent(in) :: loops   !< the unknowns on the loop of each chain
     type(loop_lists_type), intent(in) :: passing   !< the chains whose loops pass through each unknown
@@ -143,7 +144,7 @@ contains
 
   contains
 
-    !> Ask all chains through an unknown that were not asked yet; stop at one with an equation left.
+    !> Add all chains through an unknown to the search, and stop at one with an equation left.
     subroutine visit(unknown)
       integer, intent(in) :: unknown   !< number of the unknown
       integer :: j, chain

@@ -1,8 +1,8 @@
-!> How many independent equations each closed chain offers while it moves on its own.
+!> The number of independent equations that each closed chain offers while it moves alone.
 !>
-!> Most loops offer as many as their space of motions has dimensions. Overconstrained ones, such as
-!> Bennett's, offer fewer: their screws are dependent at every closed position, though not at others.
-!> So a loop that might be one is closed alone, all its coordinates free, away from its guess.
+!> Most loops offer as many equations as their space of motions has dimensions. Overconstrained loops, such as Bennett's, offer
+!> fewer: their screws are dependent at every closed position, though not at others. A loop that may be overconstrained is
+!> therefore closed alone, with all its coordinates free, at positions away from its guess, and the rank there counts.
 module mech9_loop_rank
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -16,19 +16,19 @@ module mech9_loop_rank
   private
   public :: find_offers
 
-  !> Planar and spherical loops, and smaller ones, lose no rank at a general closed position.
+  !> Loops whose space of motions has at most so many dimensions, planar and spherical ones included, lose no rank at a general
+  !> closed position.
   integer, parameter :: never_overconstrained = 3
-  !> Longer loops are not closed alone: they have freedom enough.
+  !> Loops with more coordinates are not closed alone: they have enough freedom to have the full rank.
   integer, parameter :: longest_loop = 60
   !> Pivots below this fraction of the largest count as zero.
   real(wp), parameter :: rank_tolerance = 1.0e-9_wp
-  !> Pivots that inexact dimensions make, against their error.
+  !> Factor from the error of inexact dimensions to the pivots that it causes.
   real(wp), parameter :: inexact = 10.0_wp
 
 contains
 
-  !> Set `offers` of all closures. Their ranks must be known; the paths must be those of whole loops,
-  !> in ascending order.
+  !> Set `offers` of all closures, whose ranks and loops must be known.
   subroutine find_offers(plan, guess)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: guess(:)   !< (M) guesses of all coordinates [rad, m]
@@ -43,12 +43,11 @@ contains
     end do
   end subroutine find_offers
 
-  !> Rank of a loop at closed positions near the guess: the largest of two. `rank` stays as it is
-  !> where the loop does not close.
+  !> Rank of a loop near the guess, the largest at two closed positions. `rank` is unchanged if the loop does not close.
   subroutine find_rank_alone(loop, guess, rank)
     type(plan_type), intent(in) :: loop   !< plan of the loop alone
     real(wp), intent(in) :: guess(:)   !< (coordinates of the loop) guesses of its coordinates [rad, m]
-    integer, intent(inout) :: rank         !< on entry the most that is possible
+    integer, intent(inout) :: rank         !< the rank of the loop; on entry the largest possible one
     real(wp), parameter :: amounts(4) = [0.3_wp, 0.1_wp, 0.5_wp, 0.03_wp]
     type(state_type) :: state
     type(block_work_type) :: work
@@ -67,7 +66,7 @@ contains
         if (loop%steps(k)%is_screw) state%q(k) = guess(k) + amounts(trial)*loop%unit_of(k)*random%symmetric()
       end do
       call assemble_block(loop, loop%blocks(1), state, work, trial == 1, outcome, err)
-      ! a user pair without a pose here: the other trials may do
+      ! a user's pair may have no pose here; the other trials may succeed
       if (allocated(err)) cycle
       if (.not. outcome%closed) cycle
       call factorize_block(loop, loop%blocks(1), state, work)
@@ -79,7 +78,7 @@ contains
     if (closed > 0) rank = best
   end subroutine find_rank_alone
 
-  !> A plan of one loop alone: its base frame is frame 0 and all its coordinates are unknown.
+  !> The plan of one loop alone: its base frame is frame 0, and all its coordinates are unknown.
   function loop_alone(plan, closure) result(loop)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(closure_type), intent(in) :: closure   !< the closure of the loop, with its whole loop

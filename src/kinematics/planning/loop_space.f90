@@ -1,4 +1,7 @@
-!> The space of motions of each loop: planar, spherical, translations, ... or all six dimensions.
+!> The space of motions of each loop: planar, spherical, translational, another subalgebra, or all six dimensions.
+!>
+!> It is the smallest Lie algebra that contains the screws of the loop's pairs, and its dimension is the number of equations
+!> of the closure.
 module mech9_loop_space
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -12,16 +15,16 @@ module mech9_loop_space
   private
   public :: find_loop_spaces
 
-  !> Screws count as lying in a smaller space within this: well above the round-off of directions given
+  !> Screws whose components outside a smaller space are below this lie in it: well above the round-off of directions given
   !> with 16 digits, well below any deliberate deviation.
   real(wp), parameter :: tolerance = 1.0e-11_wp
-  !> Screws of inexact dimensions are so many times less exact: products of several of them count.
+  !> Factor from the error of inexact dimensions to that of their screws, which are products of several of them.
   real(wp), parameter :: inexact = 10.0_wp
 
 contains
 
-  !> Rank and rows of all closures. The screws are taken at random coordinates near the guesses: the
-  !> space they generate does not depend on the position, whether the loops are closed or not.
+  !> Find rank and rows of all closures. The screws are taken at random coordinates near the guesses: the space that they
+  !> generate does not depend on the position, and the loops need not be closed.
   subroutine find_loop_spaces(plan, guess, err)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: guess(:)   !< (M) guesses of the coordinates [rad, m]
@@ -33,7 +36,7 @@ contains
     state = new_state(plan)
     do k = 1, plan%n_coordinates
       state%q(k) = guess(k)
-      ! a user pair may not have a pose just anywhere
+      ! a user's pair may have no pose at other coordinates
       if (plan%steps(plan%step_of(k))%is_screw) state%q(k) = guess(k) + plan%unit_of(k)*random%symmetric()
     end do
     call plan%arithmetics(1)%kind%place(plan, 1, plan%n_coordinates, state, err)
@@ -44,6 +47,7 @@ contains
     end do
   end subroutine find_loop_spaces
 
+  !> Find rank and rows of one closure from the screws of its loop.
   subroutine find_space(plan, state, closure)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
@@ -60,7 +64,7 @@ contains
       screws(:, n) = loop_screw(plan, closure, state, state%axis_w(:, s), state%axis_v(:, s), state%p(:, s))
       screws(:, n) = screws(:, n)/norm2(screws(:, n))
       if (plan%steps(s)%is_screw) cycle
-      ! the axis of a user pair moves: where it goes next counts too
+      ! the axis of a user's pair moves: the derivative of its screw belongs to the space too
       n = n + 1
       screws(:, n) = loop_screw(plan, closure, state, state%axis_w_rate(:, s), &
                                 state%axis_v_rate(:, s) - cross(state%axis_w(:, s), state%axis_v(:, s)), &

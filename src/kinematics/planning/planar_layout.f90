@@ -1,4 +1,4 @@
-!> Second part of the plan: is the mechanism planar, and its plan in the plane.
+!> Second part of the plan: a test whether the mechanism is planar, and its plan in the plane.
 module mech9_planar_layout
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -10,15 +10,14 @@ module mech9_planar_layout
   private
   public :: lay_out_in_plane
 
-  !> Directions and heights may differ from the plane's by this much: round-off of data with 16 digits.
-  !> Lengths count in lengths of the mechanism.
+  !> Directions, and heights in lengths of the mechanism, may differ from the plane's by this: round-off of data with 16 digits.
   real(wp), parameter :: round_off = 64.0_wp*epsilon(1.0_wp)
 
 contains
 
-  !> Lay out the plan in its plane, if it has one: all axes of revolute pairs along one normal, all of
-  !> prismatic pairs across it, and every closed chain bound in all three dimensions of the plane. The ranks
-  !> of the closures must be known. `planar%used` and `planar%why_not` tell.
+  !> Lay out the plan in its plane, if it has one: the axes of all revolute pairs are parallel to one normal, those of all
+  !> prismatic pairs are perpendicular to it, and the space of motions of every closed chain has three dimensions. The ranks
+  !> of the closures must be known. `planar%used` tells the result, and `planar%why_not` the reason if it is false.
   pure subroutine lay_out_in_plane(plan)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(planar_plan_type) :: planar
@@ -75,7 +74,7 @@ contains
       if (abs(plan%steps(s)%turn) > 0.0_wp) exit
     end do
     if (s > plan%n_coordinates) return
-    ! out to link 1, over pairs that have no rotation
+    ! from the pair back to link 1, over pairs that do not turn
     normal = plan%steps(s)%before%r(:, 3)
     f = plan%steps(s)%parent
     do while (f > 0)
@@ -90,7 +89,7 @@ contains
     planar%axes = frame%r
   end subroutine find_axes
 
-  !> One step. `to_frame` turns components in a frame of the plan into those of the same frame in the plane.
+  !> Lay out one step.
   pure subroutine lay_out_step(plan, s, planar, to_frame, fits)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: s   !< number of the step
@@ -108,7 +107,7 @@ contains
       planar%height(s) = planar%height(step%parent) + p(3)
       flat%turns = abs(step%turn) > 0.0_wp
       if (flat%turns) then
-        ! its axis may point either way along the normal
+        ! the axis may point in either direction along the normal
         side = sign(1.0_wp, r(3, 3))
         fits = norm2(r(1:2, 3)) <= round_off .and. .not. abs(step%slide) > 0.0_wp
         flat%turn = side*step%turn
@@ -125,7 +124,7 @@ contains
     end associate
   end subroutine lay_out_step
 
-  !> Where a closing frame must be, if that is in the plane.
+  !> Lay out one closure: the pose of the closing frame in the target frame, if it lies in the plane.
   pure subroutine lay_out_closure(plan, c, to_frame, planar, fits)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: c   !< number of the closure
@@ -149,7 +148,7 @@ contains
     end associate
   end subroutine lay_out_closure
 
-  !> A pose in a frame of the plan, in the same frame in the plane and at the height of frame 0.
+  !> A pose that is given in a frame of the plan, in the same frame of the plane and at the height of frame 0.
   pure function seen_from_plane(planar, to_frame, frame, pose) result(seen)
     type(planar_plan_type), intent(in) :: planar   !< the planar part of the plan
     real(wp), intent(in) :: to_frame(:, :, 0:)   !< (3,3,0:M) turns components from a frame of the plan to that of the plane

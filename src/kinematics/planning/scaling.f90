@@ -1,4 +1,4 @@
-!> What counts as one: the size of a mechanism, its origin, and the units of its coordinates.
+!> Scaling: the size of a mechanism, which is its unit of length, its origin, and the units of its coordinates.
 module mech9_scaling
   use mech9_kinds, only: wp
   use mech9_pose, only: pose_type, inverse
@@ -9,16 +9,16 @@ module mech9_scaling
   private
   public :: find_size, find_units
 
-  !> Distances below this part of the distance from the links' origins are no size: round-off of the places would be more than
-  !> 1e-12 of them. Errors of a spherical mechanism's centre are such distances.
+  !> Distances between pairs below this part of their distances from the links' origins are not taken as the size: round-off
+  !> of the positions would exceed 1e-12 of them. Errors of a spherical mechanism's centre make such distances.
   real(wp), parameter :: no_size = 1.0e-4_wp
 
 contains
 
-  !> Size of the mechanism and a good origin: the middle of link 1's pairs.
-  !> The size is the largest distance between two pairs of one link. Where all links have their pairs
-  !> in one point, as in spherical mechanisms, it is the largest distance of a point or pair from the
-  !> origin of its link, or 1 if that is nothing.
+  !> Size of the mechanism, and its origin, which is the centre of link 1's pairs.
+  !> The size is the largest distance between two pairs of one link, or the largest initial slide. Where all links have their
+  !> pairs in one point, as in spherical mechanisms, it is the largest distance of a point or pair from the origin of its
+  !> link, or 1 m if that is zero.
   subroutine find_size(mechanism, plan)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
@@ -62,7 +62,7 @@ contains
     if (plan%length <= 1.0e-14_wp) plan%length = 1.0_wp
   end subroutine find_size
 
-  !> What counts as one in each coordinate.
+  !> The unit of each coordinate: the size of the mechanism for slides, 1 for all others.
   subroutine find_units(mechanism, plan)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism

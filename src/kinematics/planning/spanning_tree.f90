@@ -1,9 +1,8 @@
-!> First part of the plan: steps and frames from the structural vectors, with constant poses folded.
+!> First part of the plan: the spanning tree of steps and frames, from the structural vectors. Constant poses are combined.
 !>
-!> A closed chain joins two known links by links that are new. These are reached from both ends, so
-!> that no frame is farther from the frame of link 1 than need be; the last step meets a link that
-!> is reached already and makes its second frame. Either frame of a link may be gone on from: the
-!> one is taken that makes the loop short.
+!> A closed chain joins two known links by links that are new. These are reached from both ends, so that every frame is as few
+!> steps as possible from the frame of link 1; the last step reaches a link that is known already and makes a second frame of
+!> it. A later chain may start from either frame of a link: the one is taken that makes the loop short.
 module mech9_spanning_tree
   use mech9_kinds, only: wp
   use mech9_pose, only: pose_type, compose, inverse, identity_pose
@@ -17,21 +16,21 @@ module mech9_spanning_tree
   private
   public :: lay_out_frames
 
-  !> As many further frames of a link are remembered: the latest.
+  !> Number of second frames of a link that are kept, the latest ones.
   integer, parameter :: most_remembered = 3
 
   !> What is known of frames while they are laid out.
   type :: layout_type
-    integer :: steps = 0                               !< made so far
-    integer :: closures = 0
-    integer, allocatable :: depth(:)                   !< (0:M) steps from frame 0
+    integer :: steps = 0                               !< number of steps made so far
+    integer :: closures = 0                            !< number of closures made so far
+    integer, allocatable :: depth(:)                   !< (0:M) number of steps from frame 0
     type(pose_type), allocatable :: link_in(:)         !< (0:M) the link's own system in the frame
-    integer, allocatable :: further(:, :)              !< (most_remembered,N) further frames of each link, 0: none
+    integer, allocatable :: further(:, :)              !< (most_remembered,N) numbers of second frames of each link, 0 if none
   end type layout_type
 
 contains
 
-  !> Steps, frames and closures (their ranks and rows are found later) chain by chain; no blocks yet.
+  !> Lay out steps, frames and closures chain by chain. Ranks and rows of the closures, and the blocks, are found later.
   subroutine lay_out_frames(mechanism, plan)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(out) :: plan   !< the plan of the mechanism
@@ -65,7 +64,7 @@ contains
     end do
   end subroutine lay_out_frames
 
-  !> One chain: an open one, and the stem of one that closes on itself, from its known end outwards.
+  !> Lay out one chain. Open chains, and the stem of a chain that closes on itself, start at their known end.
   subroutine lay_out_chain(mechanism, chain, links, coordinates, closed, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: chain   !< number of the chain
@@ -92,7 +91,7 @@ contains
     if (closed) call lay_out_loop(mechanism, chain, links(stem:), coordinates(stem + 1:), plan, layout)
   end subroutine lay_out_chain
 
-  !> New links between two known ones, reached from both ends, and the closure where they meet.
+  !> Lay out new links between two known ones from both ends, and the closure where they meet.
   subroutine lay_out_loop(mechanism, chain, links, coordinates, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: chain   !< number of the chain
@@ -123,7 +122,7 @@ contains
     layout%further(:, links(from_here + 1)) = [reached, layout%further(:most_remembered - 1, links(from_here + 1))]
   end subroutine lay_out_loop
 
-  !> A frame of each of two links, so that there are few steps from one to the other.
+  !> A frame of each of two links, chosen so that there are few steps from one to the other.
   pure subroutine nearest_frames(plan, layout, a, b, frame_a, frame_b)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(layout_type), intent(in) :: layout   !< what is known of the frames made so far
@@ -135,7 +134,7 @@ contains
 
     frames_a = [plan%frame_of(a), layout%further(:, a)]
     frames_b = [plan%frame_of(b), layout%further(:, b)]
-    ! look near first: a long way between two frames would take as long to walk
+    ! short distances are tried first, because the search takes as many steps as the distance that it may find
     most = 8
     do
       least = most + 1
@@ -155,7 +154,7 @@ contains
     end do
   end subroutine nearest_frames
 
-  !> The frame by which a link is known.
+  !> Make a frame the first one of a link, which gives the link's position.
   pure subroutine make_first(link, frame, plan, layout)
     integer, intent(in) :: link   !< number of the link
     integer, intent(in) :: frame   !< its frame, made last
@@ -166,7 +165,7 @@ contains
     plan%link_in_frame(link) = layout%link_in(frame)
   end subroutine make_first
 
-  !> One more step, from a frame of one link through a pair to a new frame of another.
+  !> Add a step from a frame of one link through a pair to a new frame of another.
   subroutine add_step(mechanism, chain, from, to, coordinate, parent, plan, layout, reached)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: chain   !< number of the chain
@@ -188,8 +187,7 @@ contains
     plan%steps(reached)%chain = chain
   end subroutine add_step
 
-  !> The step from link `from` to link `to` through the pair of a coordinate; `after` is the arriving
-  !> link's system in the new frame.
+  !> The step from link `from` to link `to` through the pair of a coordinate.
   subroutine make_step(mechanism, from, to, coordinate, link_in_frame, plan, step, after)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: from   !< number of the link where the step starts

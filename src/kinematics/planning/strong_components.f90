@@ -1,5 +1,5 @@
-!> Strongly connected components of a directed graph, in an order in which each comes after those that it leads to (Tarjan).
-!> Pure integers; time and memory linear, no recursion.
+!> Strongly connected components of a directed graph, each after those to which it leads (Tarjan's algorithm without
+!> recursion, in linear time and memory).
 module mech9_strong_components
   implicit none
   private
@@ -7,9 +7,9 @@ module mech9_strong_components
 
   !> A directed graph by lists: node i leads to heads(first(i):first(i+1)-1).
   type :: graph_type
-    integer :: n = 0
-    integer, allocatable :: first(:)      !< (n+1)
-    integer, allocatable :: heads(:)
+    integer :: n = 0                      !< number of nodes
+    integer, allocatable :: first(:)      !< (n+1) first edge of each node
+    integer, allocatable :: heads(:)      !< node to which each edge leads
   end type graph_type
 
 contains
@@ -57,6 +57,7 @@ contains
 
   contains
 
+    !> Begin with a node that was not found before.
     subroutine enter(new)
       integer, intent(in) :: new   !< node that the search reaches for the first time
 

@@ -1,9 +1,9 @@
-!> Passing a special position where branches cross, on the branch whose velocities are continuous.
+!> Motion through a position where branches cross, on the branch whose velocities are continuous.
 !>
-!> There the equations of the block do not tell one branch from the other, but each branch is smooth:
-!> the polynomial through regular positions before it leads to regular positions after it, where
-!> Newton's method has only one solution near by. What lies between is the polynomial through all of
-!> them, with its positions closed in the directions that the equations do determine.
+!> At the crossing the equations of the block do not tell one branch from the other, but each branch is smooth: the
+!> polynomial through regular positions before it leads to regular positions after it, where Newton's method has only one
+!> solution near by. Positions between are those of the polynomial through all of them, closed in the directions that the
+!> equations determine.
 module mech9_branch_crossing
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -20,29 +20,31 @@ module mech9_branch_crossing
   private
   public :: branch_crossing_type, build_crossing, position_within, close_from_rates, step_until
 
-  !> The way through, from one regular position to another.
+  !> The motion through a crossing, from one regular position to another.
   type :: branch_crossing_type
-    logical :: exists = .false.
-    real(wp) :: from = 0.0_wp, to = 0.0_wp       !< [s]
-    type(hermite_type) :: polynomial                    !< all coordinates over time
-    type(branch_stepper_type) :: stepper_beyond                !< at its end
-    logical :: ends = .false.                    !< at the special position: the drives have no value beyond
+    logical :: exists = .false.                  !< the motion through the crossing was found
+    real(wp) :: from = 0.0_wp                    !< time of the first position of the polynomial [s]
+    real(wp) :: to = 0.0_wp                      !< time of its last position [s]
+    type(hermite_type) :: polynomial             !< all coordinates over time
+    type(branch_stepper_type) :: stepper_beyond  !< branch stepper at the last position
+    logical :: ends = .false.                    !< the motion ends at the crossing: the drives have no value beyond it
   end type branch_crossing_type
 
-  !> Halves of the passage that are tried, against the distance at which the position was found near.
+  !> Number of distances from the crossing that are tried.
   integer, parameter :: most_trials = 4
+  !> Each distance over the one tried before.
   real(wp), parameter :: shorter = 1.0_wp/3.0_wp
-  !> A landing must be that close to its prediction: against the least pivot, ...
+  !> Largest correction of a position beyond the crossing, over the least pivot there.
   real(wp), parameter :: trusted_correction = 0.02_wp
-  !> ... and rates against the largest one.
+  !> Largest difference between its rates and those of the polynomial, over the largest rate.
   real(wp), parameter :: trusted_rates = 0.02_wp
-  !> A block is interpolated where its least pivot is below this part of the largest it was.
+  !> A block takes its motion from the polynomial where its least pivot is below this part of the largest least pivot so far.
   real(wp), parameter :: near = 0.03_wp
 
 contains
 
-  !> The way through the crossing at time t of the branch on which `stepper` departs, which must be near but
-  !> regular. It does not exist where no smooth motion goes on. Fails where a pair has no pose.
+  !> Find the motion through the crossing at time t, on the branch of `stepper`, whose position must be near but regular.
+  !> It does not exist where no smooth motion goes on. Fails where a pair has no pose.
   subroutine build_crossing(mechanism, plan, stepper, t, crossing, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -67,7 +69,7 @@ contains
     end do
   end subroutine build_crossing
 
-  !> Two positions before, two after.
+  !> Try to find the motion through the crossing by two positions before it and two after it.
   subroutine try_crossing(mechanism, plan, probe, t, half, crossing, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -108,6 +110,7 @@ contains
 
   contains
 
+    !> Keep the position of `probe`.
     subroutine take(i)
       integer, intent(in) :: i   !< column of the position in q, dq and ddq
 
@@ -116,7 +119,7 @@ contains
       ddq(:, i) = probe%predictor%ddq
     end subroutine take
 
-    !> The last result may lie just there: one more position before it.
+    !> Where the drives have no value beyond the crossing, the last output may lie at it: one more position before it.
     subroutine end_at_crossing()
       times(3) = t - 0.25_wp*half
       call step_until(mechanism, plan, probe, times(3), crossing%exists, err)
@@ -127,7 +130,7 @@ contains
     end subroutine end_at_crossing
   end subroutine try_crossing
 
-  !> Regular steps to a time.
+  !> Take regular steps until a time is reached.
   subroutine step_until(mechanism, plan, stepper, t, arrived, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -146,7 +149,7 @@ contains
     arrived = .not. (stuck .or. allocated(err))
   end subroutine step_until
 
-  !> Land at time t straight on from a start where nothing but positions and rates is known.
+  !> Close all blocks at time t, predicted in a straight line from a start where only positions and rates are known.
   subroutine close_from_rates(mechanism, plan, t, stepper, ok, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -166,7 +169,8 @@ contains
     if (allocated(no_drive)) call move_alloc(no_drive, err)
   end subroutine close_from_rates
 
-  !> Close all blocks at time t from their prediction; `ok` if each is as good as met, and so are the rates.
+  !> Close all blocks at time t, predicted by a polynomial. The result is certain (`ok`) if its corrections and the differences
+  !> of its rates from those of the polynomial are small.
   subroutine close_all_blocks(mechanism, plan, polynomial, t, slack, stepper, ok, err, no_drive)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -207,7 +211,7 @@ contains
     call accept_start(stepper)
   end subroutine close_all_blocks
 
-  !> Position, rates and accelerations at a time within a passage.
+  !> Position, rates and accelerations at a time within the crossing.
   subroutine position_within(mechanism, plan, crossing, t, state, work, monitors, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -250,7 +254,7 @@ contains
     state%known = acceleration_known
   end subroutine position_within
 
-  !> Close a block as far as its equations determine it: what the least pivots belong to is left as predicted.
+  !> Close a block as far as its equations determine it: the directions of the least pivots are left as predicted.
   subroutine close_where_determined(plan, block, state, work, monitor, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -269,7 +273,7 @@ contains
     end do
   end subroutine close_where_determined
 
-  !> Rates and accelerations of a block, likewise.
+  !> Correct rates and accelerations of a block as far as its equations determine them.
   subroutine move_where_determined(plan, block, state, work, monitor)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -291,7 +295,7 @@ contains
     end associate
   end subroutine move_where_determined
 
-  !> The least change that makes up for what stands on the right, the directions of the least pivots left out.
+  !> The least change that cancels the right-hand side in `work`, without the directions of the least pivots.
   subroutine solve_where_determined(work, monitor)
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
     type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian

@@ -1,10 +1,9 @@
-!> Following a driven motion through regular positions, step by step, on one branch.
+!> Steps of a driven motion through regular positions, on one branch.
 !>
-!> Each block is predicted by the polynomial through the last two positions with their rates and
-!> accelerations, corrected by Newton's method, and judged. A step is accepted if the block's Jacobian
-!> at its end cannot have passed a singular matrix on the way: then the closed position near the
-!> prediction is the only one there, and it belongs to the branch. What is judged is in units of
-!> the least pivot, which measures how far away other branches are.
+!> Each block is predicted (mech9_predictor), corrected by Newton's method, and judged. A step is accepted if the block's
+!> Jacobian cannot have been singular within it (mech9_singularity_monitor) and the correction is small: then the closed
+!> position near the prediction is the only one there, and it belongs to the branch (Kantorovich's theorem). The correction
+!> is measured by the least pivot, which tells how far away other branches are.
 module mech9_branch_stepping
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
@@ -23,45 +22,45 @@ module mech9_branch_stepping
   public :: branch_stepper_type, new_branch_stepper, accept_start, step_towards, set_inputs, restore_last_position, &
     add_accelerations
 
-  !> A driven coordinate moves no farther in a step than this [rad, lengths of the mechanism], ...
+  !> Largest movement of a driven coordinate in a step [rad, lengths of the mechanism].
   real(wp), parameter :: longest_drive = 0.25_wp
-  !> ... and a dependent one than this.
+  !> Largest movement of a dependent coordinate in a step [rad, lengths of the mechanism].
   real(wp), parameter :: longest_move = 0.5_wp
-  !> Correction of the prediction against the least pivot. By Kantorovich's theorem Newton's method
-  !> stays with the only solution near by while this is below about 1/2 over the curvature.
+  !> Largest correction of the prediction over the least pivot. By Kantorovich's theorem Newton's method converges to the only
+  !> solution near by while this is below about 1/2 over the curvature.
   real(wp), parameter :: trusted_correction = 0.05_wp
-  !> Change of the rates in a step times its length, against the movement: beyond it the movement turned back.
+  !> Largest change of the rates in a step, times its length, over the movement: beyond it the movement turned back.
   real(wp), parameter :: trusted_rate_change = 1.0_wp
-  !> Newton must at least quarter its correction from the first to the second iteration, ...
+  !> Newton's method must reduce its correction to this part from the first to the second iteration, ...
   real(wp), parameter :: trusted_contraction = 0.25_wp
-  !> ... unless that is small anyway, against the least pivot.
+  !> ... unless the correction is below this part of the least pivot.
   real(wp), parameter :: small_correction = 1.0e-4_wp
-  !> Steps below this part of the time are given up.
+  !> A step shorter than this part of the time is not tried.
   real(wp), parameter :: least_step = 1.0e-14_wp
-  !> A step creeps that goes less than this part of what remains, and moves nothing farther than ...
+  !> A step creeps if it goes less than this part of the remaining time and moves no coordinate farther than creeping_move.
   real(wp), parameter :: creeping_step = 1.0e-5_wp
-  !> ... this [rad, lengths of the mechanism].
+  !> Largest movement of a creeping step [rad, lengths of the mechanism].
   real(wp), parameter :: creeping_move = 1.0e-3_wp
-  !> So many creeping steps towards one time are given up.
+  !> After this many creeping steps towards one time the branch stepper gives up.
   integer, parameter :: most_creeping = 10000
 
-  !> What follows the branch: state, departure and scratch, and counts for the report.
+  !> The branch stepper: state, last accepted position, scratch, and counts for the report.
   type :: branch_stepper_type
-    type(state_type) :: state                     !< during a step the trial, then the accepted position
+    type(state_type) :: state                     !< during a step the trial position, then the accepted one
     type(predictor_type) :: predictor             !< the position accepted last
-    type(block_work_type), allocatable :: work(:)
-    type(singularity_monitor_type), allocatable :: monitors(:)
+    type(block_work_type), allocatable :: work(:) !< scratch of each block
+    type(singularity_monitor_type), allocatable :: monitors(:)   !< singularity monitor of each block
     real(wp), allocatable :: per_unit(:)          !< (M) reciprocals of the coordinates' units
-    integer, allocatable :: drives(:)             !< those that move closed chains
+    integer, allocatable :: drives(:)             !< numbers of the drives that move closed chains
     integer :: last_block = huge(1)               !< the blocks after this one are left as they are
-    logical :: with_accelerations = .true.        !< at every position, not only near singular ones
-    real(wp) :: reach = huge(1.0_wp)              !< a step that will probably be accepted [s]
-    real(wp) :: goal = 0.0_wp                     !< time towards which it went last [s]
-    real(wp) :: correction = 0.0_wp               !< of the last trial's prediction, in units of the coordinates
-    integer :: creeping = 0                       !< steps towards it that went nearly nowhere
-    integer(long) :: steps = 0                    !< taken
-    integer(long) :: halvings = 0                 !< steps refused
-    integer(long) :: iterations = 0               !< of Newton's method, all blocks
+    logical :: with_accelerations = .true.        !< find accelerations at every position, not only near singular ones
+    real(wp) :: reach = huge(1.0_wp)              !< length of a step that will probably be accepted [s]
+    real(wp) :: goal = 0.0_wp                     !< time towards which the last step went [s]
+    real(wp) :: correction = 0.0_wp               !< largest correction in the last trial step, in units of the coordinates
+    integer :: creeping = 0                       !< number of creeping steps towards the goal
+    integer(long) :: steps = 0                    !< number of accepted steps
+    integer(long) :: halvings = 0                 !< number of refused steps
+    integer(long) :: iterations = 0               !< number of iterations of Newton's method in all blocks
   end type branch_stepper_type
 
 contains
@@ -83,7 +82,7 @@ contains
     end do
   end subroutine set_inputs
 
-  !> A follower at an assembled position; nothing but the position is known yet.
+  !> A branch stepper at an assembled position, whose rates and accelerations are not known yet.
   pure function new_branch_stepper(mechanism, plan, assembled) result(stepper)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -104,8 +103,7 @@ contains
     stepper%drives = drives_of_chains(mechanism, plan)
   end function new_branch_stepper
 
-  !> Numbers of the drives whose coordinates belong to closed chains. Those of open chains may move as far
-  !> as they like in a step.
+  !> Numbers of the drives whose coordinates belong to closed chains. Those of open chains may move any distance in a step.
   pure function drives_of_chains(mechanism, plan) result(drives)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -126,8 +124,8 @@ contains
     drives = pack([(i, i=1, size(mechanism%drives))], drives_chain)
   end function drives_of_chains
 
-  !> Take the state, complete with its accelerations, as the place of departure with nothing known before it.
-  !> The Jacobians of all blocks must be on trial (see mech9_watch) or unchanged.
+  !> Take the state, complete with its accelerations, as the accepted position; nothing is known of the motion before it.
+  !> The monitors must hold the Jacobians of all blocks there (see factorize_trial).
   pure subroutine accept_start(stepper)
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
 
@@ -136,9 +134,9 @@ contains
     call accept_jacobians(stepper%work, stepper%monitors)
   end subroutine accept_start
 
-  !> One accepted step towards time t, as far as it can be trusted. `stuck` tells that even the shortest one
-  !> cannot, or that too many have led nearly nowhere, and `refused_by` because of which block. Fails where a
-  !> drive or a pair has no value.
+  !> Take one accepted step towards time t, as long as can be trusted. `stuck` tells that even the shortest step is
+  !> refused, or that too many steps led nearly nowhere; `refused_by` then names the block. Fails where a drive or a pair has
+  !> no value.
   subroutine step_towards(mechanism, plan, stepper, t, stuck, refused_by, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -158,7 +156,7 @@ contains
       h = min(abs(remaining), stepper%reach)
       call limit_by_drives(mechanism, plan, stepper, sign(1.0_wp, remaining), h, driven)
       stepper%state%t = stepper%predictor%t + sign(h, remaining)
-      ! two like steps rather than a long one and a rest
+      ! two equal steps rather than a long one and a short remainder
       if (h < abs(remaining) .and. 2.0_wp*h > abs(remaining)) &
         stepper%state%t = stepper%predictor%t + 0.5_wp*remaining
       if (h >= abs(remaining)) stepper%state%t = t
@@ -180,13 +178,13 @@ contains
     end do
   end subroutine step_towards
 
-  !> Count a short step that is about to be accepted, if it moves nothing far. Were there no end to them, the
-  !> search would be as good as endless.
+  !> Count a short step that is about to be accepted, if it moves no coordinate far. Without a limit to such steps the
+  !> motion might never reach its goal.
   pure subroutine count_creeping(plan, stepper, too_many, slowest)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     logical, intent(out) :: too_many   !< more steps led nearly nowhere than are allowed
-    integer, intent(inout) :: slowest         !< too many: the block that is nearest to a singular position
+    integer, intent(inout) :: slowest         !< changed if too many: number of the block nearest to a singular position
     integer :: b
 
     if (any(abs(stepper%state%q - stepper%predictor%q) > creeping_move*plan%unit_of)) then
@@ -207,15 +205,15 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     real(wp), intent(in) :: direction         !< +1, or -1 backwards in time
-    real(wp), intent(inout) :: h              !< > 0
-    logical, intent(out) :: driven            !< it was shortened
+    real(wp), intent(inout) :: h              !< length of the step, > 0 [s]
+    logical, intent(out) :: driven            !< the step was shortened
     real(wp) :: part
     integer :: i, trial
 
     driven = .false.
     do i = 1, size(stepper%drives)
       associate (drive => mechanism%drives(stepper%drives(i))%drive)
-        ! the bound of the rate itself gets smaller with the step
+        ! the bound of the rate depends on the step, so that the length is found by iteration
         do trial = 1, 100
           part = h*drive%greatest_rate(stepper%predictor%t, direction*h)/(longest_drive*plan%unit_of(drive%coordinate))
           if (.not. part > 1.0_wp) exit
@@ -227,15 +225,15 @@ contains
     end do
   end subroutine limit_by_drives
 
-  !> Predict, correct and judge one step of all blocks, from the departure to the time in the state.
+  !> Predict, correct and judge one step of all blocks, from the last accepted position to the time in the state.
   subroutine try_step(mechanism, plan, stepper, complete, worst, refused_by, no_drive, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
-    logical, intent(in) :: complete             !< with accelerations
-    real(wp), intent(out) :: worst              !< at most 1: accepted; else about how much too long it was
-    integer, intent(out) :: refused_by          !< number of the block
-    logical, intent(out) :: no_drive            !< failed because a drive has no value
+    logical, intent(in) :: complete             !< find accelerations too
+    real(wp), intent(out) :: worst              !< measure of the step: accepted up to 1, else about the factor it is too long
+    integer, intent(out) :: refused_by          !< number of the block judged last, which refused the step if worst > 1
+    logical, intent(out) :: no_drive            !< the step failed because a drive has no value
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
     integer :: b
@@ -251,11 +249,11 @@ contains
       refused_by = b
       associate (block => plan%blocks(b), work => stepper%work(b))
         call predict(block, stepper%predictor, stepper%state)
-        ! to the last digit: what chains that are closed enough leave open is large beside a singular position
+        ! Newton's method goes on to round-off, because beside a singular position a small residual means a large error
         call close_block(plan, block, stepper%state, work, newton, err, 1)
         stepper%iterations = stepper%iterations + newton%iterations
         stepper%correction = max(stepper%correction, newton%correction)
-        ! a pair may have no pose where a step that is too long leads
+        ! a pair may have no pose at the end of a step that is too long
         if (allocated(err) .or. .not. newton%converged) worst = 4.0_wp
         if (worst > 1.0_wp) return
         if (size(block%unknowns) > 0) &
@@ -273,7 +271,7 @@ contains
     end do
   end subroutine try_step
 
-  !> Judge a block's prediction against its correction, and its movement against its rates.
+  !> Judge a block's step by the correction of its prediction, by its movement, and by the change of its rates.
   pure subroutine judge_step(block, per_unit, predictor, state, newton, pivot, worst)
     type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in), contiguous :: per_unit(:)   !< (M) reciprocals of the coordinates' units
@@ -293,7 +291,7 @@ contains
     worst = max(worst, move/longest_move, rate_change/(trusted_rate_change*max(move, trusted_correction*pivot)))
   end subroutine judge_step
 
-  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+  ! Arrays of explicit shape: the compiler keeps their addresses in registers.
 
   !> Largest difference of some coordinates, in their units.
   pure real(wp) function largest_change(n, coordinates, m, per_unit, now, before) result(largest)
@@ -312,11 +310,11 @@ contains
     end do
   end function largest_change
 
-  !> The trial becomes the place of departure.
+  !> The trial position becomes the accepted one.
   pure subroutine accept_step(plan, stepper, complete)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
-    logical, intent(in) :: complete             !< its accelerations are known
+    logical, intent(in) :: complete             !< the accelerations in the state are known
 
     stepper%steps = stepper%steps + 1
     stepper%state%known = merge(acceleration_known, velocity_known, complete)
@@ -324,7 +322,7 @@ contains
     call accept_jacobians(stepper%work, stepper%monitors)
   end subroutine accept_step
 
-  !> The accelerations at the place of departure, where the follower is, if it goes without them.
+  !> Find the accelerations at the accepted position, if they are not known.
   subroutine add_accelerations(plan, stepper)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
@@ -338,7 +336,7 @@ contains
     call set_accelerations(stepper%state%ddq, stepper%predictor)
   end subroutine add_accelerations
 
-  !> After a step that was given up: the coordinates of the last position again.
+  !> Restore the last accepted position after a step that failed.
   pure subroutine restore_last_position(stepper)
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
 

@@ -1,9 +1,9 @@
 !> Positions and rates at the last few times, and the prediction by the polynomial through them.
 !>
-!> Where accelerations are not asked for it is cheaper to predict from several times than to find them. A prediction is a sum
-!> of what was found there, with weights that depend on the times alone: steps of even length share them. The rates at five
-!> times bring no round-off into it, which is all there is to correct where steps are short. Where they are long, positions
-!> and rates at four times leave less to correct.
+!> Where no accelerations are recorded, a prediction from several times is cheaper than finding accelerations. It is a weighted
+!> sum of rates and positions, and the weights depend on the times alone: steps of equal length share them. Where steps are
+!> short, the rates at the last five times predict to round-off. Where steps are long, positions and rates at the last four
+!> times leave a smaller correction.
 module mech9_past_motion
   use mech9_kinds, only: wp
   implicit none
@@ -11,36 +11,37 @@ module mech9_past_motion
   public :: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, predict_from_past, &
     acceleration_from_past
 
-  !> Times before the latest one that are kept, and those of them whose positions are used.
+  !> Number of times before the latest one that are kept, and number of those whose positions are used.
   integer, parameter :: most = 4, most_with_positions = 3
-  !> Times are those for which the weights were found within this part of the step: the weights are then as good.
+  !> Weights serve again where all times agree within this part of the step with those for which they were found.
   real(wp), parameter :: same = 1.0e-9_wp
-  !> A prediction goes up to this many times the last step beyond the latest time, ...
+  !> A prediction goes at most this many times the last step beyond the latest time.
   real(wp), parameter :: longest_prediction = 3.0_wp
-  !> ... and uses times before while their distances are at least this part of the last step.
+  !> Earlier times are used as long as the distances between them are at least this part of the last step.
   real(wp), parameter :: least_distance = 0.2_wp
-  !> A correction by more than this, in units of the coordinates, of what rates predict is worth positions. Newton's method
-  !> takes a second iteration at 1e-9; round-off of positions makes some 1e-14.
+  !> Positions are used where the correction of a prediction from rates exceeds this, in units of the coordinates. Newton's
+  !> method takes a second iteration from 1e-9 on; round-off of the positions makes a correction of about 1e-14.
   real(wp), parameter :: worth_positions = 1.0e-10_wp
 
+  !> The motion at the last times, in a ring of slots, and the weights of a prediction.
   type :: past_motion_type
-    integer :: count = 0                      !< times that are kept
-    integer :: latest = 0                     !< slot of the latest; those before are in the slots before, in a ring
-    real(wp) :: t(0:most) = 0.0_wp            !< [s]
-    real(wp), allocatable :: q(:, :)          !< (M,0:most)
-    real(wp), allocatable :: dq(:, :)         !< (M,0:most)
+    integer :: count = 0                      !< number of times that are kept
+    integer :: latest = 0                     !< slot of the latest time; each earlier time is in the slot before
+    real(wp) :: t(0:most) = 0.0_wp            !< times [s]
+    real(wp), allocatable :: q(:, :)          !< (M,0:most) coordinates at these times [rad, m]
+    real(wp), allocatable :: dq(:, :)         !< (M,0:most) rates at these times
     logical :: with_positions = .false.       !< predictions use positions and rates, not rates alone
-    real(wp) :: long_step = 0.0_wp            !< since a step of this length [s]
-    logical :: weighed = .false.              !< there are weights, for ...
-    real(wp) :: h = 0.0_wp                    !< ... this step from the latest time [s], and ...
-    real(wp) :: nodes(most) = 0.0_wp          !< ... the times before, from the latest one, over the step
+    real(wp) :: long_step = 0.0_wp            !< length of the step that made predictions use positions [s]
+    logical :: weighed = .false.              !< the weights below are valid
+    real(wp) :: h = 0.0_wp                    !< step of the prediction from the latest time [s]
+    real(wp) :: nodes(most) = 0.0_wp          !< times of the weights, counted from the latest one in steps of the prediction
     real(wp) :: of_positions(most) = 0.0_wp   !< weights of differences to the latest position
     real(wp) :: of_rates(0:most) = 0.0_wp     !< weights of rates times h
   end type past_motion_type
 
 contains
 
-  !> Room for m coordinates.
+  !> Storage for the motion of m coordinates, with no time yet.
   pure function new_past_motion(m) result(past)
     integer, intent(in) :: m   !< number of coordinates
     type(past_motion_type) :: past
@@ -48,7 +49,7 @@ contains
     allocate (past%q(m, 0:most), past%dq(m, 0:most), source=0.0_wp)
   end function new_past_motion
 
-  !> The past is not what comes now.
+  !> Forget all times, because the motion to come does not continue them.
   pure subroutine clear_past(past)
     type(past_motion_type), intent(inout) :: past   !< positions and rates at the last times
 
@@ -60,8 +61,8 @@ contains
   !> Take positions and rates at the next time. Where the motion turns back, only the turning point is kept of what was before.
   pure subroutine add_to_past(past, t, q, dq)
     type(past_motion_type), intent(inout) :: past   !< positions and rates at the last times
-    real(wp), intent(in) :: t                 !< [s]
-    real(wp), intent(in) :: q(:)              !< (M) [rad, m]
+    real(wp), intent(in) :: t                 !< time [s]
+    real(wp), intent(in) :: q(:)              !< (M) coordinates [rad, m]
     real(wp), intent(in) :: dq(:)             !< (M) their rates
 
     if (past%count >= 2) then
@@ -74,7 +75,7 @@ contains
     call copy(size(q), q, dq, past%q(:, past%latest), past%dq(:, past%latest))
   end subroutine add_to_past
 
-  ! Of known shape: no strides.
+  !> Copy positions and rates; arrays of explicit shape need no strides.
   pure subroutine copy(m, q, dq, kept_q, kept_dq)
     integer, intent(in) :: m   !< number of coordinates
     real(wp), intent(in) :: q(m)   !< (M) coordinates [rad, m]
@@ -98,12 +99,12 @@ contains
     if (slot < 0) slot = slot + most + 1
   end function slot
 
-  !> Whether positions should be used from now on: from a step on whose prediction by rates was far off, until steps are
-  !> half as long.
+  !> Choose whether predictions use positions from now on: they do after a step whose prediction from rates needed a large
+  !> correction, until steps are half as long as that one.
   pure subroutine choose_formula(past, h, correction)
     type(past_motion_type), intent(inout) :: past   !< positions and rates at the last times
     real(wp), intent(in) :: h                 !< length of the step that was accepted [s]
-    real(wp), intent(in) :: correction        !< of its prediction, in units of the coordinates
+    real(wp), intent(in) :: correction        !< largest correction of its prediction, in units of the coordinates
 
     if (past%with_positions) then
       past%with_positions = 2.0_wp*h > past%long_step
@@ -116,10 +117,10 @@ contains
     past%weighed = .false.
   end subroutine choose_formula
 
-  !> Find the weights of a prediction, unless they are there.
+  !> Find the weights of a prediction, unless those of the last one serve again.
   pure subroutine find_weights(past, h)
     type(past_motion_type), intent(inout) :: past   !< positions and rates at the last times
-    real(wp), intent(in) :: h                 !< from the latest time [s], not 0
+    real(wp), intent(in) :: h                 !< step from the latest time [s], not 0
     real(wp) :: nodes(most), per_h
     integer :: i, n
 
@@ -129,7 +130,7 @@ contains
       nodes(i) = (past%t(slot(past, i)) - past%t(past%latest))*per_h
     end do
     past%h = h
-    ! outputs mostly come at even distances, but for round-off
+    ! outputs are mostly equidistant except for round-off
     if (past%weighed .and. all(abs(nodes - past%nodes) <= same)) return
     past%nodes = nodes
     past%weighed = past%count > most
@@ -146,11 +147,11 @@ contains
     end if
   end subroutine find_weights
 
-  !> How many times before the latest serve a prediction: far beyond two times that are close together their round-off
-  !> would be all there is.
+  !> The number of times before the latest that serve a prediction. Times that are close together do not serve one far beyond
+  !> them, where the result would be their round-off.
   pure integer function times_to_use(kept, nodes) result(n)
-    integer, intent(in) :: kept               !< times before the latest
-    real(wp), intent(in) :: nodes(most)       !< from the latest time, over the step
+    integer, intent(in) :: kept               !< number of times before the latest that are kept
+    real(wp), intent(in) :: nodes(most)       !< these times, counted from the latest one in steps of the prediction
     integer :: i
 
     n = 0
@@ -162,7 +163,7 @@ contains
     end do
   end function times_to_use
 
-  !> From the latest rates and their mean slope since the earliest that are kept.
+  !> Weights of a prediction from the latest rates and their mean slope since the earliest time that is kept.
   pure subroutine weigh_slope(kept, nodes, of_rates)
     integer, intent(in) :: kept   !< number of times before the latest that are kept
     real(wp), intent(in) :: nodes(most)   !< the times before, counted from the latest one in steps of the prediction; negative
@@ -174,7 +175,7 @@ contains
     of_rates(kept) = 0.5_wp/nodes(kept)
   end subroutine weigh_slope
 
-  !> Integral from 0 to 1 of the polynomial through the rates at the latest time, 0, and at n before it.
+  !> Weights of the integral from 0 to 1 of the polynomial through the rates at the latest time, 0, and at n times before it.
   pure subroutine weigh_rates(n, nodes, of_rates)
     integer, intent(in) :: n   !< number of times before the latest that are used
     real(wp), intent(in) :: nodes(most)   !< the times before, counted from the latest one in steps of the prediction; negative
@@ -203,7 +204,7 @@ contains
     end do
   end subroutine weigh_rates
 
-  !> Value at 1 of the polynomial through positions and rates at the latest time, 0, and at n before it (Hermite's).
+  !> Weights of the value at 1 of Hermite's polynomial, through positions and rates at the latest time, 0, and at n times before.
   pure subroutine weigh_positions(n, nodes, of_positions, of_rates)
     integer, intent(in) :: n   !< number of times before the latest that are used
     real(wp), intent(in) :: nodes(most)   !< the times before, counted from the latest one in steps of the prediction; negative
@@ -224,11 +225,11 @@ contains
       of_rates(i) = (1.0_wp - x(i))*lagrange**2
       all_positions(i) = (1.0_wp - 2.0_wp*slope*(1.0_wp - x(i)))*lagrange**2
     end do
-    ! all have the sum 1: that of the latest need not be known
+    ! the weights of all positions have the sum 1, so that of the latest is not stored
     of_positions(:n) = all_positions(1:n)
   end subroutine weigh_positions
 
-  !> Predict some coordinates, for the step whose weights were found.
+  !> Predict some coordinates for the step whose weights were found.
   pure subroutine predict_from_past(past, coordinates, q)
     type(past_motion_type), intent(in) :: past   !< positions and rates at the last times
     integer, intent(in), contiguous :: coordinates(:)   !< numbers of the coordinates to predict
@@ -246,9 +247,9 @@ contains
                          past%q(:, b), past%q(:, c), q)
   end subroutine predict_from_past
 
-  ! Written out, and over arrays of known shape: the compiler then keeps their addresses in registers.
+  ! The sums below are written out, over arrays of explicit shape, whose addresses the compiler keeps in registers.
 
-  !> The latest position and what the rates make of it.
+  !> The latest position and the contributions of the rates.
   pure subroutine add_rates(n, coordinates, m, h, w, latest, a, b, c, d, e, q)
     integer, intent(in) :: n   !< number of coordinates to predict
     integer, intent(in) :: coordinates(n)   !< their numbers
@@ -270,7 +271,7 @@ contains
     end do
   end subroutine add_rates
 
-  !> What the positions before the latest add.
+  !> Add the contributions of the positions before the latest.
   pure subroutine add_positions(n, coordinates, m, w, latest, a, b, c, q)
     integer, intent(in) :: n   !< number of coordinates to predict
     integer, intent(in) :: coordinates(n)   !< their numbers

@@ -1,5 +1,5 @@
-!> Where a step of following starts from, and the prediction from there: by the polynomial through the last two
-!> positions with their rates and accelerations, or, without accelerations, from the motion at the last few times.
+!> The predictor: the position accepted last and the prediction of the next one, by the polynomial through the last two
+!> positions with their rates and accelerations (Hermite's) or, without accelerations, from the motion at the last few times.
 module mech9_predictor
   use mech9_kinds, only: wp
   use mech9_plan, only: block_type
@@ -13,23 +13,25 @@ module mech9_predictor
 
   !> A prediction uses the polynomial through two positions up to this many times their distance.
   real(wp), parameter :: longest_prediction = 3.0_wp
-  !> The highest term of the polynomial is nothing but round-off below this.
+  !> The highest term of the polynomial is only round-off where it is below this part of the coordinate or of its unit.
   real(wp), parameter :: only_round_off = 64.0_wp*epsilon(1.0_wp)
 
+  !> The position accepted last, and all that a prediction needs.
   type :: predictor_type
-    real(wp) :: t = 0.0_wp                      !< [s]
-    real(wp), allocatable :: q(:), dq(:)        !< (M)
-    real(wp), allocatable :: ddq(:)             !< (M), where accelerations are known: see acceleration_of
-    logical :: complete = .true.                !< accelerations are known
-    logical :: uses_past = .false.              !< predictions are made from the past
-    real(wp) :: before = 0.0_wp                 !< distance of the position accepted before it [s]
-    real(wp), allocatable :: higher(:, :)       !< (M,3) factors of h^3, h^4, h^5 of the prediction
-    type(past_motion_type) :: past              !< of the steps without accelerations
+    real(wp) :: t = 0.0_wp                      !< time of the position accepted last [s]
+    real(wp), allocatable :: q(:)               !< (M) coordinates there [rad, m]
+    real(wp), allocatable :: dq(:)              !< (M) rates there
+    real(wp), allocatable :: ddq(:)             !< (M) accelerations there, valid where `complete`; see acceleration_of
+    logical :: complete = .true.                !< the accelerations are known
+    logical :: uses_past = .false.              !< predictions are made from the motion at the last few times
+    real(wp) :: before = 0.0_wp                 !< time between this position and the one accepted before it [s]
+    real(wp), allocatable :: higher(:, :)       !< (M,3) factors of h^3, h^4, h^5 of the polynomial
+    type(past_motion_type) :: past              !< motion at the last times, of steps without accelerations
   end type predictor_type
 
 contains
 
-  !> Room for m coordinates.
+  !> A predictor of m coordinates, with no position yet.
   pure function new_predictor(m) result(predictor)
     integer, intent(in) :: m   !< number of coordinates
     type(predictor_type) :: predictor
@@ -38,7 +40,7 @@ contains
     predictor%past = new_past_motion(m)
   end function new_predictor
 
-  !> A place with nothing known before it; its accelerations are.
+  !> Begin at a position with its rates and accelerations; nothing is known of the motion before it.
   pure subroutine begin_prediction(state, predictor)
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(predictor_type), intent(inout) :: predictor   !< the predictor
@@ -54,12 +56,12 @@ contains
     call clear_past(predictor%past)
   end subroutine begin_prediction
 
-  !> The next place, after a step from the last one.
+  !> Take the position at the end of an accepted step.
   pure subroutine add_position(state, unit_of, complete, correction, predictor)
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: unit_of(:)          !< (M)
     logical, intent(in) :: complete             !< its accelerations are known
-    real(wp), intent(in) :: correction          !< of the prediction, in units of the coordinates
+    real(wp), intent(in) :: correction          !< largest correction of the prediction, in units of the coordinates
     type(predictor_type), intent(inout) :: predictor   !< the predictor
     real(wp) :: h
     integer :: k
@@ -84,15 +86,15 @@ contains
     predictor%before = abs(h)
   end subroutine add_position
 
-  !> Prepare predictions for a time other than that of the departure.
+  !> Prepare predictions for a time other than that of the last position.
   pure subroutine prepare_prediction(t, predictor)
-    real(wp), intent(in) :: t                   !< [s]
+    real(wp), intent(in) :: t                   !< time to predict for [s]
     type(predictor_type), intent(inout) :: predictor   !< the predictor
 
     if (predictor%uses_past) call find_weights(predictor%past, t - predictor%t)
   end subroutine prepare_prediction
 
-  !> Polynomial prediction of a block's dependent coordinates, for the time that was aimed at.
+  !> Predict a block's dependent coordinates at the time in `state`, for which predictions were prepared.
   pure subroutine predict(block, predictor, state)
     type(block_type), intent(in) :: block   !< the block
     type(predictor_type), intent(in) :: predictor   !< the predictor
@@ -104,23 +106,23 @@ contains
       return
     end if
     h = state%t - predictor%t
-    ! far beyond two positions that are close together their round-off would be all there is
+    ! far beyond two positions that are close together the higher terms would be only the round-off of these positions
     near = 0.0_wp
     if (abs(h) <= longest_prediction*predictor%before) near = h
     call evaluate_polynomial(size(block%coordinates), block%coordinates, size(state%q), h, near, predictor%q, predictor%dq, &
                              predictor%ddq, predictor%higher, state%q)
   end subroutine predict
 
-  !> The accelerations at the place have been found.
+  !> Take the accelerations at the last position, which have been found after it was accepted.
   pure subroutine set_accelerations(ddq, predictor)
-    real(wp), intent(in) :: ddq(:)              !< (M)
+    real(wp), intent(in) :: ddq(:)              !< (M) accelerations [rad/s^2, m/s^2]
     type(predictor_type), intent(inout) :: predictor   !< the predictor
 
     predictor%ddq = ddq
     predictor%complete = .true.
   end subroutine set_accelerations
 
-  !> Acceleration of a coordinate at the place: as found, or else by the polynomial through the last rates.
+  !> Acceleration of a coordinate at the last position: exact where it is known, else from the polynomial through the last rates.
   pure real(wp) function acceleration_of(predictor, k) result(ddq)
     type(predictor_type), intent(in) :: predictor   !< the predictor
     integer, intent(in) :: k                    !< number of the coordinate
@@ -132,9 +134,9 @@ contains
     end if
   end function acceleration_of
 
-  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+  ! The procedures below work on arrays of explicit shape, whose addresses the compiler keeps in registers.
 
-  !> Positions and rates of the place.
+  !> Copy positions and rates.
   pure subroutine copy_motion(m, q, dq, place_q, place_dq)
     integer, intent(in) :: m   !< number of coordinates
     real(wp), intent(in) :: q(m)   !< (M) coordinates [rad, m]
@@ -149,7 +151,7 @@ contains
     end do
   end subroutine copy_motion
 
-  !> The polynomial of some coordinates at time h, its higher terms at time `near`.
+  !> The polynomial of some coordinates at time h, with its higher terms at time `near`.
   pure subroutine evaluate_polynomial(n, coordinates, m, h, near, q, dq, ddq, higher, q_then)
     integer, intent(in) :: n   !< number of coordinates to predict
     integer, intent(in) :: coordinates(n)   !< their numbers
@@ -170,7 +172,7 @@ contains
   end subroutine evaluate_polynomial
 
   !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
-  !> order. The later position takes the place of the earlier one.
+  !> order. The later position replaces the earlier one.
   pure subroutine fit_polynomial(m, h, unit_of, q, dq, ddq, last_q, last_dq, last_ddq, higher)
     integer, intent(in) :: m   !< number of coordinates
     real(wp), intent(in) :: h   !< time from the earlier position to the later one, negative backwards [s]
@@ -196,7 +198,7 @@ contains
       x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
       z = x + d1 + 4.0_wp*d0
       y = d0 + x + z
-      ! without the positions, where their round-off is all there is to the last term
+      ! where the last term is only round-off of the positions, the polynomial goes without them
       is_round_off = abs(z) <= only_round_off*max(unit_of(k), abs(q(k)))
       x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_round_off)
       y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_round_off)

@@ -1,4 +1,7 @@
-!> Watching the Jacobian of a block from step to step: can it have been singular on the way?
+!> The singularity monitor: it compares a block's Jacobian at both ends of a step, and finds whether a singular one may lie between.
+!>
+!> With the Jacobian J at the end of a step and its change D within the step, all matrices J - s D, 0 <= s <= 1, are regular
+!> while a norm of J^-1 D is below 1. The norm of D over the least pivot of J is a cheap estimate of it.
 module mech9_singularity_monitor
   use mech9_kinds, only: wp
   use mech9_balance, only: balance
@@ -9,29 +12,31 @@ module mech9_singularity_monitor
   private
   public :: singularity_monitor_type, new_singularity_monitor, factorize_trial, monitor_step, accept_jacobians, nearness, is_near
 
-  !> Change of the Jacobian against its least pivot, as a sum of squares, that needs no closer look.
+  !> A change of the Jacobian (root of the sum of squares) up to this part of the least pivot is accepted.
   real(wp), parameter :: harmless_change = 0.25_wp
-  !> Change of the Jacobian, divided by the Jacobian: below 1 no singular matrix lies between; the
-  !> rest is room for what lies beside the straight way.
+  !> Norm of J^-1 D that is accepted: below 1 no singular matrix lies on the straight line between the two Jacobians; the
+  !> margin is for the true path, which is not straight.
   real(wp), parameter :: trusted_change = 0.5_wp
-  !> A measure of steps that are too long without a measure.
+  !> Measure of a step whose excess of length has no measure.
   real(wp), parameter :: unbounded = 1.0e30_wp
 
-  !> Near a singular position: the least pivot is below this part of the largest it was.
+  !> A block is near a singular position where its least pivot is below this part of the largest least pivot so far.
   real(wp), parameter :: near = 0.03_wp
 
-  !> What is known of a block's Jacobian: at the departure and at the end of the step on trial.
+  !> The Jacobian of a block at the start of a step, and the measures of it and of that at the end of the trial step.
   type :: singularity_monitor_type
-    real(wp), allocatable :: jacobian(:, :)                    !< at the departure; on trial is that in the block's work
-    real(wp), allocatable :: change(:, :)                      !< scratch
-    integer :: sign = 1, trial_sign = 1                        !< of the determinant of a square one
-    real(wp) :: pivot = 1.0_wp, trial_pivot = 1.0_wp           !< the least
-    real(wp) :: largest_pivot = 0.0_wp                         !< largest least pivot of any position so far
+    real(wp), allocatable :: jacobian(:, :)     !< at the start of the step; that at its end is in the block's scratch
+    real(wp), allocatable :: change(:, :)       !< scratch for J^-1 D
+    integer :: sign = 1                         !< sign of the determinant at the start, if the Jacobian is square
+    integer :: trial_sign = 1                   !< the same at the end of the trial step
+    real(wp) :: pivot = 1.0_wp                  !< least pivot at the start
+    real(wp) :: trial_pivot = 1.0_wp            !< least pivot at the end of the trial step
+    real(wp) :: largest_pivot = 0.0_wp          !< largest least pivot of all positions so far
   end type singularity_monitor_type
 
 contains
 
-  !> A watch on a block; nothing is known yet.
+  !> A monitor of a block, which has seen no position yet.
   pure function new_singularity_monitor(block) result(monitor)
     type(block_type), intent(in) :: block   !< the block
     type(singularity_monitor_type) :: monitor
@@ -40,7 +45,7 @@ contains
     allocate (monitor%change(size(block%unknowns), size(block%unknowns)), source=0.0_wp)
   end function new_singularity_monitor
 
-  !> Put the block's Jacobian at the position in `state` on trial, and factorize it.
+  !> Factorize the block's Jacobian at the position in `state` and take it as that at the end of the trial step.
   subroutine factorize_trial(plan, block, state, work, monitor)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -53,7 +58,7 @@ contains
     call read_factors(work, monitor)
   end subroutine factorize_trial
 
-  !> Put the Jacobian that stands factorized in `work` on trial.
+  !> Take the Jacobian that stands factorized in `work` as that at the end of the trial step.
   subroutine read_factors(work, monitor)
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
     type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
@@ -62,8 +67,8 @@ contains
     monitor%trial_sign = work%equations%determinant_sign()
   end subroutine read_factors
 
-  !> Factorize the block's Jacobian at the end of a step, unless it is, and judge whether a singular one lies
-  !> between.
+  !> Factorize the block's Jacobian at the end of a step, unless it is factorized, and judge whether a singular one may lie
+  !> within the step.
   subroutine monitor_step(plan, block, state, factorized, work, monitor, worst)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -81,15 +86,15 @@ contains
       return
     end if
     change = distance(size(monitor%jacobian), work%jacobian, monitor%jacobian)/(harmless_change*monitor%trial_pivot)
-    ! the closer look is worth its while where it may allow longer steps
+    ! the sharper bound costs a solution for each column: it is found only where it may allow longer steps
     if (change > 0.5_wp) change = min(change, relative_change(work, monitor)/trusted_change)
     worst = max(worst, change)
     if (monitor%trial_sign /= monitor%sign) worst = max(worst, 2.0_wp)
   end subroutine monitor_step
 
-  ! Over arrays of known shape: no look at allocation, no strides.
+  ! The procedures below work on arrays of explicit shape: the compiler needs neither descriptors nor strides.
 
-  !> Root of the sum of squares of the differences.
+  !> Root of the sum of squares of the differences between two matrices.
   pure real(wp) function distance(n, a, b)
     integer, intent(in) :: n   !< number of elements
     real(wp), intent(in) :: a(n)   !< the first matrix, element by element
@@ -103,6 +108,7 @@ contains
     distance = sqrt(distance)
   end function distance
 
+  !> Copy a matrix.
   pure subroutine copy(n, from, to)
     integer, intent(in) :: n   !< number of elements
     real(wp), intent(in) :: from(n)   !< the original
@@ -111,8 +117,8 @@ contains
     to = from
   end subroutine copy
 
-  !> The change of the Jacobian in a step divided by the Jacobian at its end, as a sum of squares in the units of
-  !> the coordinates that make it least; hopeless where that is singular.
+  !> Norm (root of the sum of squares) of J^-1 D after balancing, which chooses the units of the coordinates that make it
+  !> small; `unbounded` where J is singular.
   real(wp) function relative_change(work, monitor) result(change)
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
     type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
@@ -129,7 +135,7 @@ contains
     change = norm2(monitor%change)
   end function relative_change
 
-  !> The Jacobians on trial become those of the departure.
+  !> The step is accepted: the Jacobians at its end are those at the start of the next one.
   pure subroutine accept_jacobians(work, monitors)
     type(block_work_type), intent(in) :: work(:)   !< scratch of all blocks, with their Jacobians at the end of the step
     type(singularity_monitor_type), intent(inout) :: monitors(:)   !< what is known of the Jacobians of all blocks
@@ -152,7 +158,7 @@ contains
     is_near = monitor%pivot < near*monitor%largest_pivot
   end function is_near
 
-  !> Least pivot of the trial against the largest it was.
+  !> Least pivot at the end of the trial step, divided by the largest least pivot so far.
   pure real(wp) function nearness(monitor)
     type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
 

@@ -1,11 +1,10 @@
-!> Looking ahead where a block comes near a singular position: does the motion end there, or go through?
+!> The look-ahead near a singular position of a block: does the motion end there, or does it go through?
 !>
-!> A scout follows the branch down to a small distance. At a dead point the rates of the block grow
-!> without bound, as 1/sqrt(T - t); two positions of the scout then give T far better than Newton's method
-!> could find it. Where branches cross, the rates stay finite while the least pivot falls to zero
-!> at an even rate. Everything between, two branches that come close and part again, the scout
-!> simply passes. A sliding coordinate may also escape: where axes come to be parallel it grows as a
-!> power of 1/(T - t), and no position is there at T.
+!> A copy of the branch stepper, the probe, goes on until the singular position is very near. At a dead point the rates of the
+!> block grow without bound, as 1/sqrt(T - t), and the rates and accelerations of the probe give T far better than Newton's
+!> method could find it. Where branches cross, the rates stay finite while the least pivot falls linearly to zero. Where two
+!> branches only come close and part again, the probe passes in regular steps. A sliding coordinate may also escape: where
+!> axes become parallel it grows as a power of 1/(T - t), and there is no position at T.
 module mech9_special_position
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -18,49 +17,55 @@ module mech9_special_position
   public :: finding_type, look_ahead, find_escape
   public :: nothing_special, dead_point, branch_point, uncertain, escape
 
-  integer, parameter :: nothing_special = 0
-  integer, parameter :: dead_point = 1      !< the motion ends there
-  integer, parameter :: branch_point = 2        !< branches cross: it can go through
-  integer, parameter :: uncertain = 3            !< neither; but no step goes on
-  integer, parameter :: escape = 4          !< a sliding coordinate grows beyond all bounds
+  integer, parameter :: nothing_special = 0   !< there is no singular position near
+  integer, parameter :: dead_point = 1        !< the motion ends there
+  integer, parameter :: branch_point = 2      !< branches cross: the motion can go through
+  integer, parameter :: uncertain = 3         !< neither a dead point nor a crossing, but no step is accepted
+  integer, parameter :: escape = 4            !< a sliding coordinate grows beyond all bounds
 
-  !> What lies ahead.
+  !> The result of a look-ahead.
   type :: finding_type
-    integer :: kind = nothing_special
-    integer :: block = 0
-    real(wp) :: t = 0.0_wp                  !< when it is reached; nothing special: until when [s]
-    integer :: coordinate = 0               !< that escapes
+    integer :: kind = nothing_special       !< one of the kinds above
+    integer :: block = 0                    !< number of the block
+    real(wp) :: t = 0.0_wp                  !< time of the special position; if there is none, time up to which none was found [s]
+    integer :: coordinate = 0               !< number of the coordinate that escapes
   end type finding_type
 
-  !> Far from the special position again: the least pivot is above this part of the largest it was.
+  ! All pivots below are parts of the largest least pivot so far.
+
+  !> Above this least pivot the block is far from the singular position again.
   real(wp), parameter :: clear = 0.06_wp
-  !> Rates that have grown so much come from a dead point ...
+  !> Rates that have grown by this factor show a dead point.
   real(wp), parameter :: dead_growth = 1.0e4_wp
-  !> ... and at this part of the largest pivot those that have not grown so much come from a crossing.
+  !> Below this least pivot ...
   real(wp), parameter :: crossing_pivot = 1.0e-6_wp
+  !> ... rates that have grown by less than this factor show a crossing.
   real(wp), parameter :: crossing_growth = 3.0_wp
-  !> Round-off may let no step pass already somewhat before.
+  !> The same where no step is accepted any more, which round-off may cause somewhat before.
   real(wp), parameter :: stuck_pivot = 1.0e-4_wp
-  !> Below this part round-off rules, and it must be decided.
+  !> Below this least pivot round-off dominates, so that the kind must be decided.
   real(wp), parameter :: last_pivot = 3.0e-8_wp
-  !> Steps of a scout: the movement of a driven or dependent coordinate [rad, lengths of the mechanism].
+  !> Movement of the fastest coordinate in a step of the probe [rad, lengths of the mechanism].
   real(wp), parameter :: probe_move = 0.1_wp
+  !> Largest number of steps of the probe.
   integer, parameter :: most_steps = 2000
-  !> A step of a scout against the one before it, and how often it is shortened for drives that end.
+  !> Largest ratio of a step of the probe to the one before it, and factor by which steps are shortened where drives end.
   real(wp), parameter :: longer = 4.0_wp
+  !> Largest number of such shortenings of one step.
   integer, parameter :: most_trials = 20
-  !> A slide may escape from so many lengths of the mechanism on ...
+  !> A slide that exceeds so many lengths of the mechanism may escape.
   real(wp), parameter :: far = 3.0_wp
-  !> ... and does, where it is so far and so many times faster than what drives it: two axes that come as close
-  !> to parallel as that and part again are hardly meant.
+  !> A slide escapes where it exceeds so many lengths of the mechanism ...
   real(wp), parameter :: far_away = 100.0_wp
+  !> ... and is so many times faster than the coordinates that drive it: hardly any mechanism has two axes that come so close
+  !> to parallel and part again.
   real(wp), parameter :: fast_away = 5.0e3_wp
   !> For x = c/(T - t)^p the quotient x x''/x'^2 is 1 + 1/p, between these; at a dead point it is large.
   real(wp), parameter :: power_law(2) = [1.2_wp, 6.0_wp]
 
 contains
 
-  !> Look ahead from a follower that is near a singular position of its block b.
+  !> Look ahead from a position that is near a singular one of block b.
   subroutine look_ahead(mechanism, plan, stepper, b, direction, finding)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -79,7 +84,7 @@ contains
     usual = 0.0_wp
     call find_speeds(plan, stepper, b, speed, usual)
     usual = max(usual, speed)
-    if (.not. speed > 0.0_wp) return            ! at rest: no telling where it goes
+    if (.not. speed > 0.0_wp) return            ! at rest nothing tells the direction of the motion
     probe = stepper
     probe%with_accelerations = .true.
     probe%last_block = b
@@ -92,10 +97,10 @@ contains
         t = t_before + direction*step
         call step_towards(mechanism, plan, probe, t, stuck, refused_by, err)
         if (.not. allocated(err)) exit
-        step = step/longer                      ! a drive may end before a special position, or just at it
+        step = step/longer                      ! a drive may end before the special position, or just at it
       end do
       if (allocated(err)) return
-      if (stuck .and. refused_by /= b) return   ! another block has its own turn
+      if (stuck .and. refused_by /= b) return   ! the look-ahead of the other block decides
       finding%t = probe%predictor%t
       call find_speeds(plan, probe, b, speed, usual)
       growth = speed/max(usual, tiny(usual))
@@ -121,7 +126,7 @@ contains
     end do
   end subroutine look_ahead
 
-  !> Whether the fastest coordinate of a block escapes, and when it is beyond all bounds.
+  !> Whether the fastest coordinate of a block escapes, and the time at which it exceeds all bounds.
   pure subroutine find_escape(plan, stepper, b, stuck, finding)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper
@@ -131,7 +136,7 @@ contains
     real(wp) :: speed, usual
     integer :: k
 
-    ! asked at every step of every block: the question first that costs least
+    ! this runs for every block at every step: the cheapest test comes first
     if (.not. slides_far(plan, stepper, b)) return
     usual = 0.0_wp
     call find_speeds(plan, stepper, b, speed, usual)
@@ -184,12 +189,12 @@ contains
     end associate
   end function follows_power_law
 
-  !> Largest rate of a block's dependent coordinates, and of all that drives it if that is more than `usual`.
+  !> Largest rate of a block's dependent coordinates, and that of the coordinates that drive it.
   pure subroutine find_speeds(plan, stepper, b, speed, usual)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper
     integer, intent(in) :: b   !< number of the block
-    real(wp), intent(out) :: speed              !< [rad/s, lengths of the mechanism/s]
+    real(wp), intent(out) :: speed              !< largest rate [rad/s, lengths of the mechanism/s]
     real(wp), intent(inout) :: usual   !< raised to the largest rate of the coordinates that drive the block, in the same units
     integer :: s, k
 
@@ -204,7 +209,7 @@ contains
     end do
   end subroutine find_speeds
 
-  !> When the square-root law ends: x = x* + c sqrt(T - t) has x'/x'' = 2 (T - t).
+  !> The time T at which the square-root law x = x* + c sqrt(T - t) ends: it has x'/x'' = 2 (T - t).
   pure real(wp) function time_of_dead_point(plan, stepper, b) result(t)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper

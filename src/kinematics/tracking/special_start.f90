@@ -1,8 +1,8 @@
-!> Starting where a block is singular: which ways lead on, and the first steps where there is only one.
+!> A start in a singular position of a block: the rates of the branches through it, and the first steps if there is only one.
 !>
-!> There the rates are not determined by J x' = -F_t alone: x' = p + z n with n from the null space of J.
-!> What second derivatives must satisfy, along the vector w that J^T takes to zero, is a quadratic
-!> equation for z: w . (J' x' + ...) = 0. Each of its roots is a branch through the position.
+!> At such a position J x' = -F_t does not determine the rates: x' = p + z n with n from the null space of J. The second
+!> derivatives of the equations, projected on the vector w with J^T w = 0, give a quadratic equation for z,
+!> w . (J' x' + ...) = 0. Each of its real roots is a branch through the position.
 module mech9_special_start
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -22,23 +22,24 @@ module mech9_special_start
 
   !> The rates with which a block can leave a singular position.
   type :: starting_rates_type
-    integer :: count = 0                     !< 0, 1 or 2
-    logical :: dead = .false.                !< a dead point: the inputs' rates allow none
-    logical :: undetermined = .false.             !< more than one direction is free, or all terms vanish
-    real(wp), allocatable :: rates(:, :)     !< (unknowns, 2) of the coordinates themselves
+    integer :: count = 0                     !< number of branches: 0, 1 or 2
+    logical :: dead = .false.                !< a dead point: no rates fit those of the inputs
+    logical :: undetermined = .false.        !< more than one direction is free, or all terms vanish
+    real(wp), allocatable :: rates(:, :)     !< (unknowns, 2) rates of the coordinates, one branch in each column [rad/s, m/s]
   end type starting_rates_type
 
-  !> Singular values and terms below this part of the largest are zero.
+  !> Singular values and terms below this part of the largest count as zero.
   real(wp), parameter :: nothing = 1.0e-7_wp
-  !> Rates below this part of the largest are zero.
+  !> Rates below this part of the largest are zero but for round-off.
   real(wp), parameter :: round_off = 1.0e-13_wp
-  !> Movement to the first position off the start [rad, lengths of the mechanism].
+  !> Movement from the start to the first regular position that is tried [rad, lengths of the mechanism].
   real(wp), parameter :: first_move = 0.05_wp
+  !> Number of distances that are tried, each a third of the one before.
   integer, parameter :: most_trials = 5
 
 contains
 
-  !> The ways of a block whose position, and whose inputs with their rates and accelerations, are in `state`.
+  !> The starting rates of a block whose position, and whose inputs with their rates and accelerations, are in `state`.
   subroutine find_starting_rates(plan, block, state, work, starting)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -92,7 +93,7 @@ contains
     call dgesvd('A', 'A', size(a, 1), size(s), a, size(a, 1), s, u, size(a, 1), vt, size(s), scratch, size(scratch), info)
   end subroutine decompose
 
-  !> Rates of the dependent coordinates, in their units, their accelerations zero, and the motion of the frames.
+  !> Set the rates of the dependent coordinates, and zero accelerations, and find the motion of the frames.
   pure subroutine set_rates(plan, block, rates, state)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -109,8 +110,8 @@ contains
     call spread_accelerations(plan, block, block%last_step, state)
   end subroutine set_rates
 
-  !> Real roots of the quadratic with these values at -1, 0 and 1, in the direction in which it is largest.
-  !> Equations that hold always have nothing in any direction.
+  !> Real roots of a quadratic that is given by its values at -1, 0 and 1. The values are vectors; the quadratic is taken along
+  !> the direction in which its leading term is largest. Redundant equations contribute only zeros.
   pure subroutine find_roots(values, n_roots, roots, undetermined)
     real(wp), intent(in) :: values(:, :)   !< (equations,3) terms of the equations at -1, 0 and 1
     integer, intent(out) :: n_roots   !< number of real roots, 0 to 2
@@ -150,8 +151,8 @@ contains
     roots = [root/a, c/root]
   end subroutine find_roots
 
-  !> The way on from a start in a special position whose rates are in `scout`: three regular positions beside
-  !> it. It does not exist where they cannot be reached with certainty.
+  !> The motion off a singular start whose rates are in `stepper`, by three regular positions beside it. It does not exist
+  !> where they cannot be reached with certainty.
   subroutine start_crossing(mechanism, plan, stepper, crossing, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
