@@ -46,8 +46,8 @@ contains
   subroutine report_mobility(mechanism, plan, start, report)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start          !< assembled
-    type(mobility_report_type), intent(out) :: report
+    type(state_type), intent(in) :: start   !< the assembled start
+    type(mobility_report_type), intent(out) :: report   !< the report
     type(generic_position_type) :: generic
     type(state_type) :: state
     integer :: c
@@ -75,8 +75,8 @@ contains
   subroutine find_ranks(plan, state, ranks, redundant)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(out) :: ranks(:)
-    integer, intent(inout), optional :: redundant(:)
+    integer, intent(out) :: ranks(:)   !< rank of each block
+    integer, intent(inout), optional :: redundant(:)   !< number of redundant equations of each closure
     type(block_work_type) :: work
     integer :: b
 
@@ -96,8 +96,8 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: column_of(:)
-    integer, intent(inout) :: redundant(:)
+    integer, intent(in) :: column_of(:)   !< column of each step in the block's Jacobian, 0 if none
+    integer, intent(inout) :: redundant(:)   !< number of redundant equations of each closure
     type(least_squares_type) :: equations
     real(wp) :: a(block%equations, size(block%unknowns))
     integer :: c, rows, rank, before
@@ -120,7 +120,7 @@ contains
   subroutine find_shares(plan, state, report)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(mobility_report_type), intent(inout) :: report
+    type(mobility_report_type), intent(inout) :: report   !< the report
     type(state_type) :: moving
     type(block_work_type), allocatable :: work(:)
     integer :: b, i, k
@@ -150,8 +150,8 @@ contains
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: dimensions(:)          !< (M) of the motions of the loops that each coordinate is on
-    type(idle_type), allocatable, intent(out) :: idle(:)
+    integer, intent(in) :: dimensions(:)   !< (M) most dimensions of the motions of a loop with the coordinate; 0 if on none
+    type(idle_type), allocatable, intent(out) :: idle(:)   !< the idle freedoms
     integer, dimension(plan%n_coordinates) :: series
     integer :: links(0:plan%n_coordinates), at(2, plan%n_links), pairs_of(plan%n_links), i, k, l, n
     logical :: seen(plan%n_coordinates)
@@ -196,8 +196,10 @@ contains
   subroutine search_series(plan, state, series, links, dimension, idle)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: series(:), links(0:), dimension
-    type(idle_type), allocatable, intent(inout) :: idle(:)
+    integer, intent(in) :: series(:)   !< numbers of the coordinates in series
+    integer, intent(in) :: links(0:)   !< (0:) the link before the first pair, then the link after each
+    integer, intent(in) :: dimension   !< dimension of the motions of the loop
+    type(idle_type), allocatable, intent(inout) :: idle(:)   !< the idle freedoms
     type(idle_type) :: run
     integer :: first, last, rank
 
@@ -219,8 +221,8 @@ contains
 
   !> One series more. An array constructor would be shorter, but gfortran 12 leaks what is in it.
   pure subroutine append(list, series)
-    type(idle_type), allocatable, intent(inout) :: list(:)
-    type(idle_type), intent(in) :: series
+    type(idle_type), allocatable, intent(inout) :: list(:)   !< the list, which gets one more
+    type(idle_type), intent(in) :: series   !< the series to add
     type(idle_type), allocatable :: longer(:)
 
     allocate (longer(size(list) + 1))
@@ -233,7 +235,7 @@ contains
   integer function rank_of_series(plan, state, coordinates) result(rank)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: coordinates(:)
+    integer, intent(in) :: coordinates(:)   !< numbers of the coordinates
     real(wp) :: screws(6, size(coordinates)), basis(6, 6), v(3), place(3), first_place(3)
     integer :: i
 

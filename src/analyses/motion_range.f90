@@ -45,28 +45,28 @@ contains
   subroutine find_range(mechanism, plan, start, coordinate, range)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start
-    integer, intent(in) :: coordinate
-    type(motion_range_type), intent(out) :: range
+    type(state_type), intent(in) :: start   !< the assembled start
+    integer, intent(in) :: coordinate   !< number of the coordinate that moves
+    type(motion_range_type), intent(out) :: range   !< the range of the coordinate
 
     range%coordinate = coordinate
     range%start = start%q(coordinate)
-    call sweep(mechanism, plan, start, coordinate, 1.0_wp, range%upper)
+    call find_end(mechanism, plan, start, coordinate, 1.0_wp, range%upper)
     if (range%upper%kind == ends_round) then
       range%lower = range%upper
     else
-      call sweep(mechanism, plan, start, coordinate, -1.0_wp, range%lower)
+      call find_end(mechanism, plan, start, coordinate, -1.0_wp, range%lower)
     end if
   end subroutine find_range
 
   !> Follow a coordinate one way, at one unit a second.
-  subroutine sweep(mechanism, plan, start, coordinate, direction, found)
+  subroutine find_end(mechanism, plan, start, coordinate, direction, found)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: direction
-    type(end_type), intent(out) :: found
+    type(state_type), intent(in) :: start   !< the assembled start
+    integer, intent(in) :: coordinate   !< number of the coordinate that moves
+    real(wp), intent(in) :: direction   !< +1 for the upper end, -1 for the lower one
+    type(end_type), intent(out) :: found   !< the end of the range
     type(mechanism_type) :: swept
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -99,15 +99,15 @@ contains
     found%kind = ends_at_limit
     found%value = driven%limit(coordinate)
     found%block = driven%ahead%block
-  end subroutine sweep
+  end subroutine find_end
 
   !> Drives that hold all independent coordinates but one.
   subroutine drive_one(plan, start, coordinate, direction, swept)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: direction
-    type(mechanism_type), intent(inout) :: swept
+    type(state_type), intent(in) :: start   !< the assembled start
+    integer, intent(in) :: coordinate   !< number of the coordinate that moves
+    real(wp), intent(in) :: direction   !< +1 for the upper end, -1 for the lower one
+    type(mechanism_type), intent(inout) :: swept   !< the mechanism; gets the drives
     type(polynomial_drive_type) :: drive
     integer :: i, k
 
@@ -125,8 +125,9 @@ contains
   !> Whether all other coordinates are again what they were, whole turns of revolute pairs aside.
   pure logical function has_come_round(plan, start, state, coordinate)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start, state
-    integer, intent(in) :: coordinate
+    type(state_type), intent(in) :: start   !< the assembled start
+    type(state_type), intent(in) :: state   !< the present position
+    integer, intent(in) :: coordinate   !< number of the coordinate that moves
     real(wp) :: change
     integer :: k
 

@@ -29,16 +29,16 @@ contains
   !> starts are always the same ones.
   subroutine find_assemblies(plan, start, n_starts, list)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start
-    integer, intent(in) :: n_starts
-    type(assembly_list_type), intent(out) :: list
+    type(state_type), intent(in) :: start   !< an assembled position
+    integer, intent(in) :: n_starts   !< number of random starts
+    type(assembly_list_type), intent(out) :: list   !< the assemblies found
     type(state_type) :: trial
     type(random_type) :: random
     integer :: i
     logical :: closed
 
     allocate (list%q(plan%n_coordinates, 0), list%found(0))
-    call enter(plan, start%q, list)
+    call count_assembly(plan, start%q, list)
     list%found(1) = 0
     list%starts = n_starts
     trial = start
@@ -47,7 +47,7 @@ contains
       call close_from(plan, plan%blocks, pi, random, trial, closed)
       if (.not. closed) cycle
       list%closed = list%closed + 1
-      call enter(plan, trial%q, list)
+      call count_assembly(plan, trial%q, list)
     end do
   end subroutine find_assemblies
 
@@ -55,9 +55,9 @@ contains
   !> farther from the coordinates in `state`.
   subroutine close_from_random_starts(plan, blocks, state, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: blocks(:)
-    type(state_type), intent(inout) :: state       !< left as it is where no start helps
-    logical, intent(out) :: closed
+    type(block_type), intent(in) :: blocks(:)   !< the blocks to close, in their order
+    type(state_type), intent(inout) :: state   !< coordinates to start from; then the closed position, if one was found
+    logical, intent(out) :: closed   !< all these blocks were closed
     type(state_type) :: trial
     type(random_type) :: random
     integer :: i, starts
@@ -78,11 +78,11 @@ contains
   !> Change all dependent coordinates at random and close block after block.
   subroutine close_from(plan, blocks, amount, random, state, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: blocks(:)
-    real(wp), intent(in) :: amount                 !< in units of the coordinates
+    type(block_type), intent(in) :: blocks(:)   !< the blocks to close, in their order
+    real(wp), intent(in) :: amount   !< largest change of a coordinate, in its unit
     type(random_type), intent(inout) :: random   !< source of random numbers
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    logical, intent(out) :: closed
+    logical, intent(out) :: closed   !< all these blocks were closed
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
     type(error_type), allocatable :: err
@@ -102,10 +102,10 @@ contains
   end subroutine close_from
 
   !> Count an assembly, new or found before.
-  subroutine enter(plan, q, list)
+  subroutine count_assembly(plan, q, list)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    real(wp), intent(in) :: q(:)
-    type(assembly_list_type), intent(inout) :: list
+    real(wp), intent(in) :: q(:)   !< (M) coordinates of the assembly [rad, m]
+    type(assembly_list_type), intent(inout) :: list   !< the assemblies found
     real(wp), allocatable :: longer(:, :)
     real(wp) :: difference
     integer :: i, k, n
@@ -130,17 +130,17 @@ contains
     end do
     call move_alloc(longer, list%q)
     list%found = [list%found, 1]
-  end subroutine enter
+  end subroutine count_assembly
 
   !> Is a full turn of its coordinate the same position?
   pure logical function turns(step)
-    type(step_type), intent(in) :: step
+    type(step_type), intent(in) :: step   !< the step
 
     turns = step%is_screw .and. abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp
   end function turns
 
   pure real(wp) function within_half_a_turn(angle)
-    real(wp), intent(in) :: angle
+    real(wp), intent(in) :: angle   !< an angle [rad]
 
     within_half_a_turn = angle - 2.0_wp*pi*anint(angle/(2.0_wp*pi))
   end function within_half_a_turn

@@ -23,14 +23,14 @@ module mech9_assembly
   !> Steps in which the errors must have become clearly smaller.
   integer, parameter :: patience = 25
   !> From errors as small as this Newton's method takes over.
-  real(wp), parameter :: near_enough = 1.0e-8_wp
+  real(wp), parameter :: newton_radius = 1.0e-8_wp
   !> Newton's corrections from there, unless the position is singular.
   real(wp), parameter :: regular_correction = 1.0e-5_wp
   !> Errors that are left at a singular position where they fall slowly: still far below any tolerance.
   real(wp), parameter :: closed_singular = 1.0e-12_wp
 
   !> The length of the errors of a block, several closures together, against what one may stay open by.
-  real(wp), parameter :: may_stay_open = 10.0_wp
+  real(wp), parameter :: allowed_gap = 10.0_wp
 
   !> How an assembly went.
   type :: assembly_outcome_type
@@ -48,9 +48,9 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    logical, intent(in) :: may_restart
-    type(assembly_outcome_type), intent(out) :: outcome
+    type(block_work_type), intent(inout) :: work   !< scratch of the block
+    logical, intent(in) :: may_restart   !< try changed guesses where the given one fails
+    type(assembly_outcome_type), intent(out) :: outcome   !< result of the assembly
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: guess(size(block%unknowns)), nearest(size(block%unknowns))
     type(random_type) :: random
@@ -65,7 +65,7 @@ contains
         state%q(k) = guess(i)
         if (restart > 0) state%q(k) = guess(i) + plan%unit_of(k)*random%symmetric()*pi*restart/restarts
       end do
-      call descend(plan, block, state, work, outcome, err)
+      call close_from_guess(plan, block, state, work, outcome, err)
       if (allocated(err)) then
         ! a user pair without a pose: only at the guess itself is that the user's affair
         if (restart == 0) return
@@ -73,7 +73,7 @@ contains
       end if
       outcome%restarts = restart
       if (outcome%closed) then
-        call unwind(plan, block, guess, state, err)
+        call remove_full_turns(plan, block, guess, state, err)
         return
       end if
       if (restart == 0) nearest = state%q(block%coordinates)
@@ -82,28 +82,28 @@ contains
     state%q(block%coordinates) = nearest
     call place_frames(plan, block, state, err)
     if (allocated(err)) return
-    call find_worst(plan, block, state, outcome)
+    call find_worst_closure(plan, block, state, outcome)
   end subroutine assemble_block
 
   !> Damped least squares from the coordinates in `state`, then Newton's method to round-off. At a
   !> singular position Newton's method would leave the chains closed anyhow but the coordinates
   !> elsewhere: there damped least squares goes on as far as it gets.
-  subroutine descend(plan, block, state, work, outcome, err)
+  subroutine close_from_guess(plan, block, state, work, outcome, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    type(assembly_outcome_type), intent(out) :: outcome
+    type(block_work_type), intent(inout) :: work   !< scratch of the block
+    type(assembly_outcome_type), intent(out) :: outcome   !< result of the assembly
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
-    real(wp) :: before(size(block%unknowns)), residual_norm, enough
+    real(wp) :: before(size(block%unknowns)), residual_norm, small_enough
 
     ! redundant equations that may stay open must be as near to closed as they get
-    enough = near_enough
-    if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) enough = closed_enough
-    call reduce_errors(plan, block, state, work, enough, 1.0e-2_wp, residual_norm, err)
+    small_enough = newton_radius
+    if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) small_enough = closed_enough
+    call reduce_errors(plan, block, state, work, small_enough, 1.0e-2_wp, residual_norm, err)
     if (allocated(err)) return
-    outcome%closed = residual_norm <= max(near_enough, may_stay_open*plan%data_tolerance)
+    outcome%closed = residual_norm <= max(newton_radius, allowed_gap*plan%data_tolerance)
     if (outcome%closed) then
       before = state%q(block%coordinates)
       call close_block(plan, block, state, work, newton, err)
@@ -112,24 +112,24 @@ contains
         state%q(block%coordinates) = before
         call reduce_errors(plan, block, state, work, closed_enough, 1.0e-10_wp, residual_norm, err)
         if (allocated(err)) return
-        outcome%closed = residual_norm <= max(closed_singular, may_stay_open*plan%data_tolerance)
+        outcome%closed = residual_norm <= max(closed_singular, allowed_gap*plan%data_tolerance)
       end if
     end if
-    call find_worst(plan, block, state, outcome)
+    call find_worst_closure(plan, block, state, outcome)
     ! all six components of every closure count here, also those outside its space of motions
     outcome%closed = outcome%closed .and. outcome%gap <= max(1.0e-10_wp, plan%data_tolerance)*plan%length
-  end subroutine descend
+  end subroutine close_from_guess
 
   !> Damped least squares (Levenberg and Marquardt) until the errors are as small as asked for, or get
   !> no smaller.
-  subroutine reduce_errors(plan, block, state, work, enough, damping_at_first, residual_norm, err)
+  subroutine reduce_errors(plan, block, state, work, small_enough, damping_at_first, residual_norm, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    real(wp), intent(in) :: enough
-    real(wp), intent(in) :: damping_at_first
-    real(wp), intent(out) :: residual_norm            !< length of the errors that are left
+    type(block_work_type), intent(inout) :: work   !< scratch of the block
+    real(wp), intent(in) :: small_enough   !< norm of the residual at which to stop
+    real(wp), intent(in) :: damping_at_first   !< damping of the first step
+    real(wp), intent(out) :: residual_norm   !< norm of the residual at the end [rad, lengths of the mechanism]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(least_squares_type) :: damped
     real(wp) :: right(block%equations + size(block%unknowns)), before(size(block%unknowns))
@@ -138,15 +138,15 @@ contains
 
     damping = damping_at_first
     call damped%create(block%equations + size(block%unknowns), size(block%unknowns))
-    call measure(plan, block, state, work, residual_norm, err)
+    call find_residual(plan, block, state, work, residual_norm, err)
     if (allocated(err)) return
     norm_then = residual_norm
     do step = 1, most_steps
-      if (residual_norm <= enough .or. size(before) == 0) exit
+      if (residual_norm <= small_enough .or. size(before) == 0) exit
       call damped_change(plan, block, state, damping, damped, right, work)
       before = state%q(block%coordinates)
       call apply_change(plan, block, work%change, state)
-      call measure(plan, block, state, work, trial_norm, err)
+      call find_residual(plan, block, state, work, trial_norm, err)
       ! where a user pair has no pose the step was too long, like any other that does not help
       if (allocated(err)) deallocate (err)
       if (trial_norm < residual_norm) then
@@ -154,7 +154,7 @@ contains
         residual_norm = trial_norm
       else
         state%q(block%coordinates) = before
-        call measure(plan, block, state, work, residual_norm, err)
+        call find_residual(plan, block, state, work, residual_norm, err)
         if (allocated(err)) return
         damping = max(damping, 1.0e-16_wp)*5.0_wp
         if (damping > 1.0e6_wp) exit
@@ -172,10 +172,10 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(in) :: damping
-    type(least_squares_type), intent(inout) :: damped
-    real(wp), intent(out) :: right(:)
-    type(block_work_type), intent(inout) :: work
+    real(wp), intent(in) :: damping   !< factor of the squared changes that are added to the squared residual
+    type(least_squares_type), intent(inout) :: damped   !< the damped equations; overwritten
+    real(wp), intent(out) :: right(:)   !< right-hand side of the damped equations
+    type(block_work_type), intent(inout) :: work   !< scratch of the block
     integer :: i, m
 
     m = block%equations
@@ -193,12 +193,12 @@ contains
   end subroutine damped_change
 
   !> Length of the block's errors at the coordinates in `state`; the errors stay in work%right.
-  subroutine measure(plan, block, state, work, residual_norm, err)
+  subroutine find_residual(plan, block, state, work, residual_norm, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    real(wp), intent(out) :: residual_norm
+    type(block_work_type), intent(inout) :: work   !< scratch of the block
+    real(wp), intent(out) :: residual_norm   !< norm of the residual at the end [rad, lengths of the mechanism]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     residual_norm = huge(residual_norm)
@@ -206,14 +206,14 @@ contains
     if (allocated(err)) return
     call block_residual(plan, block, state, work%right)
     residual_norm = norm2(work%right)
-  end subroutine measure
+  end subroutine find_residual
 
   !> The closure of a block that is farthest from closed.
-  subroutine find_worst(plan, block, state, outcome)
+  subroutine find_worst_closure(plan, block, state, outcome)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(assembly_outcome_type), intent(inout) :: outcome
+    type(assembly_outcome_type), intent(inout) :: outcome   !< result of the assembly
     real(wp) :: gap
     integer :: c
 
@@ -225,13 +225,13 @@ contains
         outcome%worst_closure = c
       end if
     end do
-  end subroutine find_worst
+  end subroutine find_worst_closure
 
   !> Take full turns off the coordinates of revolute pairs, so that each is within half a turn of its guess.
-  subroutine unwind(plan, block, guess, state, err)
+  subroutine remove_full_turns(plan, block, guess, state, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
-    real(wp), intent(in) :: guess(:)
+    real(wp), intent(in) :: guess(:)   !< (unknowns) guesses of the block's coordinates [rad, m]
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
@@ -248,5 +248,5 @@ contains
       end associate
     end do
     if (changed) call place_frames(plan, block, state, err)
-  end subroutine unwind
+  end subroutine remove_full_turns
 end module mech9_assembly

@@ -64,8 +64,8 @@ contains
   !> Find a chain whose redundant equations do not stay satisfied when its block is moved from the start. The paths of the
   !> closures must be those of whole loops.
   subroutine find_locked_chain(plan, start, locked)
-    type(plan_type), intent(in) :: plan                  !< with its blocks
-    type(state_type), intent(in) :: start                !< assembled
+    type(plan_type), intent(in) :: plan   !< the plan, with its blocks
+    type(state_type), intent(in) :: start   !< the assembled position
     type(locked_chain_type), intent(out) :: locked       !< the first one found, if it exists
     type(plan_type) :: spatial
     type(state_type) :: home
@@ -96,9 +96,9 @@ contains
   subroutine displace_inputs(plan, home, moves, nearest, locked)
     type(plan_type), intent(in) :: plan                       !< in spatial arithmetic
     type(state_type), intent(in) :: home                      !< assembled coordinates
-    logical, intent(inout) :: moves(:)                        !< (blocks): shown to move, or nothing to show
-    type(locked_chain_type), intent(inout) :: nearest(:)      !< (blocks): least gap that was seen
-    type(locked_chain_type), intent(inout) :: locked          !< exists: for certain
+    logical, intent(inout) :: moves(:)   !< (blocks) set where a block was shown to move, or needs no proof
+    type(locked_chain_type), intent(inout) :: nearest(:)   !< (blocks) smallest gap of each block that was seen
+    type(locked_chain_type), intent(inout) :: locked   !< a chain that is certainly locked, if it exists
     type(random_type) :: random
     type(state_type) :: state
     real(wp) :: amount, change
@@ -125,11 +125,11 @@ contains
   !> Close the blocks at displaced independent coordinates, up to the first that stays open.
   subroutine close_in_order(plan, amount, state, moves, nearest, locked)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    real(wp), intent(in) :: amount                            !< of the displacement [rad, or parts of the size]
+    real(wp), intent(in) :: amount   !< displacement of the independent coordinates, in their units [rad, or parts of the size]
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    logical, intent(inout) :: moves(:)                        !< (blocks)
-    type(locked_chain_type), intent(inout) :: nearest(:)      !< (blocks)
-    type(locked_chain_type), intent(inout) :: locked
+    logical, intent(inout) :: moves(:)   !< (blocks) set where a block was shown to move
+    type(locked_chain_type), intent(inout) :: nearest(:)   !< (blocks) smallest gap of each block that was seen
+    type(locked_chain_type), intent(inout) :: locked   !< the chain that does not move
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
     type(error_type), allocatable :: err
@@ -167,7 +167,7 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with the factors of its Jacobian
 
     call block_residual(plan, block, state, work%right)
     call work%equations%solve(work%right, work%change)
@@ -177,9 +177,9 @@ contains
   !> Where the independent coordinates cannot be displaced: displace all coordinates up to block b and close them together.
   subroutine displace_all(plan, home, b, moves)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: home
-    integer, intent(in) :: b                 !< the block to be judged
-    logical, intent(out) :: moves
+    type(state_type), intent(in) :: home   !< an assembled position
+    integer, intent(in) :: b   !< number of the block to be judged
+    logical, intent(out) :: moves   !< the block was shown to move
     type(block_type) :: block
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
@@ -210,7 +210,7 @@ contains
   pure logical function has_moved(plan, block, home, state)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(in) :: home
+    type(state_type), intent(in) :: home   !< an assembled position
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     integer :: c
 
@@ -227,8 +227,8 @@ contains
   !> unknown where such changes do not explain the gaps.
   subroutine estimate_distance(plan, home, locked)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: home
-    type(locked_chain_type), intent(inout) :: locked
+    type(state_type), intent(in) :: home   !< an assembled position
+    type(locked_chain_type), intent(inout) :: locked   !< the chain that does not move
     real(wp), parameter :: step = 0.2_wp
     integer, parameter :: steps = 8
     type(state_type) :: state
@@ -255,8 +255,8 @@ contains
 
   !> One matrix above another.
   pure function stacked(upper, lower) result(both)
-    real(wp), intent(in) :: upper(:, :)
-    real(wp), intent(in) :: lower(:, :)
+    real(wp), intent(in) :: upper(:, :)   !< (:,n) the upper matrix
+    real(wp), intent(in) :: lower(:, :)   !< (:,n) the lower matrix
     real(wp) :: both(size(upper, 1) + size(lower, 1), size(upper, 2))
 
     both(:size(upper, 1), :) = upper
@@ -267,8 +267,8 @@ contains
   !> dimensions act on them. Nothing where an earlier block stays open, or the gap is not small, or the position singular.
   subroutine find_effects(plan, b, state, effects, gaps)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: b                              !< the block
-    type(state_type), intent(inout) :: state              !< displaced independent coordinates, guesses of the others
+    integer, intent(in) :: b   !< number of the block
+    type(state_type), intent(inout) :: state   !< displaced independent coordinates, and guesses of the others
     real(wp), allocatable, intent(out) :: effects(:, :)   !< (directions, six for each step)
     real(wp), allocatable, intent(out) :: gaps(:)         !< (directions) [rad, or parts of the size]
     real(wp), allocatable :: u(:, :), vt(:, :), s(:), scratch(:), a(:, :), columns(:, :)

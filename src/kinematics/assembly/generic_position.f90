@@ -40,10 +40,10 @@ contains
   !> where no trial closes, all coordinates are set free.
   subroutine find_generic_position(plan, blocks, start, generic, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: blocks(:)      !< from the first one on
-    type(state_type), intent(in) :: start          !< closed for these blocks
-    type(generic_position_type), intent(inout) :: generic
-    logical, intent(out) :: closed
+    type(block_type), intent(in) :: blocks(:)   !< the first blocks of the plan, in their order
+    type(state_type), intent(in) :: start   !< an assembled position of these blocks
+    type(generic_position_type), intent(inout) :: generic   !< the generic position, as far as it is made
+    logical, intent(out) :: closed   !< the position is closed for all these blocks
     integer :: trial, n
 
     n = size(blocks)
@@ -51,7 +51,7 @@ contains
     if (closed) return
     if (generic%exists .and. generic%closed_to >= blocks(n)%first_step - 1) then
       do trial = 1, 3
-        call extend(plan, blocks(n), start, amount_of(trial), generic, closed)
+        call close_next_block(plan, blocks(n), start, amount_of(trial), generic, closed)
         if (closed) return
       end do
     end if
@@ -65,18 +65,18 @@ contains
 
   !> How much coordinates are changed in a trial, in their units.
   pure real(wp) function amount_of(trial)
-    integer, intent(in) :: trial
+    integer, intent(in) :: trial   !< number of the trial, from 1
 
     amount_of = 0.3_wp/2.0_wp**modulo(trial - 1, 5)
   end function amount_of
 
   subroutine try_inputs(plan, blocks, start, amount, generic, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: blocks(:)
-    type(state_type), intent(in) :: start
-    real(wp), intent(in) :: amount
-    type(generic_position_type), intent(inout) :: generic
-    logical, intent(out) :: closed
+    type(block_type), intent(in) :: blocks(:)   !< the first blocks of the plan, in their order
+    type(state_type), intent(in) :: start   !< an assembled position
+    real(wp), intent(in) :: amount   !< change of the coordinates, in their units
+    type(generic_position_type), intent(inout) :: generic   !< the generic position, as far as it is made
+    logical, intent(out) :: closed   !< the position is closed for all these blocks
     real(wp) :: change
     integer :: i, k
 
@@ -92,19 +92,19 @@ contains
       generic%state%q(k) = start%q(k) + amount*plan%unit_of(k)*(change + sign(0.5_wp, change))
     end do
     do i = 1, size(blocks)
-      call extend(plan, blocks(i), start, amount, generic, closed)
+      call close_next_block(plan, blocks(i), start, amount, generic, closed)
       if (.not. closed) return
     end do
   end subroutine try_inputs
 
   !> Close one more block, from its coordinates at the start, somewhat changed.
-  subroutine extend(plan, block, start, amount, generic, closed)
+  subroutine close_next_block(plan, block, start, amount, generic, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(in) :: start
-    real(wp), intent(in) :: amount
-    type(generic_position_type), intent(inout) :: generic
-    logical, intent(out) :: closed
+    type(state_type), intent(in) :: start   !< an assembled position
+    real(wp), intent(in) :: amount   !< change of the coordinates, in their units
+    type(generic_position_type), intent(inout) :: generic   !< the generic position, as far as it is made
+    logical, intent(out) :: closed   !< the block was closed
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
     type(error_type), allocatable :: err
@@ -118,15 +118,15 @@ contains
     call assemble_block(plan, block, generic%state, work, .false., outcome, err)
     closed = outcome%closed .and. .not. allocated(err)
     if (closed) generic%closed_to = block%last_step
-  end subroutine extend
+  end subroutine close_next_block
 
   !> Change and close everything up to a block at once, the independent coordinates with the others.
   subroutine try_all_free(plan, last, start, generic, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: last           !< the last block that must be closed
-    type(state_type), intent(in) :: start
-    type(generic_position_type), intent(inout) :: generic
-    logical, intent(out) :: closed
+    type(state_type), intent(in) :: start   !< an assembled position
+    type(generic_position_type), intent(inout) :: generic   !< the generic position, as far as it is made
+    logical, intent(out) :: closed   !< the position is closed for all these blocks
     type(block_type) :: block
     integer :: trial
 
@@ -135,7 +135,7 @@ contains
       generic%state = start
       generic%exists = .true.
       generic%closed_to = 0
-      call extend(plan, block, start, amount_of(trial), generic, closed)
+      call close_next_block(plan, block, start, amount_of(trial), generic, closed)
       ! a chain that cannot move comes back to where it was, and shows nothing new
       closed = closed .and. has_moved(plan, last, start, generic%state)
       if (closed) return
@@ -147,7 +147,8 @@ contains
   pure logical function has_moved(plan, block, start, state)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(in) :: start, state
+    type(state_type), intent(in) :: start   !< an assembled position
+    type(state_type), intent(in) :: state   !< the other position
     integer :: c, i, k
 
     has_moved = block%last_closure < block%first_closure
@@ -163,7 +164,8 @@ contains
   !> only while the paths of the closures are those of whole loops.
   pure function free_block(plan, last_step, last_closure) result(block)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: last_step, last_closure
+    integer, intent(in) :: last_step   !< number of the last step of the block
+    integer, intent(in) :: last_closure   !< number of its last closure
     type(block_type) :: block
     integer :: i
 

@@ -26,7 +26,7 @@ contains
   subroutine find_motions(plan, state, held, motions)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    logical, intent(in) :: held(:)                         !< coordinates that are known not to move
+    logical, intent(in) :: held(:)   !< (M) the coordinate is known not to move
     real(wp), allocatable, intent(out) :: motions(:, :)    !< (M, mobility)
     type(block_type) :: block
     real(wp), allocatable :: a(:, :), vt(:, :), s(:), work(:)
@@ -59,9 +59,9 @@ contains
   !> As many coordinates as there are freedoms, whose rates determine all rates: the wanted ones as far
   !> as they are independent of each other, then others that move well.
   pure subroutine choose_coordinates(motions, wanted, chosen)
-    real(wp), intent(in) :: motions(:, :)
-    logical, intent(in) :: wanted(:)
-    logical, intent(out) :: chosen(:)
+    real(wp), intent(in) :: motions(:, :)   !< (M, mobility) orthonormal basis of the rates, in the units of the coordinates
+    logical, intent(in) :: wanted(:)   !< (M) the coordinate should be independent
+    logical, intent(out) :: chosen(:)   !< (M) the coordinate is chosen as independent
     real(wp) :: rest(size(motions, 1), size(motions, 2)), e(size(motions, 2)), lengths(size(wanted))
     logical :: may(size(wanted))
     integer :: k, best, stage
@@ -87,9 +87,9 @@ contains
   !> The rate of each coordinate per unit rate of each of some coordinates that determine all:
   !> (M, mobility), the columns in ascending order of these.
   subroutine shares_of(motions, chosen, shares)
-    real(wp), intent(in) :: motions(:, :)
-    logical, intent(in) :: chosen(:)
-    real(wp), allocatable, intent(out) :: shares(:, :)
+    real(wp), intent(in) :: motions(:, :)   !< (M, mobility) orthonormal basis of the rates, in the units of the coordinates
+    logical, intent(in) :: chosen(:)   !< (M) the coordinate is independent
+    real(wp), allocatable, intent(out) :: shares(:, :)   !< (M, mobility) rate of each coordinate per unit rate of each chosen one
     type(least_squares_type) :: equations
     real(wp) :: right(size(motions, 2))
     integer :: i, k, f

@@ -26,8 +26,8 @@ contains
   subroutine close_free(plan, state, may_restart, outcome, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    logical, intent(in) :: may_restart
-    type(assembly_outcome_type), intent(out) :: outcome
+    logical, intent(in) :: may_restart   !< try changed guesses where the given one fails
+    type(assembly_outcome_type), intent(out) :: outcome   !< result of the assembly
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_type) :: block
     type(block_work_type) :: work
@@ -41,14 +41,14 @@ contains
   !> the chains closed; `arrived` says whether that was possible. Angles go the shorter way round.
   subroutine carry_inputs(plan, target, state, arrived)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    real(wp), intent(in) :: target(:)        !< (M): values of the independent coordinates count
+    real(wp), intent(in) :: target(:)   !< (M) coordinates; only those of the independent ones count [rad, m]
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    logical, intent(out) :: arrived
+    logical, intent(out) :: arrived   !< the given values were reached
     type(block_type) :: block
     type(block_work_type) :: work
     type(newton_outcome_type) :: newton
     type(error_type), allocatable :: err
-    real(wp) :: from(size(plan%independent)), way(size(plan%independent)), before(plan%n_coordinates)
+    real(wp) :: from(size(plan%independent)), distance(size(plan%independent)), before(plan%n_coordinates)
     real(wp) :: done, part
     integer :: s
 
@@ -57,10 +57,10 @@ contains
     block%coordinates = plan%steps(block%unknowns)%coordinate
     work = new_block_work(block)
     from = state%q(plan%independent)
-    way = target(plan%independent) - from
-    do s = 1, size(way)
+    distance = target(plan%independent) - from
+    do s = 1, size(distance)
       associate (step => plan%steps(plan%step_of(plan%independent(s))))
-        if (step%is_screw .and. .not. abs(step%slide) > 0.0_wp) way(s) = way(s) - 2.0_wp*pi*anint(way(s)/(2.0_wp*pi))
+        if (step%is_screw .and. .not. abs(step%slide) > 0.0_wp) distance(s) = distance(s) - 2.0_wp*pi*anint(distance(s)/(2.0_wp*pi))
       end associate
     end do
     done = 0.0_wp
@@ -69,7 +69,7 @@ contains
     do while (done < 1.0_wp .and. part >= least_part)
       part = min(part, 1.0_wp - done)
       state%q = before
-      state%q(plan%independent) = from + (done + part)*way
+      state%q(plan%independent) = from + (done + part)*distance
       if (done + part >= 1.0_wp) state%q(plan%independent) = target(plan%independent)
       call close_block(plan, block, state, work, newton, err)
       if (.not. allocated(err) .and. newton%converged .and. newton%correction < 0.5_wp) then

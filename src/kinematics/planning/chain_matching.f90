@@ -1,8 +1,8 @@
 !> Matching of unknowns with the closed chains that determine them.
 !>
 !> Each chain can determine as many unknowns of its loop as it offers equations. Chains that can determine all unknowns of
-!> their loops are assigned first, which often leaves others with few enough unknowns. The rest is matched by augmenting paths
-!> (Hopcroft and Karp's problem, with a breadth-first search for each unknown) so that as many unknowns as possible have a chain.
+!> their loops are assigned first, which often leaves others with few enough unknowns. The rest is matched by augmenting paths,
+!> each found by a breadth-first search, so that as many unknowns as possible have a chain (a maximum matching).
 module mech9_chain_matching
   implicit none
   private

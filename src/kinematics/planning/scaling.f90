@@ -1,4 +1,4 @@
-!> Scaling: the size of a mechanism, which is its unit of length, its origin, and the units of its coordinates.
+!> The scaling of a mechanism: its size, which is the unit of length, its origin, and the units of its coordinates.
 module mech9_scaling
   use mech9_kinds, only: wp
   use mech9_pose, only: pose_type, inverse
