@@ -1,6 +1,7 @@
-!> A film as an animated GIF, drawn by gnuplot.
+!> A film as an animated GIF, which gnuplot draws.
 !>
-!> gnuplot is given polygons only: lines are drawn forth and back, bands and plates as their outlines.
+!> gnuplot is given polygons and circles only. Lines are polygons that run forth and back; bands and plates are drawn as
+!> their outlines.
 module mech9_gif_film
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, raise, add_place, exit_file
@@ -23,17 +24,18 @@ module mech9_gif_film
   private
   public :: save_gif_film
 
-  !> A GIF of more frames is larger than it is worth.
+  !> The largest number of frames; a GIF of more frames would be too large for its use.
   integer, parameter :: most_frames = 120
-  !> Dots for each px of other pictures: gnuplot does not smooth the edges of a GIF, what shows it smaller does.
+  !> The number of dots for each px of other pictures. gnuplot does not smooth the edges of a GIF, but a program that
+  !> shows the picture smaller does.
   real(wp), parameter :: zoom = 1.5_wp
-  !> Any font without serifs that can be scaled [pt].
+  !> The font: any one without serifs that can be scaled, and its size [pt].
   character(len=*), parameter :: font = 'sans,12'
   character(len=*), parameter :: grey = '#d0d0d0', white = '#ffffff', hatch = '#555555', thin = '#777777', none = ''
-  !> Steps of a quarter of a circle.
+  !> The number of steps in a quarter of a circle.
   integer, parameter :: quarter = 4
 
-  !> The script being written, and the number of the latest object in it.
+  !> The script that is being written, and the number of the latest object in it.
   type :: script_type
     type(page_type) :: page
     integer :: objects = 0
@@ -46,7 +48,7 @@ module mech9_gif_film
 
 contains
 
-  !> Let gnuplot draw the film. Errors are exit_file; one of them is that there is no gnuplot.
+  !> The film is drawn by gnuplot. Errors are exit_file, also if gnuplot is not installed.
   subroutine save_gif_film(path, title, scene, film, projection, err)
     character(len=*), intent(in) :: path               !< name of the file
     character(len=*), intent(in) :: title              !< title of the mechanism, any text
@@ -116,7 +118,7 @@ contains
     call script%page%line('plot NaN notitle')
   end subroutine put_frame
 
-  !> The bar that tells how long things are.
+  !> The bar of the scale is drawn.
   subroutine put_scale(projection, script)
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(script_type), intent(inout) :: script       !< script to which the commands are appended
@@ -129,7 +131,7 @@ contains
     call put_text(to_text(scale_length(projection), 3)//' m', [right + 8.0_wp, foot - 2.0_wp], 'left', ink, script)
   end subroutine put_scale
 
-  !> The axes of link 1, but one that points to the viewer.
+  !> The axes of link 1 are drawn, except an axis that points to the viewer.
   subroutine put_axes(projection, script)
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(script_type), intent(inout) :: script       !< script to which the commands are appended
@@ -146,7 +148,7 @@ contains
     end do
   end subroutine put_axes
 
-  !> The title, in two lines where one has no room for it: fonts of GIFs have one size.
+  !> The title is drawn, in two lines if one has no room for it. Fonts of GIFs have only one size.
   subroutine put_title(title, width, script)
     character(len=*), intent(in) :: title       !< title of the mechanism, any text
     real(wp), intent(in) :: width               !< width of the picture [px]
@@ -161,7 +163,7 @@ contains
     end do
   end subroutine put_title
 
-  !> A polygon; an empty colour fills nothing.
+  !> A polygon is drawn. It is not filled if the colour of its inside is empty.
   subroutine polygon(self, corners, fill, line, width)
     class(script_type), intent(inout) :: self  !< the script
     real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the polygon [px]
@@ -185,7 +187,7 @@ contains
     call self%page%line(' border lc rgb "'//line//'" lw '//decimal(width))
   end subroutine polygon
 
-  !> A line from corner to corner: a polygon that comes back the way it went.
+  !> A line from corner to corner is drawn, as a polygon that runs forth and back.
   subroutine polyline(self, corners, line, width)
     class(script_type), intent(inout) :: self  !< the script
     real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the line [px]
@@ -219,7 +221,7 @@ contains
                         decimal(width))
   end subroutine circle
 
-  !> Paths, plates, bands and springs.
+  !> An item that is a path, plate, band or spring is drawn.
   subroutine put_path(item, corners, script)
     type(item_type), intent(in) :: item         !< one thing to draw
     real(wp), intent(in) :: corners(:, :)       !< (2,n) corners of the item [px]
@@ -268,7 +270,7 @@ contains
     end if
   end subroutine put_segment
 
-  !> The outline at a distance around a convex plate, or around a bar with two corners.
+  !> The outline at a distance around a convex plate, or around a bar with two ends.
   pure function band(corners, radius) result(around)
     real(wp), intent(in) :: corners(:, :)  !< (2,n) corners of the plate, or the two ends of the bar [px]
     real(wp), intent(in) :: radius         !< distance of the outline from the corners [px]
@@ -282,7 +284,7 @@ contains
     do i = 1, n
       before = corners(:, i) - corners(:, 1 + mod(i + n - 2, n))
       after = corners(:, 1 + mod(i, n)) - corners(:, i)
-      ! outside is to the right of the way, or to the left
+      ! the outside is on the right or on the left, by the sense in which the corners run
       from = atan2(-sense*before(1), sense*before(2))
       sweep = atan2(-sense*after(1), sense*after(2)) - from
       sweep = sense*modulo(sense*sweep, 2.0_wp*pi)
@@ -293,7 +295,7 @@ contains
     end do
   end function band
 
-  !> The marks of mech9_picture_style, for gnuplot.
+  !> A mark is drawn like that of mech9_picture_style.
   subroutine put_mark(item, at, script)
     type(item_type), intent(in) :: item         !< one thing to draw
     real(wp), intent(in) :: at(2)               !< place on the page [px]
@@ -336,7 +338,7 @@ contains
     type(item_type), intent(in) :: item         !< one thing to draw
     real(wp), intent(in) :: at(2)               !< place on the page [px]
     type(script_type), intent(inout) :: script  !< script to which the commands are appended
-    !> gnuplot puts the middle of a text at its place, other pictures its line.
+    !> gnuplot puts the middle of a text at its place; other pictures put its baseline there.
     real(wp), parameter :: to_middle(2) = [0.0_wp, -3.5_wp]
     character(len=7) :: colour
 

@@ -1,5 +1,5 @@
-!> A film as a page that a browser plays, with nothing from elsewhere: the first picture, the places of everything in every
-!> frame, the values of the recorded columns, and a script.
+!> A film as a page that a browser plays without any other file. It holds the first picture, the places of everything in
+!> all frames, the values of the recorded columns, and a script.
 module mech9_html_film
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -17,16 +17,16 @@ module mech9_html_film
   private
   public :: save_html_film
 
-  !> Places are whole numbers of this part of the page's width: far finer than a screen shows.
+  !> Places are whole multiples of this part of the page's width, which is far finer than a screen shows.
   real(wp), parameter :: finest = 1.0e-5_wp
-  !> Parts of quaternions are whole numbers of 1/steps.
+  !> Components of quaternions are whole multiples of 1/steps.
   real(wp), parameter :: steps = 1.0e5_wp
-  !> Significant digits of the values of columns.
+  !> The number of significant digits of the values of columns.
   integer, parameter :: digits = 6
 
 contains
 
-  !> Write the page. Errors are exit_file.
+  !> The page is written to a file. Errors are exit_file.
   subroutine save_html_film(path, title, scene, film, projection, planar, err)
     character(len=*), intent(in) :: path  !< name of the file
     character(len=*), intent(in) :: title !< title of the mechanism, any text
@@ -61,14 +61,14 @@ contains
     call page%save(path, err)
   end subroutine save_html_film
 
-  !> What the script has to know, as one constant.
+  !> The data for the script are appended as one constant.
   subroutine put_film(scene, film, projection, planar, page)
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(projection_type), intent(in) :: projection  !< from space to the page
     logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     type(page_type), intent(inout) :: page           !< text to which the page is appended
-    integer :: numbers(size(film%p, 2))              !< of the links that have nodes; 0: the others, and link 1
+    integer :: numbers(size(film%p, 2))              !< numbers of the links that have nodes; 0: other links, and link 1
     real(wp) :: unit
     integer :: i, count
 
@@ -101,7 +101,8 @@ contains
     call page%line('};')
   end subroutine put_film
 
-  !> Nodes: number of the link, and place in it; those of link 1 from the middle of the picture.
+  !> The nodes are appended: the number of the link, and the place in it. Places of link 1 are relative to the middle of
+  !> the picture.
   subroutine put_nodes(scene, numbers, centre, unit, page)
     type(scene_type), intent(in) :: scene   !< nodes and items of the picture
     integer, intent(in) :: numbers(:)       !< (links) number of each link in the script; 0: the link has no nodes, or is link 1
@@ -125,7 +126,7 @@ contains
     call page%line('],')
   end subroutine put_nodes
 
-  !> Whole numbers, each with a comma behind it.
+  !> Numbers are appended as whole numbers, each with a comma behind it.
   subroutine put_steps(values, page)
     real(wp), intent(in) :: values(:)       !< the numbers, rounded here
     type(page_type), intent(inout) :: page  !< text to which the page is appended
@@ -136,7 +137,7 @@ contains
     end do
   end subroutine put_steps
 
-  !> Items; the numbers of nodes begin with 0. Items of link 1 alone stand still.
+  !> The items are appended, with numbers of nodes from 0. Items of link 1 alone stand still.
   subroutine put_items(scene, page)
     type(scene_type), intent(in) :: scene   !< nodes and items of the picture
     type(page_type), intent(inout) :: page  !< text to which the page is appended
@@ -161,7 +162,7 @@ contains
     call page%line('],')
   end subroutine put_items
 
-  !> Times, and for each frame the place and the quaternion of each link.
+  !> The times are appended, and for each frame the place and the quaternion of each link.
   subroutine put_frames(film, numbers, count, centre, unit, page)
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
     integer, intent(in) :: numbers(:)       !< (links) number of each link in the script; 0: the link has no nodes, or is link 1
@@ -191,7 +192,7 @@ contains
     call page%line('],')
   end subroutine put_frames
 
-  !> Names and units of the recorded columns, and what they hold in each frame.
+  !> The names and units of the recorded columns are appended, and their values in each frame.
   subroutine put_values(film, page)
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
     type(page_type), intent(inout) :: page  !< text to which the page is appended
@@ -210,7 +211,7 @@ contains
     call page%line('],')
   end subroutine put_values
 
-  !> A list of words without quotes in them, such as names of columns and units.
+  !> A list of words is appended, such as names of columns and units. The words have no quotes in them.
   subroutine put_words(name, words, page)
     character(len=*), intent(in) :: name       !< name of the list
     type(string_type), intent(in) :: words(:)  !< the words, without quotes in them

@@ -1,4 +1,4 @@
-!> A film as one SVG that moves by itself, without a script, so that it also plays where a page shows it as a picture.
+!> A film as one SVG that moves by itself. It has no script, so that it also plays where a page shows it as a picture.
 module mech9_svg_film
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -16,12 +16,12 @@ module mech9_svg_film
   private
   public :: save_svg_film, duration_of
 
-  !> Bounds of the time that a film takes to play [s].
+  !> The bounds of the time that a film takes to play [s].
   real(wp), parameter :: shortest = 3.0_wp, longest = 15.0_wp
 
 contains
 
-  !> Write the picture. Errors are exit_file.
+  !> The moving picture is written to a file. Errors are exit_file.
   subroutine save_svg_film(path, title, scene, film, projection, err)
     character(len=*), intent(in) :: path               !< name of the file
     character(len=*), intent(in) :: title              !< title of the mechanism, any text
@@ -58,7 +58,7 @@ contains
     call page%save(path, err)
   end subroutine save_svg_film
 
-  !> The clock: the times of all frames stand below each other on a strip that is moved behind a window.
+  !> The clock is appended: the times of all frames stand below each other on a strip that moves behind a window.
   subroutine put_clock(film, foot, page)
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
     real(wp), intent(in) :: foot            !< height at which the time stands on the page, downwards [px]
@@ -82,14 +82,15 @@ contains
     call page%line('</g></svg>')
   end subroutine put_clock
 
-  !> How long a film plays: as long as it takes, or less or more where nobody could watch it [s].
+  !> The time that a film takes to play: the time of the motion, but not so short or so long that nobody could watch it
+  !> [s].
   pure real(wp) function duration_of(film) result(duration)
     type(film_type), intent(in) :: film  !< poses and values at the outputs of the run
 
     duration = max(shortest, min(longest, abs(film%times(film%n_frames) - film%times(1))))
   end function duration_of
 
-  !> An item with what it is in each frame. Where nothing moves, in a viewer or a print, the first frame stands.
+  !> An item is appended with its form in each frame. A viewer without motion, or a print, shows the first frame.
   subroutine put_moving(item, number, drawings, symbol, duration, page)
     type(item_type), intent(in) :: item            !< one thing to draw
     integer, intent(in) :: number                  !< number of the item in the scene
@@ -132,7 +133,8 @@ contains
     call page%put('"/></path>')
   end subroutine put_moving_path
 
-  !> The beginning of an animation, up to its values. Frame after frame: there are enough of them.
+  !> The beginning of an animation, up to its values. Frames follow each other without interpolation, since there are
+  !> enough of them.
   pure function timing(duration) result(text)
     real(wp), intent(in) :: duration  !< time that the film takes to play [s]
     character(len=:), allocatable :: text
@@ -157,7 +159,7 @@ contains
     end do
   end subroutine put_values
 
-  !> The path of an item in a frame; where it is not seen, one without length, as an animation needs one.
+  !> The path of an item in a frame. An animation needs a path even where the item is not seen; it then has no length.
   pure function path_in(item, drawing, symbol) result(path)
     type(item_type), intent(in) :: item        !< one thing to draw
     type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page

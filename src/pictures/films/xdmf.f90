@@ -1,6 +1,7 @@
-!> A description in XDMF of the moving links in an HDF5 file, for ParaView and its like.
+!> A description in XDMF of the moving links in an HDF5 file, for ParaView and similar programs.
 !>
-!> Each output is a grid of lines between vertices; the numbers stay in the HDF5 file, which must stand beside.
+!> Each output is a grid of lines between vertices. The numbers stay in the HDF5 file, which must stand beside the
+!> description.
 module mech9_xdmf
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -16,14 +17,14 @@ module mech9_xdmf
   private
   public :: xdmf_type, new_xdmf, xdmf_path
 
-  !> Outputs that are shown at most; of more, every so-manieth is.
+  !> The largest number of outputs that are shown. If there are more they are thinned out evenly.
   integer, parameter :: most_steps = 2000
 
-  !> Counts the rows, and writes the file when it is closed.
+  !> A sink that counts the rows, and writes the description when it is closed.
   type, extends(result_sink_type) :: xdmf_type
     private
-    character(len=:), allocatable :: path        !< of the description
-    character(len=:), allocatable :: data_name   !< of the HDF5 file, without its folder
+    character(len=:), allocatable :: path        !< file of the description
+    character(len=:), allocatable :: data_name   !< name of the HDF5 file, without its folder
     character(len=:), allocatable :: title
     type(time_grid_type) :: grid
     integer :: n_vertices = 0, n_lines = 0
@@ -37,7 +38,7 @@ module mech9_xdmf
 
 contains
 
-  !> The description of an HDF5 file that is going to be written; it gets its name, with the ending .xdmf.
+  !> The description of an HDF5 file that will be written. It has the name of this file with the ending .xdmf.
   pure function new_xdmf(hdf5_path, mechanism, poses) result(sink)
     character(len=*), intent(in) :: hdf5_path      !< name of the HDF5 file
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
@@ -90,7 +91,7 @@ contains
     call page%save(self%path, err)
   end subroutine save_description
 
-  !> One output: lines between vertices, and which link each line belongs to.
+  !> One output is appended: lines between vertices, and the link of each line.
   subroutine put_step(self, row, page)
     type(xdmf_type), intent(in) :: self     !< the description in XDMF
     integer, intent(in) :: row              !< number of the row in the HDF5 file, from 0
@@ -110,7 +111,7 @@ contains
                    item(self, lines, 'Int', 'shape/line_link')//'</Attribute></Grid>')
   end subroutine put_step
 
-  !> Numbers in the HDF5 file.
+  !> A reference to numbers in the HDF5 file.
   pure function item(self, dimensions, type, data_set) result(text)
     type(xdmf_type), intent(in) :: self         !< the description in XDMF
     character(len=*), intent(in) :: dimensions  !< numbers of entries along each dimension

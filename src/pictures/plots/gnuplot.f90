@@ -1,4 +1,4 @@
-!> gnuplot as a process, and text made harmless in its scripts.
+!> gnuplot runs as a child process, and texts are written so that they are harmless in its scripts.
 module mech9_gnuplot
   use, intrinsic :: iso_fortran_env, only: int64
   use mech9_error, only: error_type, raise, exit_file
@@ -11,19 +11,19 @@ module mech9_gnuplot
   private
   public :: quoted, quoted_lines, quoted_path, run_gnuplot, gnuplot_package
 
-  !> What installs it, for messages.
+  !> The name of gnuplot and of its package, for messages.
   character(len=*), parameter :: gnuplot_package = 'gnuplot (Debian: apt-get install gnuplot-nox)'
-  !> Bytes that hold the last mark of a picture, and what may stand behind it: line ends, a check sum.
+  !> The number of bytes at the end of a picture that hold its last mark and what may follow it: line ends or a check sum.
   integer, parameter :: longest_end = 12
-  !> The trailer of a GIF, its last byte.
+  !> The trailer of a GIF, which is its last byte.
   character(len=*), parameter :: gif_end = ';'
 
 contains
 
-  !> Any text as a string of gnuplot. Between single quotes nothing has a meaning but the single quote: a text that
-  !> holds one stands between double quotes, and what means something there is written as octal numbers. (gnuplot also
-  !> takes two single quotes for one, but not at the beginning of a string, nor four of them.) Control characters, which
-  !> could end the line, become blanks.
+  !> Any text as a string of gnuplot. Between single quotes only the single quote has a meaning. A text that holds one
+  !> stands between double quotes, and letters with a meaning there are written as octal numbers. (gnuplot also takes two
+  !> single quotes for one, but not at the beginning of a string, and not four of them.) Control characters, which could
+  !> end the line, become blanks.
   pure function quoted(text) result(string)
     character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: string
@@ -37,7 +37,7 @@ contains
 
   !> Several lines as one string of gnuplot.
   pure function quoted_lines(lines) result(string)
-    type(string_type), intent(in) :: lines(:)  !< of any bytes, one at least
+    type(string_type), intent(in) :: lines(:)  !< lines of any bytes, at least one
     character(len=:), allocatable :: string
     integer :: i
 
@@ -58,9 +58,9 @@ contains
     safe = with_escapes(printable(text), '"\`', ['\042', '\134', '\140'])
   end function escaped
 
-  !> The name of a file as a string of gnuplot. A path that begins with a folder is only ever a file: `<`,
-  !> `|`, `$`, `+` or `-` at the beginning mean other things. Bytes that cannot stand in a line are written
-  !> as octal numbers, for which double quotes are needed, and hence for all that has a meaning there.
+  !> The name of a file as a string of gnuplot. A path that begins with a folder always means a file, while `<`, `|`, `$`,
+  !> `+` or `-` at the beginning have other meanings. Bytes that cannot stand in a line are written as octal numbers
+  !> between double quotes, and so are letters that have a meaning there.
   pure function quoted_path(path) result(string)
     character(len=*), intent(in) :: path  !< name of the file
     character(len=:), allocatable :: string, place
@@ -85,8 +85,8 @@ contains
     string = string//'"'
   end function quoted_path
 
-  !> Let gnuplot carry out a script. Where it is not there, `found` is false; where it fails, the error
-  !> says why. Where gnuplot cannot open the picture it draws on standard output: with `picture` that is dropped.
+  !> A script is carried out by gnuplot. If gnuplot is not installed `found` is false; if it fails, the error gives the
+  !> reason. If gnuplot cannot open the picture it draws on standard output, and with `picture` this output is dropped.
   subroutine run_gnuplot(script, found, err, folder, picture)
     character(len=*), intent(in) :: script             !< commands of gnuplot
     logical, intent(out) :: found                      !< gnuplot is there
@@ -107,7 +107,8 @@ contains
       call raise(err, exit_file, 'gnuplot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%said)))
   end subroutine run_gnuplot
 
-  !> Whether a picture can be written, and was written to its end: gnuplot does not notice that a disk is full.
+  !> The picture must be one that can be written and was written to its end, since gnuplot does not notice that a disk is
+  !> full. Otherwise there is an error.
   subroutine check_picture(path, failed, err)
     character(len=*), intent(in) :: path               !< file of the picture
     logical, intent(in) :: failed                      !< gnuplot ended with an error, so that only the reason is sought
@@ -117,7 +118,7 @@ contains
     logical :: whole
 
     if (failed) then
-      ! where it cannot be opened the system's words are plainer than those of gnuplot
+      ! the words of the system for a file that cannot be opened are plainer than those of gnuplot
       call file%open(path, err)
       if (.not. allocated(err)) call file%close(err)
       return
@@ -136,7 +137,7 @@ contains
     if (.not. whole) call raise(err, exit_file, 'the picture could not be written to its end; is the disk full?')
   end subroutine check_picture
 
-  !> The last bytes of a file; blanks where there are none, as of a device.
+  !> The last bytes of a file, or blanks for a file without enough bytes, such as a device.
   subroutine read_end(path, last)
     character(len=*), intent(in) :: path             !< name of the file
     character(len=longest_end), intent(out) :: last  !< last bytes of the file, or blanks

@@ -1,4 +1,4 @@
-!> A plot of results: asked for before the run, fed with its rows, drawn at its end by gnuplot.
+!> A plot of results is requested before the run, receives its rows, and is drawn at its end by gnuplot.
 module mech9_plot
   use, intrinsic :: iso_fortran_env, only: output_unit
   use mech9_kinds, only: wp
@@ -18,13 +18,13 @@ module mech9_plot
 
   character(len=*), parameter :: script_ending = 'gp'
 
-  !> A sink that keeps what it needs of the rows and draws when it is closed. The table, if there is one, is to be
-  !> closed before.
+  !> A sink that keeps the rows that the plot needs, and draws when it is closed. The table of results, if there is one,
+  !> must be closed before.
   type, extends(result_sink_type) :: plot_type
     private
     character(len=:), allocatable :: title
-    character(len=:), allocatable :: picture    !< its file, unless the request names one
-    character(len=:), allocatable :: table      !< file with the whole results; empty: none
+    character(len=:), allocatable :: picture    !< file of the picture
+    character(len=:), allocatable :: table      !< file with all results; empty: none
     character(len=:), allocatable :: said
     type(plot_request_type) :: request
     type(plot_data_type) :: data
@@ -38,7 +38,7 @@ module mech9_plot
 
 contains
 
-  !> Read what is asked for; before the run, so that a wrong name costs no time (exit_usage).
+  !> The request is read before the run, so that a wrong name costs no time (exit_usage).
   subroutine open_plot(self, text, title, names, units, expected, picture, table, err)
     class(plot_type), intent(inout) :: self            !< the plot
     character(len=*), intent(in) :: text               !< the argument of --plot
@@ -61,7 +61,7 @@ contains
     self%is_open = .true.
   end subroutine open_plot
 
-  !> Take rows.
+  !> Rows of results are taken.
   subroutine write_rows(self, rows, err)
     class(plot_type), intent(inout) :: self            !< the plot
     real(wp), intent(in) :: rows(:, :)                 !< (columns,rows) rows of the results
@@ -73,8 +73,8 @@ contains
     end do
   end subroutine write_rows
 
-  !> Draw what was taken: in the terminal, or into a picture with its script beside it. Where gnuplot is not
-  !> there a picture's script is kept all the same.
+  !> The rows that were taken are drawn, either in the terminal or as a picture with its script beside it. If gnuplot is
+  !> not installed the script of a picture is kept all the same.
   subroutine close_plot(self, err)
     class(plot_type), intent(inout) :: self            !< the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -89,7 +89,7 @@ contains
     self%is_open = .false.
   end subroutine close_plot
 
-  !> What to tell the user after it is closed.
+  !> The line for the user after the plot is closed.
   function words(self)
     class(plot_type), intent(in) :: self  !< the plot
     character(len=:), allocatable :: words
@@ -105,7 +105,7 @@ contains
     logical :: found
 
     call find_terminal_size(columns, rows)
-    ! gnuplot writes to the same standard output
+    ! gnuplot writes to the same standard output, so that earlier output must come before
     flush (output_unit)
     call run_gnuplot(terminal_script(self%request%curves, self%data, columns, rows), found, err)
     if (.not. allocated(err) .and. .not. found) &
@@ -141,15 +141,15 @@ contains
     end if
   end subroutine draw_picture
 
-  !> Whether gnuplot reads a table of this name as it is: a file of columns between blanks.
+  !> Whether gnuplot can read a table with this name as it is: a file of columns with blanks between.
   pure logical function can_be_read(table)
     character(len=*), intent(in) :: table  !< file of the table; empty or '-': none
 
     can_be_read = table /= '' .and. table /= '-' .and. ending_of(table) /= 'csv'
   end function can_be_read
 
-  !> The file of the picture that a plot makes. Where no name is given it stands beside the table, or else in this
-  !> folder with the name of the data file.
+  !> The file of the picture that a plot makes. If no name is given it stands beside the table, or else in the current
+  !> folder under the name of the data file.
   pure subroutine picture_of_plot(text, table, data_file, i, picture)
     character(len=*), intent(in) :: text                   !< the argument of --plot
     character(len=*), intent(in) :: table                  !< file with the whole results; empty or '-': none
@@ -176,7 +176,7 @@ contains
     script = with_ending(picture, script_ending)
   end function script_of_plot
 
-  !> Plot rows that are in memory.
+  !> Rows in memory are plotted.
   subroutine plot_columns(text, title, names, units, rows, picture, said, err)
     character(len=*), intent(in) :: text                !< what to plot, as the argument of --plot
     character(len=*), intent(in) :: title               !< title of the mechanism

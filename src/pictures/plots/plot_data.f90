@@ -1,4 +1,4 @@
-!> The rows of a run that a plot needs: the columns of its curves, thinned out where there are more rows than a picture can
+!> The rows of a run that a plot needs: the columns of its curves, thinned out if there are more rows than a picture can
 !> show.
 module mech9_plot_data
   use mech9_kinds, only: wp
@@ -8,16 +8,16 @@ module mech9_plot_data
   private
   public :: plot_data_type, new_plot_data
 
-  !> Rows that a picture shows at most: ten for each of its pixels from left to right.
+  !> The largest number of rows in a picture: ten for each of its pixels from left to right.
   integer, parameter :: most_rows = 10000
 
   type :: plot_data_type
-    type(string_type), allocatable :: names(:), units(:)   !< of all columns of the results
-    integer, allocatable :: columns(:)                     !< those that are kept, ascending
-    real(wp), allocatable :: values(:, :)                  !< a column for each row that is kept
-    integer :: count = 0                                   !< rows kept
-    integer :: stride = 1                                  !< every so-manieth row is kept
-    integer :: seen = 0                                    !< rows taken
+    type(string_type), allocatable :: names(:), units(:)   !< names and units of all columns of the results
+    integer, allocatable :: columns(:)                     !< numbers of the columns that are kept, ascending
+    real(wp), allocatable :: values(:, :)                  !< (columns kept,rows kept) values
+    integer :: count = 0                                   !< number of rows kept
+    integer :: stride = 1                                  !< one of so many rows is kept
+    integer :: seen = 0                                    !< number of rows taken
   contains
     procedure :: take
     procedure :: place_of
@@ -42,7 +42,7 @@ contains
     allocate (data%values(size(data%columns), 1 + (max(expected, 1) - 1)/data%stride))
   end function new_plot_data
 
-  !> Keep what is needed of the next row.
+  !> The needed columns of the next row are kept, if it is the turn of this row.
   pure subroutine take(self, row)
     class(plot_data_type), intent(inout) :: self  !< the plot data
     real(wp), intent(in) :: row(:)                !< all columns of the results
@@ -54,7 +54,7 @@ contains
     self%seen = self%seen + 1
   end subroutine take
 
-  !> Where a column of the results stands among those that are kept.
+  !> The place of a column of the results among the columns that are kept.
   pure integer function place_of(self, column)
     class(plot_data_type), intent(in) :: self  !< the plot data
     integer, intent(in) :: column              !< number of the column in the results, one that is kept
@@ -62,7 +62,7 @@ contains
     place_of = count(self%columns <= column)
   end function place_of
 
-  !> Least and greatest value of some columns; [0, 0] where there is none that is finite.
+  !> The least and greatest finite value of some columns; [0, 0] if there is none.
   pure function extent(self, columns) result(ends)
     class(plot_data_type), intent(in) :: self  !< the plot data
     integer, intent(in) :: columns(:)          !< numbers of the columns in the results, all of them kept
@@ -73,7 +73,7 @@ contains
     do j = 1, self%count
       do i = 1, size(columns)
         value = self%values(self%place_of(columns(i)), j)
-        if (.not. abs(value) <= huge(value)) cycle   ! NaN and infinities
+        if (.not. abs(value) <= huge(value)) cycle   ! NaN and infinities do not count
         ends = [min(ends(1), value), max(ends(2), value)]
       end do
     end do

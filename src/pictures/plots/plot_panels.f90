@@ -1,4 +1,4 @@
-!> The panels of a plot: which curves share axes, and what the axes are called.
+!> The panels of a plot: the groups of curves that share axes, and the labels of the axes.
 module mech9_plot_panels
   use mech9_text, only: string_type
   use mech9_plot_request, only: curve_type
@@ -8,9 +8,9 @@ module mech9_plot_panels
 
 contains
 
-  !> Panel of each curve, numbered from 1 in the order of their first curves: curves with the same unit upwards
-  !> over the same column, or over columns of the same unit where none is the time. The closure, a length near
-  !> zero, stands alone.
+  !> The number of the panel of each curve, from 1 in the order of their first curves. Curves with the same unit upwards
+  !> share a panel if they are over the same column, or over columns of the same unit other than the time. The closure, a
+  !> length near zero, stands alone.
   pure function panels_of(curves, names, units) result(panels)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(string_type), intent(in) :: names(:)  !< names of all columns of the results
@@ -44,7 +44,7 @@ contains
     over_time = curve%x == 1
   end function over_time
 
-  !> The label of an axis: the column's name where there is one column only, otherwise what the unit measures.
+  !> The label of an axis: the name of its column if there is only one, otherwise the quantity that its unit measures.
   pure function axis_label(columns, names, units) result(label)
     integer, intent(in) :: columns(:)          !< numbers of the columns on the axis, all of one unit
     type(string_type), intent(in) :: names(:)  !< names of all columns of the results
@@ -60,7 +60,7 @@ contains
       label = trim(label//' ['//written(units(columns(1))%text)//']')
   end function axis_label
 
-  !> What has this unit in the results.
+  !> The quantity that has a given unit in the results.
   pure function quantity(unit)
     character(len=*), intent(in) :: unit  !< the unit as the results name it
     character(len=:), allocatable :: quantity
@@ -85,7 +85,7 @@ contains
     end select
   end function quantity
 
-  !> A unit as it is written by hand: with a raised two.
+  !> A unit as it is written by hand, with a raised two.
   pure function written(unit)
     character(len=*), intent(in) :: unit  !< the unit as the results name it
     character(len=:), allocatable :: written

@@ -1,9 +1,9 @@
-!> What is to be plotted: the argument of --plot, read against the columns of the results.
+!> The request for a plot: the argument of --plot, read against the columns of the results.
 !>
 !>     [TARGET:]NAME,NAME:NAME,...
 !>
-!> A name alone is drawn over time, a pair of names the second against the first. TARGET is the picture's
-!> file (.svg, .png or .pdf), or `term`, the terminal. Without names the coordinates are drawn.
+!> A single name is drawn over time; of a pair of names the second is drawn over the first. TARGET is the file of the
+!> picture (.svg, .png or .pdf), or `term` for the terminal. Without names the coordinates are drawn.
 module mech9_plot_request
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name
@@ -12,7 +12,7 @@ module mech9_plot_request
   private
   public :: plot_request_type, curve_type, read_plot_request, target_of_plot, is_picture
 
-  !> One curve: two columns.
+  !> One curve: the numbers of its two columns.
   type :: curve_type
     integer :: x = 1, y = 1
   end type curve_type
@@ -23,17 +23,17 @@ module mech9_plot_request
     type(curve_type), allocatable :: curves(:)
   end type plot_request_type
 
-  !> Curves that are drawn where no name is given, at most: as many as there are colours.
+  !> The largest number of curves that are drawn if no name is given: the number of colours.
   integer, parameter :: most_curves = 7
-  !> Names that a message lists at most.
+  !> The largest number of names that a message lists.
   integer, parameter :: most_names = 40
-  !> Letters of a name that count when the nearest one is looked for.
+  !> The number of letters of a name that are compared when the nearest name is looked for.
   integer, parameter :: longest_name = 64
   character(len=*), parameter :: terminal = 'term'
 
 contains
 
-  !> Read a request. An unknown name is a wrong command line (exit_usage).
+  !> A request is read. An unknown name is an error of the command line (exit_usage).
   pure subroutine read_plot_request(text, names, request, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
@@ -61,7 +61,7 @@ contains
     end do
   end subroutine read_plot_request
 
-  !> Where a plot is to be drawn: the file of a picture, '-' for the terminal, or empty where nothing is said.
+  !> The place where a plot is to be drawn: the file of a picture, '-' for the terminal, or empty if nothing is said.
   pure subroutine target_of_plot(text, target)
     character(len=*), intent(in) :: text                  !< the argument of --plot
     character(len=:), allocatable, intent(out) :: target  !< file of the picture; '-': the terminal; empty: not said
@@ -85,7 +85,7 @@ contains
     end select
   end function is_picture
 
-  !> What stands before the names: a picture or the terminal. `at` is where the names begin.
+  !> The target before the names is read: a picture or the terminal. `at` is the place where the names begin.
   pure subroutine take_target(text, request, at)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(plot_request_type), intent(inout) :: request  !< what is to be plotted
@@ -110,7 +110,7 @@ contains
     end do
   end subroutine take_target
 
-  !> The coordinates q1, q2, ..., or as many of them as can be told apart.
+  !> The coordinates q1, q2 and so on are requested, up to the number of colours.
   pure subroutine take_coordinates(names, request)
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
     type(plot_request_type), intent(inout) :: request  !< what is to be plotted
@@ -124,7 +124,7 @@ contains
     end do
   end subroutine take_coordinates
 
-  !> NAME or NAME:NAME, and step over it.
+  !> A curve is read, written as NAME or NAME:NAME, and `at` moves behind it.
   pure subroutine take_curve(text, names, at, curve, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
@@ -139,8 +139,8 @@ contains
     call take_name(text, names, at, curve%y, err)
   end subroutine take_curve
 
-  !> The name that begins at a place, and step over it. Names may hold commas and colons: the longest that
-  !> fits and ends where an item can end is meant.
+  !> The name that begins at a place is read, and `at` moves behind it. Names may hold commas and colons: the longest name
+  !> that fits and ends where an item can end is taken.
   pure subroutine take_name(text, names, at, column, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
@@ -174,7 +174,7 @@ contains
     end do
   end subroutine skip_blanks
 
-  !> An unknown name: which one is near, or which there are.
+  !> An unknown name is refused, with the nearest name or a list of the names.
   pure subroutine refuse_name(word, names, err)
     character(len=*), intent(in) :: word               !< the unknown name
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first

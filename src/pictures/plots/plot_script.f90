@@ -1,4 +1,4 @@
-!> The script by which gnuplot draws a plot.
+!> The script with which gnuplot draws a plot.
 module mech9_plot_script
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
@@ -20,16 +20,16 @@ module mech9_plot_script
   !> they differ in grey as well.
   character(len=7), parameter :: colours(7) = &
     ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000']
-  !> Up to so many rows each is marked.
+  !> Each row is marked if there are at most this many.
   integer, parameter :: few_rows = 30
-  !> Shorter side of a panel with equal scales against the longer one, at least.
+  !> The least ratio of the sides of a panel with equal scales.
   real(wp), parameter :: flattest = 0.2_wp
-  !> A space without width, in UTF-8.
+  !> A space without width in UTF-8.
   character(len=*), parameter :: thin_space = char(226)//char(128)//char(139)
 
 contains
 
-  !> The script of a picture. It can be used again: its first line says how.
+  !> The script of a picture. Users can run it again, and its first line tells how.
   pure function picture_script(title, curves, data, picture, script, table) result(text)
     character(len=*), intent(in) :: title      !< title of the mechanism
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
@@ -65,7 +65,7 @@ contains
     text = text//'unset output'//line_end
   end function picture_script
 
-  !> The script of a plot in letters, a panel below the other.
+  !> The script of a plot in letters, with one panel below the other.
   pure function terminal_script(curves, data, columns, rows) result(text)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -80,14 +80,14 @@ contains
            to_text(rows)//line_end//'set key above'//line_end//'set tics nomirror'//line_end//inline_data(data)
     do i = 1, maxval(panels)
       own = pack(curves, panels == i)
-      ! a dumb terminal cannot turn the label of the upward axis: it stands above
+      ! a dumb terminal cannot turn the label of the upward axis, so that it stands above the panel
       text = text//'set title '//quoted(axis_label(own%y, data%names, data%units))//line_end// &
              axes(own, data, '')//curve_commands(own, data, data_block, with='lines')
     end do
   end function terminal_script
 
-  !> The title in lines that fit above the plot. gnuplot leaves `]]>` as it is in an SVG, where it must not stand: a
-  !> space without width comes between.
+  !> The title in lines that fit above the plot. gnuplot copies `]]>` into an SVG, where it must not stand; a space
+  !> without width is therefore put into it.
   pure function drawn_title(title, picture, curves, panels, data) result(lines)
     character(len=*), intent(in) :: title      !< title of the mechanism
     character(len=*), intent(in) :: picture    !< name of the file of the picture
@@ -110,7 +110,7 @@ contains
     end do
   end function drawn_title
 
-  !> The terminal of gnuplot for the ending of a picture, in its size.
+  !> The terminal of gnuplot for the ending of a picture, with the size of the picture.
   pure function terminal_of(picture, curves, panels, data) result(text)
     character(len=*), intent(in) :: picture    !< name of the file of the picture
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
@@ -132,7 +132,7 @@ contains
     end select
   end function terminal_of
 
-  !> The size of a picture.
+  !> The size of a picture, from the number of its panels or from the shape of its ranges.
   pure subroutine find_size(curves, panels, data, width, height)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     integer, intent(in) :: panels(:)           !< number of the panel of each curve
@@ -149,7 +149,7 @@ contains
     end if
   end subroutine find_size
 
-  !> The size of a picture with equal scales, around an area of the shape of its ranges.
+  !> The size of a picture with equal scales, whose area has the shape of the ranges of its axes.
   pure subroutine true_shape(curves, data, width, height)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -165,7 +165,8 @@ contains
     if (size(curves) > 1) width = width + letter*(longest_name(curves, data) + 3)
   end subroutine true_shape
 
-  !> What the axes with equal scales take, without margins. A straight path along an axis gets some room across.
+  !> The lengths of axes with equal scales, without margins. A straight path along an axis gets some room at right angles
+  !> to it.
   pure function spans(curves, data) result(sides)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -178,7 +179,7 @@ contains
     sides = max(sides, flattest*maxval(sides))
   end function spans
 
-  !> What all pictures have in common.
+  !> The commands that all pictures have in common.
   pure function style() result(text)
     character(len=:), allocatable :: text
     integer :: i
@@ -192,7 +193,7 @@ contains
     text = text//'set linetype cycle '//to_text(size(colours))//line_end
   end function style
 
-  !> The rows as a block of data within the script: names, then numbers.
+  !> The rows as a block of data within the script: names first, then numbers.
   pure function inline_data(data) result(text)
     type(plot_data_type), intent(in) :: data  !< rows and columns that are plotted
     character(len=:), allocatable :: text, rows
@@ -217,7 +218,7 @@ contains
     text = text//line_end//rows//data_end//line_end
   end function inline_data
 
-  !> Panels above each other, their axes of one length whatever their labels are.
+  !> The commands for panels above each other. Their axes have one length whatever their labels are.
   pure function stack(lines, curves, panels, data) result(text)
     type(string_type), intent(in) :: lines(:)  !< lines of the title
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
@@ -250,7 +251,7 @@ contains
     end do
   end function longest_name
 
-  !> One panel: its axes and its curves.
+  !> The commands for one panel: its axes and its curves.
   pure function panel(curves, data, source, stacked, last) result(text)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -267,7 +268,7 @@ contains
                                 with=trim(merge('linespoints', 'lines      ', data%count <= few_rows)))
   end function panel
 
-  !> Labels and ranges. Numbers are written with as many digits as tell them apart.
+  !> The commands for labels and ranges. Numbers are written with as many digits as tell them apart.
   pure function axes(curves, data, label) result(text)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -290,7 +291,7 @@ contains
     end if
   end function axes
 
-  !> Whether both axes have the same unit and the picture is to show true shapes.
+  !> Whether both axes have the same unit, so that the picture shows true shapes.
   pure logical function equal_scales(curves, data)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -299,7 +300,7 @@ contains
     if (equal_scales) equal_scales = maxval(spans(curves, data)) > tiny(1.0_wp)
   end function equal_scales
 
-  !> The range of an axis around what the data take, with a margin.
+  !> The range of an axis around the values, with a margin.
   pure function axis_range(ends, span) result(text)
     real(wp), intent(in) :: ends(2)  !< least and greatest value
     real(wp), intent(in) :: span     !< length of the axis, without margins
@@ -311,7 +312,7 @@ contains
     text = '['//to_text(middle - half, 9)//':'//to_text(middle + half, 9)//']'
   end function axis_range
 
-  !> How gnuplot writes the numbers of an axis.
+  !> The format in which gnuplot writes the numbers of an axis.
   pure function format_for(ends) result(text)
     real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
     character(len=:), allocatable :: text
@@ -319,7 +320,7 @@ contains
     text = quoted('%.'//to_text(digits_needed(ends))//'g')
   end function format_for
 
-  !> Letters that the marks of an axis take: the digits, and for numbers like -3.5e-13 or -0.00035 more.
+  !> The number of letters that the numbers of an axis take: their digits, and more for numbers like -3.5e-13 or -0.00035.
   pure integer function letters_needed(ends)
     real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
     real(wp), parameter :: smallest_short = 1e-2_wp, largest_short = 1e6_wp
@@ -331,7 +332,7 @@ contains
     if ((size > 0.0_wp .and. size < smallest_short) .or. size >= largest_short) letters_needed = letters_needed + exponent
   end function letters_needed
 
-  !> Digits by which neighbouring marks of an axis differ, six at least.
+  !> The number of digits by which neighbouring marks of an axis differ, at least six.
   pure integer function digits_needed(ends)
     real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
     real(wp) :: size, span
@@ -367,7 +368,7 @@ contains
     text = text//line_end
   end function curve_commands
 
-  !> What the key calls a curve.
+  !> The name of a curve in the key.
   pure function curve_name(curve, data) result(name)
     type(curve_type), intent(in) :: curve     !< the curve with its two columns
     type(plot_data_type), intent(in) :: data  !< rows and columns that are plotted

@@ -1,7 +1,8 @@
 !> The structure of a mechanism as a graph in the language of Graphviz, and as a picture that dot makes of it.
 !>
-!> Links are nodes, pairs are edges, drawn in the order of computation. Links that a block reaches first stand
-!> together in a cluster; its pairs have its colour. Independent coordinates are drawn heavy.
+!> Links are nodes, and pairs are edges, drawn in the order of computation. Links that a block reaches first stand
+!> together in a cluster, and the pairs of the block have the colour of the cluster. Independent coordinates have thick
+!> edges.
 module mech9_structure_graph
   use mech9_error, only: error_type, raise, add_place, exit_file
   use mech9_text, only: string_type, to_text
@@ -17,18 +18,19 @@ module mech9_structure_graph
   public :: save_structure_graph, text_of_graph
 
   character, parameter :: line_end = achar(10)
-  !> Colours that people with any kind of colour vision tell apart, in turn for the blocks.
+  !> Colours that people with any kind of colour vision tell apart; the blocks take them in turn.
   character(len=7), parameter :: colours(6) = &
     ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#b07800', '#56b4e9']
-  !> Links up to which dot lays the graph out in layers, within a second; beyond, forces between links do.
+  !> The number of links up to which dot lays the graph out in layers, which takes a second; larger graphs are laid out by
+  !> forces between links.
   integer, parameter :: most_layered = 300
-  !> Links of a block that a label lists at most.
+  !> The largest number of coordinates of a block that a label lists.
   integer, parameter :: most_listed = 8
 
 contains
 
-  !> Write the graph into a file; by its ending as text (.dot, .gv), or as a picture (.svg, .png, .pdf) with the text
-  !> beside it. Where dot is not there the text is kept, and `said` tells how to use it.
+  !> The graph is written into a file. By the ending of its name this is a text (.dot, .gv), or a picture (.svg, .png,
+  !> .pdf) with the text beside it. If dot is not installed the text is kept, and `said` tells how to use it.
   subroutine save_structure_graph(path, mechanism, plan, drawn, said, err)
     character(len=*), intent(in) :: path                !< file of the graph or of its picture
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
@@ -48,7 +50,7 @@ contains
     call add_place(err, 'no picture of the structure')
   end subroutine save_structure_graph
 
-  !> The file of a graph's text: the one that is asked for, or one beside the picture that is.
+  !> The file of the text of a graph: the requested file, or one beside the requested picture.
   pure function text_of_graph(path) result(text_path)
     character(len=*), intent(in) :: path  !< file of the graph or of its picture
     character(len=:), allocatable :: text_path
@@ -61,7 +63,7 @@ contains
     end select
   end function text_of_graph
 
-  !> Let dot draw.
+  !> The picture is drawn by dot.
   subroutine draw(path, text, text_path, drawn, said, err)
     character(len=*), intent(in) :: path                  !< file of the picture
     character(len=*), intent(in) :: text                  !< text of the graph
@@ -126,7 +128,7 @@ contains
     text = text//'  }'//line_end
   end function cluster
 
-  !> What a block solves, and for what.
+  !> The chains that a block closes, and the coordinates for which it solves them.
   pure function words_of(plan, block) result(words)
     type(plan_type), intent(in) :: plan    !< the plan of the mechanism
     type(block_type), intent(in) :: block  !< the block
@@ -140,7 +142,7 @@ contains
     if (listed < size(block%unknowns)) words = words//', ...'
   end function words_of
 
-  !> The pairs of a block, from the link that is known.
+  !> The pairs of a block as edges, each from the link that is known before.
   pure function edges(mechanism, plan, b) result(text)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
@@ -167,8 +169,8 @@ contains
     colour = colours(1 + modulo(b - 1, size(colours)))
   end function colour
 
-  !> Any text as a string of Graphviz: in double quotes only they and the backslash have a meaning. `&`, which
-  !> begins names of letters, is such a name.
+  !> Any text as a string of Graphviz. Between double quotes only the double quote, the backslash and `&`, which begins
+  !> names of letters, have a meaning.
   pure function quoted(text) result(string)
     character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: string

@@ -6,18 +6,18 @@ module mech9_title_lines
   private
   public :: title_lines, letters_of
 
-  !> What stands where a title goes on and there is no more room: an ellipsis in UTF-8.
+  !> An ellipsis in UTF-8, which stands where a title goes on but there is no more room.
   character(len=*), parameter :: more = char(226)//char(128)//char(166)
 
 contains
 
-  !> A title in lines, broken at blanks, or within words that are longer than a line. Where it takes more lines than
-  !> there may be, the last one ends with an ellipsis.
+  !> A title in lines, broken at blanks, or within words that are longer than a line. If it takes more lines than allowed,
+  !> the last line ends with an ellipsis.
   pure function title_lines(title, room, most) result(lines)
     character(len=*), intent(in) :: title       !< title of the mechanism, any bytes
     integer, intent(in) :: room                 !< largest number of letters in a line, at least two
     integer, intent(in) :: most                 !< largest number of lines, at least one
-    type(string_type), allocatable :: lines(:)  !< of printable text; one at least, which can be empty
+    type(string_type), allocatable :: lines(:)  !< lines of printable text; at least one, which can be empty
     type(string_type) :: found(most)
     character(len=:), allocatable :: left
     integer :: n, last
@@ -37,7 +37,7 @@ contains
     lines = found(:min(n, most))
   end function title_lines
 
-  !> The last byte of the first line of a text.
+  !> The number of the last byte of the first line of a text.
   pure integer function end_of_line(text, room) result(last)
     character(len=*), intent(in) :: text  !< text that is left, in UTF-8
     integer, intent(in) :: room           !< largest number of letters in a line
@@ -50,7 +50,7 @@ contains
     if (blank > 1) last = blank
   end function end_of_line
 
-  !> How many letters wide a text is, letters of the usual width.
+  !> The width of a text, in letters of the usual width.
   pure integer function letters_of(text) result(letters)
     character(len=*), intent(in) :: text  !< in UTF-8
     integer :: i, halves
@@ -64,7 +64,7 @@ contains
     letters = (halves + 1)/2
   end function letters_of
 
-  !> How many bytes of a text fit into so many letters, whole characters only; those of one character at least.
+  !> The number of bytes of a text that fit into a number of letters. They are whole characters, at least one.
   pure integer function bytes_of(text, letters) result(bytes)
     character(len=*), intent(in) :: text  !< in UTF-8
     integer, intent(in) :: letters        !< largest number of letters
@@ -79,8 +79,8 @@ contains
     end do
   end function bytes_of
 
-  !> The width of the character at a place, in halves of a small letter. Those of three and more bytes, letters of East
-  !> Asia and pictures among them, take two letters.
+  !> The width of the character at a place, in halves of a small letter. Characters of three or more bytes, among them
+  !> letters of East Asia and pictures, are two letters wide.
   pure integer function halves_of(text, place) result(halves)
     character(len=*), intent(in) :: text  !< in UTF-8
     integer, intent(in) :: place          !< place of the first byte of the character

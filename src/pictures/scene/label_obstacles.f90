@@ -27,7 +27,7 @@ contains
   !> The obstacles of all lines and marks of a scene, of the title, the foot and the axes.
   pure subroutine find_obstacles(scene, drawing, projection, obstacles)
     type(scene_type), intent(in) :: scene            !< without labels
-    type(drawing_type), intent(in) :: drawing        !< of the first frame
+    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page of the first frame
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(obstacles_type), intent(out) :: obstacles   !< lines that labels should not cover
     real(wp) :: foot(2), tip(2)
@@ -116,7 +116,7 @@ contains
   !> The radius of the largest symbol at a place [px].
   pure real(wp) function clear_radius(scene, drawing, symbol, at) result(radius)
     type(scene_type), intent(in) :: scene      !< without labels
-    type(drawing_type), intent(in) :: drawing  !< of the first frame
+    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page of the first frame
     real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
     real(wp), intent(in) :: at(2)              !< the place on the page [px]
     integer, parameter :: solid(*) = [in_block, in_pin, in_cross, as_ring, as_ball, as_dot, as_centre, as_free, &
