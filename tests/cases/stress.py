@@ -300,12 +300,12 @@ class Stress:
         print('| together | ' + ' | '.join(str(total[code]) for code in codes) + f' | {sum(total.values())} |\n')
         for name, words in (('gap', 'largest gap of a loop, of the size'), ('rate', 'largest opening by rates, of the rates'),
                             ('bend', 'largest opening by accelerations, of the motion'),
-                            ('apart', 'largest distance from the course, times the least singular value'),
+                            ('apart', 'largest distance from the curve, times the least singular value'),
                             ('limit', 'largest error of a dead point, driven coordinate in rad or sizes'),
                             ('condition', 'largest condition number, one over the least singular value'),
                             ('seconds', 'longest run, s')):
             print(f'- {words}: {self.worst[name]:.1e}')
-        print(f'- courses that meet places where branches cross, for which codes 0 and 6 are both right: {self.unsettled}')
+        print(f'- curves that meet positions where branches cross, for which codes 0 and 6 are both right: {self.unsettled}')
 
 
 def stretch_coupler(mechanism, point):
