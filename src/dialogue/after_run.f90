@@ -1,5 +1,5 @@
-!> What follows a run in a conversation: its results are shown, plotted, compared with those of the run before; a value is
-!> changed, and the mechanism run again.
+!> The part of a conversation after a run: its results are shown, plotted and compared with those of the run before; a
+!> value is changed, and the mechanism is run again.
 module mech9_after_run
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
@@ -18,10 +18,11 @@ module mech9_after_run
   private
   public :: look_back, over, again, changing
 
-  !> What the user wants next: no more; another run; to be asked for a value first.
+  !> The next step that the user wants: to end, to run again, or to be asked for a value first.
   integer, parameter :: over = 0, again = 1, changing = 2
 
-  !> Rows that are shown unless a number is given; words longer than this ask for nothing.
+  !> The number of rows that are shown unless the user gives one, the largest number of rows, and the length up to which a
+  !> line is read.
   integer, parameter :: usual_rows = 8, most_rows = 1000, longest_line = 500
   character(len=7), parameter :: commands(6) = [character(len=7) :: 'show', 'plot', 'compare', 'change', 'run', 'done']
   character(len=*), parameter :: help = &
@@ -32,7 +33,7 @@ module mech9_after_run
 
 contains
 
-  !> Hear what the user wants of a run that is over, until it is more than looking at it.
+  !> Commands about a finished run are heard and carried out, until one of them asks for more than a look at results.
   subroutine look_back(conversation, kept, earlier, changed, next)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept                 !< results of the last run; none where it did not come that far
@@ -78,7 +79,7 @@ contains
     end do
   end subroutine look_back
 
-  !> The commands, and the names of the columns.
+  !> The words that can be completed: the commands and the names of the columns.
   pure subroutine words_here(kept, words)
     type(kept_rows_type), intent(in) :: kept                 !< results of the last run
     type(string_type), allocatable, intent(out) :: words(:)  !< the commands and the names of the columns
@@ -102,7 +103,7 @@ contains
     if (kept%count > 0) call conversation%say('The columns: '//join(kept%names, ' '))
   end subroutine say_columns
 
-  !> Whether there is something to look at; says so where there is not.
+  !> Whether there are results to look at. If there are none the user is told.
   logical function has_rows(conversation, kept)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -111,7 +112,7 @@ contains
     if (.not. has_rows) call conversation%say('The run has no results to look at.')
   end function has_rows
 
-  !> "20 q1 P.x": the last rows of some columns.
+  !> The last rows of some columns are shown, as a text such as "20 q1 P.x" asks for.
   subroutine show(conversation, kept, what)
     class(conversation_type), intent(in) :: conversation !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept    !< results of the last run
@@ -138,7 +139,7 @@ contains
     write (error_unit, '(a)', advance='no') rows_text(kept, columns, rows)
   end subroutine show
 
-  !> The column with a name; none at all where there is none of that name.
+  !> The column with a name is appended to a list. The list becomes empty if there is no such column.
   subroutine append_column(conversation, kept, name, columns)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -159,7 +160,7 @@ contains
     end if
   end subroutine append_column
 
-  !> A plot in the terminal, unless a picture is named.
+  !> A plot is drawn in the terminal, or as a picture if one is named.
   subroutine plot(conversation, kept, what)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -196,7 +197,7 @@ contains
     write (error_unit, '(a)', advance='no') comparison_text(comparison, kept)
   end subroutine compare
 
-  !> A list of columns with the name of a point as its three coordinates: "q1, P" as "q1,P.x,P.y,P.z".
+  !> A list of columns, in which the name of a point becomes its three coordinates: "q1, P" becomes "q1,P.x,P.y,P.z".
   pure function with_points(kept, list) result(text)
     type(kept_rows_type), intent(in) :: kept  !< results of the last run
     character(len=*), intent(in) :: list      !< the text behind the command
@@ -228,7 +229,7 @@ contains
     is_column = .false.
   end function is_column
 
-  !> Commas as blanks.
+  !> A text with blanks instead of its commas.
   pure function with_blanks(text) result(plain)
     character(len=*), intent(in) :: text  !< words with blanks or commas between
     character(len=len(text)) :: plain

@@ -1,4 +1,4 @@
-!> One question: put in words, its answer heard, held against the checks of the data file, and kept.
+!> One question is asked, and its answer is heard, checked like a data file, and kept.
 module mech9_asking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_text, only: string_type, to_text, lower, nearest_name
@@ -20,12 +20,12 @@ module mech9_asking
   private
   public :: ask, take_answer, announce_topic
 
-  !> Answers that begin no further group, as Enter does.
+  !> Answers that begin no further group, as an empty answer does.
   character(len=7), parameter :: no_more(3) = [character(len=7) :: 'none', 'no', 'no more']
 
 contains
 
-  !> Put the question that is due, and take its answer.
+  !> The question that is due is asked, and its answer is taken.
   subroutine ask(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type) :: question
@@ -59,7 +59,7 @@ contains
     end if
   end subroutine ask
 
-  !> The question before. A group whose first question is due, and that is not complete, is left out.
+  !> The question before becomes due. If the first question of an incomplete group is due, the group is left out instead.
   subroutine go_back(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     logical :: done
@@ -73,7 +73,7 @@ contains
     if (.not. done) call conversation%say('This is the first question.')
   end subroutine go_back
 
-  !> Take away the load, point or body that is spoken of.
+  !> The load, point or body of the present question is taken away.
   subroutine leave_out(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=:), allocatable :: name
@@ -92,7 +92,7 @@ contains
     end if
   end subroutine leave_out
 
-  !> Take an answer to the question that is due.
+  !> An answer to the question that is due is taken.
   subroutine take_answer(conversation, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it
@@ -111,7 +111,7 @@ contains
     end select
   end subroutine take_answer
 
-  !> The title of a topic where it begins.
+  !> The title of a topic is shown where the topic begins.
   subroutine announce_topic(conversation, question)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
@@ -125,7 +125,7 @@ contains
     conversation%opened(question%topic) = .true.
   end subroutine announce_topic
 
-  !> What stands above the prompt, and the prompt.
+  !> The lines above the prompt are shown, and the prompt is made.
   subroutine introduce(conversation, question, default, prompt)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
@@ -158,7 +158,7 @@ contains
     end associate
   end subroutine introduce
 
-  !> Enter: what stands in brackets.
+  !> An empty answer takes the text in brackets.
   subroutine take_default(conversation, default)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(default_type), intent(in) :: default                !< the answer that Enter gives
@@ -172,7 +172,7 @@ contains
     end if
   end subroutine take_default
 
-  !> The answer about a name.
+  !> The answer to a question about a name is taken.
   subroutine take_item(conversation, question, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
@@ -194,8 +194,8 @@ contains
     end if
   end subroutine take_item
 
-  !> Whether an answer makes more or fewer coordinates independent than the structure allows. What it hardly allows is
-  !> refused once: given again it is taken.
+  !> The number of coordinates that an answer makes independent is checked. An answer that the structure hardly allows is
+  !> refused once, and taken if it is given again.
   subroutine count_independent(conversation, text, problem)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: text                     !< the answer as a data file writes it
@@ -209,7 +209,7 @@ contains
     conversation%doubted = text
   end subroutine count_independent
 
-  !> Note an answer and go on.
+  !> An answer is noted, and the next question becomes due.
   subroutine keep_answer(conversation, text)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: text                     !< the answer as a data file writes it
@@ -220,7 +220,7 @@ contains
     call move_on(conversation)
   end subroutine keep_answer
 
-  !> The next question; what was typed is kept.
+  !> The next question becomes due, and the answers are kept in the draft's file.
   subroutine move_on(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
 
@@ -228,8 +228,8 @@ contains
     call conversation%keep()
   end subroutine move_on
 
-  !> Whether an answer fits what is known already, as the reader of data files would judge it. Structural
-  !> data that go together are judged together, when the structure is complete.
+  !> An answer is checked against the other answers, as the reader of data files would. Structural data that belong
+  !> together are checked together when the structure is complete.
   subroutine hold_against_rest(conversation, question, text, problem)
     class(conversation_type), intent(in) :: conversation   !< the conversation as it stands
     type(question_type), intent(in) :: question            !< the question
@@ -257,7 +257,7 @@ contains
     end associate
   end subroutine hold_against_rest
 
-  !> Which seldom names of a group are asked for.
+  !> The answer about the rarely used names of a group is taken.
   subroutine take_seldom(conversation, question, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
@@ -283,11 +283,11 @@ contains
     call move_on(conversation)
   end subroutine take_seldom
 
-  !> Names separated by blanks or commas.
+  !> Names separated by blanks or commas are read.
   pure subroutine take_names(line, rows, asked, problem)
     character(len=*), intent(in) :: line                   !< the answer, without blanks around it
     integer, intent(in) :: rows(:)                         !< rows in item_table of the names that can be meant
-    logical, intent(inout) :: asked(:)                     !< (rows of item_table) which seldom names are asked for
+    logical, intent(inout) :: asked(:)                     !< (rows of item_table) which rarely used names the user wants to give
     character(len=:), allocatable, intent(out) :: problem  !< the reason why a word is no name; empty: all are names
     character(len=:), allocatable :: plain, hint
     integer, parameter :: longest_list = 200
@@ -315,7 +315,7 @@ contains
     problem = ''
   end subroutine take_names
 
-  !> How the structure is given. What was given in another way is forgotten.
+  !> The answer about the way of giving the structure is taken. Data that were given in another way are forgotten.
   subroutine take_way(conversation, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it
@@ -340,7 +340,7 @@ contains
     call move_on(conversation)
   end subroutine take_way
 
-  !> Whether dependent coordinates at the start are asked for.
+  !> The answer about guesses of the dependent coordinates at the start is taken.
   subroutine take_guesses(conversation, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it

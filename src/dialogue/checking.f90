@@ -1,5 +1,5 @@
-!> The checks between the questions: of the structure as soon as it is complete, of the geometry by putting the mechanism
-!> together.
+!> The checks between the questions. The structure is checked as soon as it is complete, and the geometry by assembling
+!> the mechanism.
 module mech9_checking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, exit_structure
@@ -24,7 +24,8 @@ module mech9_checking
 
 contains
 
-  !> Carry out the check that is due, and go on where all is well; else offer a correction.
+  !> The check that is due is carried out. The next question becomes due if all is well; otherwise the user is offered a
+  !> correction.
   subroutine check(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< what the program computes
@@ -38,7 +39,7 @@ contains
     end if
   end subroutine check
 
-  !> Show the structure, or what is wrong with it.
+  !> The structure is shown, or its errors.
   subroutine judge_structure(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
 
@@ -58,7 +59,7 @@ contains
     end associate
   end subroutine judge_structure
 
-  !> Put the mechanism together at the start and tell how it went.
+  !> The mechanism is assembled at the start, and the user is told the result.
   subroutine judge_start(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< what the program computes
@@ -89,7 +90,7 @@ contains
     call offer_correction(conversation, faults, otherwise)
   end subroutine judge_start
 
-  !> Positions of all coordinates, and what the geometry says of the mobility.
+  !> The user is told the positions of all coordinates, and the mobility by the geometry.
   subroutine tell_start(conversation, mechanism, plan, start)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism

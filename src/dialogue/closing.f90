@@ -28,8 +28,8 @@ module mech9_closing
 
 contains
 
-  !> Show all answers and what is still wrong, and hear what to change; once all is right, what to do.
-  !> `run_path` is the data file to be run then; empty: none.
+  !> All answers and the remaining errors are shown, and corrections are heard. When everything is right the user decides
+  !> to save or to run.
   subroutine close_conversation(conversation, needs_drives, run_path)
     class(conversation_type), intent(inout) :: conversation   !< the conversation as it stands
     logical, intent(in) :: needs_drives                       !< the program needs a drive for each independent coordinate
@@ -59,7 +59,7 @@ contains
     end select
   end subroutine close_conversation
 
-  !> All answers where the end is reached the first time, and what is wrong with them.
+  !> All answers are shown when the end is reached first, and their errors each time.
   subroutine show_all(conversation, needs_drives)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     logical, intent(in) :: needs_drives                      !< the program needs a drive for each independent coordinate
@@ -83,7 +83,7 @@ contains
     call show_faults(conversation, faults)
   end subroutine show_all
 
-  !> Save, run, both or neither.
+  !> The user chooses to save, to run, both or neither, and the data file is saved.
   subroutine finish(conversation, run_path)
     class(conversation_type), intent(inout) :: conversation   !< the conversation as it stands
     character(len=:), allocatable, intent(inout) :: run_path  !< data file to be run then; empty: none
@@ -121,7 +121,7 @@ contains
     if (line == 'run') run_path = conversation%draft_path
   end subroutine finish
 
-  !> Write the data file under a name that is asked for. `saved` is false where the user went back or left.
+  !> The data file is written under a name for which the user is asked. `saved` is false if the user went back or left.
   subroutine save(conversation, saved)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     logical, intent(out) :: saved                            !< the data file was written
@@ -174,14 +174,14 @@ contains
     do i = 1, draft%count_of('drive')
       table = unquoted(draft%value('drive', i, 'file'))
       if (table == '') cycle
-      ! named as the data file will name it, from its own folder on
+      ! the data file names its tables from its own folder on
       if (table(1:1) /= '/') table = folder_of(path)//table
       if (same_file(table, path)) return
     end do
     is_read = .false.
   end function is_read
 
-  !> Write all answers as a finished data file; then what was kept of them on the way is of no more use.
+  !> All answers are written as a finished data file. The file of the draft is then deleted.
   subroutine write_data_file(conversation, path, err)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: path                  !< name of the data file
@@ -197,7 +197,7 @@ contains
     if (.not. same_file(conversation%draft_path, path)) call delete_file(conversation%draft_path)
   end subroutine write_data_file
 
-  !> A file that is there and is not the one being edited is overwritten only where the user says so.
+  !> An existing file other than the one being edited is overwritten only if the user agrees.
   subroutine agree_to_overwrite(conversation, path, agreed)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: path                     !< name of the data file

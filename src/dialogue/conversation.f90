@@ -1,4 +1,5 @@
-!> A conversation as it stands, and how it is led: what is said and heard, kept in a file, and common to all questions.
+!> The state of a conversation, and the parts that are common to all questions: words to the user, answers, and the file
+!> in which these are kept.
 module mech9_conversation
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
@@ -15,8 +16,7 @@ module mech9_conversation
   private
   public :: conversation_type, going, left, cut_off, finished
 
-  !> How a conversation ended: it goes on; the user left; its input ended or was interrupted; it came to
-  !> its end.
+  !> The states of a conversation: it goes on; the user left; its input ended or was interrupted; it came to its end.
   integer, parameter :: going = 0, left = 1, cut_off = 2, finished = 3
 
   type :: conversation_type
@@ -24,17 +24,17 @@ module mech9_conversation
     type(interview_type) :: interview
     type(line_input_type) :: input
     integer :: state = going
-    character(len=:), allocatable :: draft_path      !< where what is typed is kept; empty: nothing is yet
-    character(len=:), allocatable :: stem            !< of the names of files; empty: made from the title
-    character(len=:), allocatable :: data_path       !< of the finished data file; empty: made from the stem
-    logical :: may_overwrite = .false.               !< that file is the one being edited
-    logical :: cannot_keep = .false.                 !< the draft could not be written, and this was told
-    integer :: topic = 0                             !< whose title was shown last
+    character(len=:), allocatable :: draft_path      !< file in which the answers are kept; empty: none yet
+    character(len=:), allocatable :: stem            !< beginning of the names of files; empty: to be made from the title
+    character(len=:), allocatable :: data_path       !< name of the finished data file; empty: to be made from the stem
+    logical :: may_overwrite = .false.               !< the finished data file is the one being edited
+    logical :: cannot_keep = .false.                 !< the draft could not be written, and the user was told
+    integer :: topic = 0                             !< topic whose title was shown last
     logical :: opened(size(topics)) = .false.        !< topics that were explained already
     logical :: summed_up = .false.                   !< all answers were shown at the end
-    logical :: shown = .false.                       !< what a check found wrong was shown, and nothing was changed since
-    character(len=:), allocatable :: doubted         !< the answer that was refused unless it is given again; empty: none
-    character(len=:), allocatable :: heading         !< shown last
+    logical :: shown = .false.                       !< the errors of a check were shown, and nothing was changed since
+    character(len=:), allocatable :: doubted         !< answer that was refused unless it is given again; empty: none
+    character(len=:), allocatable :: heading         !< heading that was shown last
     logical :: told(size(item_table)) = .false.      !< names that were explained already
   contains
     procedure :: say
@@ -45,7 +45,7 @@ module mech9_conversation
 
 contains
 
-  !> Say something, a paragraph two columns in.
+  !> A paragraph is written to the user, indented by two columns.
   subroutine say(self, text)
     class(conversation_type), intent(in) :: self  !< the conversation
     character(len=*), intent(in) :: text          !< words, any number of lines
@@ -53,8 +53,8 @@ contains
     call print_paragraph(error_unit, text, 2)
   end subroutine say
 
-  !> Ask, and hear an answer without blanks around it. `list` is answered here; `quit`, and an input that
-  !> ends, end the conversation: the line is of no use then.
+  !> A prompt is shown, and an answer is heard, without blanks around it. `list` is answered here. `quit` and the end of
+  !> the input end the conversation, and the line is then of no use.
   subroutine listen(self, prompt, words, line)
     class(conversation_type), intent(inout) :: self     !< the conversation
     character(len=*), intent(in) :: prompt              !< text in front of the answer
@@ -81,7 +81,7 @@ contains
     end do
   end subroutine listen
 
-  !> Blanks and tabs off both ends.
+  !> A line without the blanks and tabs at both ends.
   pure function without_blanks(line) result(text)
     character(len=*), intent(in) :: line  !< a line as it was typed
     character(len=:), allocatable :: text
@@ -90,7 +90,7 @@ contains
     text = line(verify(line//'x', blanks):verify(line, blanks, back=.true.))
   end function without_blanks
 
-  !> Keep what was typed so far. Where that fails it is told once.
+  !> The answers so far are kept in the file of the draft. If that fails the user is told once.
   subroutine keep(self)
     class(conversation_type), intent(inout) :: self  !< the conversation
     type(error_type), allocatable :: err
@@ -117,7 +117,7 @@ contains
     says_nothing = all([(size(draft%groups(i)%entries) == 0, i=1, size(draft%groups))])
   end function says_nothing
 
-  !> Settle the names of files.
+  !> The names of files are settled.
   subroutine name_files(self)
     class(conversation_type), intent(inout) :: self  !< the conversation
 

@@ -1,4 +1,4 @@
-!> A whole conversation, from its first question to a run: begun anew, resumed, or about an existing data file.
+!> A whole conversation, from its first question to a run. It can be new, resumed, or about an existing data file.
 module mech9_converse
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: exit_done, exit_usage, exit_interrupted
@@ -20,7 +20,7 @@ module mech9_converse
 
 contains
 
-  !> Lead a conversation and do what it ends with. `code` is what the program answers to the shell.
+  !> A conversation is led, and its decision to save or to run is carried out. `code` is the exit code of the program.
   subroutine converse(task, options, code)
     class(task_type), intent(in) :: task            !< what the program computes
     type(command_line_type), intent(in) :: options  !< options of the command line
@@ -44,7 +44,7 @@ contains
     call conversation%input%close()
   end subroutine converse
 
-  !> The first words, and what is known already.
+  !> The conversation begins: its files are read, and the user is greeted.
   subroutine begin(conversation, task, options, code)
     type(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                    !< what the program computes
@@ -76,7 +76,7 @@ contains
       conversation%stem = stem_of_path(path)
       conversation%data_path = path_without_draft(path)
       conversation%may_overwrite = path == conversation%data_path
-      ! a data file stays as it is until the end; what was interrupted goes on in its own file
+      ! a data file stays as it is until the end; the file of an interrupted conversation is continued
       if (bookmark /= '') conversation%draft_path = path
     end if
     call greet(conversation, task%program_name, path)
@@ -107,7 +107,7 @@ contains
     call conversation%say(how)
   end subroutine greet
 
-  !> The last words, and the exit code of a conversation that does not end with a run.
+  !> The last words, and the exit code, of a conversation that does not end with a run.
   subroutine take_leave(conversation, code)
     type(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     integer, intent(out) :: code                            !< exit code of the program

@@ -1,5 +1,5 @@
-!> How answers are corrected. What is wrong is shown with the numbers of the answers, and any answer can be changed, taken away
-!> or added.
+!> The correction of answers. Errors are shown with the numbers of their answers, and any answer can be changed, taken
+!> away or added.
 module mech9_correcting
   use mech9_text, only: string_type, to_text, lower
   use mech9_grammar, only: group_table, find_group_row
@@ -21,7 +21,7 @@ module mech9_correcting
 
 contains
 
-  !> Show what is wrong, each with the answer it is about.
+  !> Errors are shown, each with its answer.
   subroutine show_faults(conversation, faults)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(fault_type), intent(in) :: faults(:)             !< errors, each with its entry in the draft
@@ -40,8 +40,8 @@ contains
     if (size(faults) > most_shown) call conversation%say('and '//to_text(size(faults) - most_shown)//' more')
   end subroutine show_faults
 
-  !> Ask which answer to change after a check that failed. Enter takes the first that is wrong or
-  !> lacking; where there is none, the question with the label `otherwise`.
+  !> The user is asked which answer to change after a check that failed. An empty answer takes the first answer that is
+  !> wrong or missing; if there is none it takes the question with the label `otherwise`.
   subroutine offer_correction(conversation, faults, otherwise)
     class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
     type(fault_type), intent(in) :: faults(:)         !< errors, each with its entry in the draft
@@ -80,7 +80,8 @@ contains
     end select
   end subroutine offer_correction
 
-  !> Guesses are asked for in their turn; to anything else the conversation comes back from here.
+  !> The question with a label becomes due. After an answer about a name the conversation returns from there; from other
+  !> questions it goes on in turn.
   subroutine take_otherwise(conversation, label)
     class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
     character(len=*), intent(in) :: label             !< label of the question that Enter takes where no answer is known to be wrong
@@ -108,8 +109,7 @@ contains
     words(6)%text = 'quit'
   end function correction_words
 
-  !> The number of the first answer that is wrong, and that of the first question whose answer is lacking;
-  !> 0 where there is none.
+  !> The number of the first answer that is wrong, and that of the first question without its answer; 0 if there is none.
   pure subroutine find_first(conversation, faults, first, missing)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(fault_type), intent(in) :: faults(:)             !< errors, each with its entry in the draft
@@ -131,7 +131,7 @@ contains
     missing = 0
   end subroutine find_first
 
-  !> Make a question due, and return to the present one after it.
+  !> A question becomes due, and the conversation will return to the present one after it.
   subroutine begin_correction(conversation, number)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     integer, intent(in) :: number                            !< number of the question
@@ -143,8 +143,8 @@ contains
     conversation%heading = ''
   end subroutine begin_correction
 
-  !> Do what a line asks for: change an answer by its number or its name, to a value where one is given as in
-  !> "time end = 2"; add a group; remove something. `done` is false where the line means none of these.
+  !> The request in a line is carried out: an answer is changed by its number or its name, at once if the line has a value
+  !> as in "time end = 2"; a group is added; an answer or a group is removed.
   subroutine change(conversation, line, done)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the line that was typed
@@ -166,12 +166,12 @@ contains
     else
       call change_answer(conversation, line, found)
     end if
-    ! what changed nothing shows nothing again
+    ! the errors are not shown again if nothing was changed
     conversation%shown = .not. found
     if (present(done)) done = found
   end subroutine change
 
-  !> Make the question due whose answer is named, or give it its answer.
+  !> The question of a named answer becomes due, or gets its answer at once.
   subroutine change_answer(conversation, line, found)
     class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
     character(len=*), intent(in) :: line         !< number or name of the answer, with the value behind an equals sign or without it
@@ -197,7 +197,7 @@ contains
     end if
   end subroutine change_answer
 
-  !> Ask for one group more.
+  !> The first question of a new group becomes due.
   subroutine add_group(conversation, group, found)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: group                    !< name of the group
@@ -220,7 +220,7 @@ contains
     call conversation%say('What can be added: '//addable(conversation)//'; for example: add point')
   end subroutine add_group
 
-  !> The groups of which there can be any number.
+  !> The names of the groups of which there can be any number.
   function addable(conversation) result(list)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     character(len=:), allocatable :: list
@@ -236,7 +236,7 @@ contains
     end do
   end function addable
 
-  !> Take an answer away, or a group.
+  !> An answer is taken away, or a group.
   subroutine remove(conversation, what, found)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: what                     !< number or name of the answer, or name and number of the group

@@ -1,4 +1,5 @@
-!> A conversation without its words: the draft, the questions, which one is due, and where to go from it.
+!> A conversation without its words: the draft, the questions, the question that is due, and the order in which they
+!> follow.
 module mech9_interview
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, find_item_rows, rows_of_group
@@ -15,7 +16,7 @@ module mech9_interview
   private
   public :: interview_type, most_parts
 
-  !> Links or coordinates that can be spoken of one by one.
+  !> The largest number of links or coordinates about which a conversation asks one by one.
   integer, parameter :: most_parts = 1000
 
   type :: interview_type
@@ -23,13 +24,13 @@ module mech9_interview
     type(outline_type) :: outline
     type(question_type), allocatable :: questions(:)
     integer :: at = 1                              !< number of the question that is due
-    !> Where to go back to after a correction: the label of a question; empty: one question follows the other.
+    !> The label of the question to return to after a correction; empty: questions follow in order.
     character(len=:), allocatable :: return_to
-    logical :: adding = .false.                    !< until there: all questions of one group
-    type(structure_type) :: structure              !< where outline%structure_known
+    logical :: adding = .false.                    !< during a correction, all questions of one group are asked
+    type(structure_type) :: structure              !< structure, if outline%structure_known
     type(structural_vectors_type) :: vectors
-    type(fault_type), allocatable :: faults(:)     !< of the structure
-    character(len=:), allocatable :: dropped       !< what the last answer made meaningless; empty: nothing
+    type(fault_type), allocatable :: faults(:)     !< errors of the structure
+    character(len=:), allocatable :: dropped       !< names that the last answer made meaningless; empty: none
   contains
     procedure :: start
     procedure :: due
@@ -48,7 +49,7 @@ module mech9_interview
 
 contains
 
-  !> Begin with a draft: an empty one, or what a file says.
+  !> The interview begins with a draft, which is empty or was read from a file.
   pure subroutine start(self, program_name, draft)
     class(interview_type), intent(inout) :: self  !< the interview
     character(len=*), intent(in) :: program_name  !< mech9k or mech9d
@@ -61,7 +62,7 @@ contains
     self%at = 1
     call self%refresh('')
     if (.not. self%outline%structure_known) return
-    ! counts that the file leaves to be counted
+    ! counts that are not in the file are added
     if (self%draft%has('mechanism', 1, 'links') .and. self%draft%has('mechanism', 1, 'coordinates')) return
     call self%draft%give('mechanism', 1, 'links', to_text(self%structure%n_links))
     call self%draft%give('mechanism', 1, 'coordinates', to_text(self%structure%n_coordinates))
@@ -75,8 +76,8 @@ contains
     due = self%questions(self%at)
   end function due
 
-  !> Work out what follows from the draft: the structure, groups, questions. The question with this label is
-  !> due then; the same number as before where there is none.
+  !> The structure, groups and questions that follow from the draft are made anew. The question with this label becomes
+  !> due; if there is none, the number of the question stays.
   pure subroutine refresh(self, label)
     class(interview_type), intent(inout) :: self  !< the interview
     character(len=*), intent(in) :: label         !< label of the question that is due then; empty: the number of the question stays
@@ -97,7 +98,7 @@ contains
     self%at = max(1, min(self%at, size(self%questions)))
   end subroutine refresh
 
-  !> A structure of more parts than can be spoken of is as good as none.
+  !> Whether the structure has so few parts that a conversation can ask about them one by one.
   pure logical function counts_agree(self)
     type(interview_type), intent(in) :: self  !< the interview
 
@@ -105,8 +106,8 @@ contains
     if (allocated(self%structure%links)) counts_agree = size(self%structure%links, 2) <= most_parts
   end function counts_agree
 
-  !> Go on from the question that is due: to the next one; while correcting, to what is lacking now, and
-  !> then back to where the correction began.
+  !> The next question becomes due. During a correction this is the first question that lacks its answer, and after these
+  !> the question at which the correction began.
   pure subroutine step(self)
     class(interview_type), intent(inout) :: self  !< the interview
     integer :: i, goal
@@ -141,7 +142,7 @@ contains
                  one%place == other%place .and. .not. other%is_new
   end function same_group
 
-  !> Go to the question before; checks are no questions. `done` is false at the first one.
+  !> The question before becomes due; checks are passed over. `done` is false at the first question.
   pure subroutine back(self, done)
     class(interview_type), intent(inout) :: self  !< the interview
     logical, intent(out) :: done                  !< false at the first question
@@ -156,8 +157,8 @@ contains
     end do
   end subroutine back
 
-  !> Whether the question that is due is the first of a group that can be left out and still lacks answers: such a
-  !> group was begun, perhaps by mistake.
+  !> Whether the question that is due is the first of a group that can be left out and still lacks answers. Such a group
+  !> may have been begun by mistake.
   pure logical function is_begun(self)
     class(interview_type), intent(in) :: self  !< the interview
     integer, allocatable :: rows(:)
@@ -177,8 +178,7 @@ contains
     end associate
   end function is_begun
 
-  !> Take away the load, point or body that the question that is due belongs to. Whether there is another in its
-  !> place is asked then.
+  !> The load, point or body of the question that is due is taken away. The next question is whether there is another one.
   pure subroutine leave_out(self, done)
     class(interview_type), intent(inout) :: self  !< the interview
     logical, intent(out) :: done                  !< false where the question belongs to no group that can be left out
@@ -197,8 +197,8 @@ contains
     call self%refresh(group//'('//to_text(question%place)//').'//trim(item_table(rows(1))%name))
   end subroutine leave_out
 
-  !> Ask for an entry of the draft, then return to the question that is due now. `found` is false where
-  !> this program has no question about it.
+  !> The question about an entry of the draft becomes due, and the conversation will return to the present question.
+  !> `found` is false if this program has no question about it.
   pure subroutine correct(self, group, place, name, found)
     class(interview_type), intent(inout) :: self  !< the interview
     character(len=*), intent(in) :: group         !< name of the group
@@ -213,7 +213,7 @@ contains
     rows = find_item_rows(group, plain_name(name))
     found = size(rows) > 0
     if (.not. found) return
-    ! it must be asked for, even if it is one of the seldom names
+    ! there must be a question about the name, even if it is a rarely used one
     self%outline%asked(rows) = .true.
     if (group == 'initial') self%outline%guesses = .true.
     call self%refresh(here)
@@ -224,8 +224,8 @@ contains
     if (self%return_to == '') self%return_to = here
   end subroutine correct
 
-  !> Why an answer to the question that is due makes too many coordinates independent, or too few in open chains; empty where
-  !> it does not, or is about something else. Each closed chain makes at least one coordinate dependent, and three unless its pairs are of a
+  !> The reason against an answer that makes too many coordinates independent, or too few in open chains; empty if there
+  !> is none. Each closed chain makes at least one coordinate dependent, and at least three unless its pairs are of a
   !> special kind.
   pure subroutine miscount(self, answer, problem, certain)
     class(interview_type), intent(in) :: self              !< the interview
@@ -260,7 +260,7 @@ contains
     end if
   end subroutine miscount
 
-  !> Keep an answer to the question that is due, which then may have others after it.
+  !> An answer to the question that is due is noted. Other questions may follow from it.
   pure subroutine note(self, text)
     class(interview_type), intent(inout) :: self  !< the interview
     character(len=*), intent(in) :: text          !< the answer as a data file writes it
@@ -271,7 +271,7 @@ contains
     call self%refresh(label_of(question))
   end subroutine note
 
-  !> Take the answer to the question that is due back.
+  !> The answer to the question that is due is taken back.
   pure subroutine unnote(self)
     class(interview_type), intent(inout) :: self  !< the interview
     type(question_type) :: question
@@ -280,8 +280,8 @@ contains
     call self%draft%take_away(trim(group_table(question%group_row)%name), question%place, entry_name(question))
     call self%refresh(label_of(question))
   end subroutine unnote
-  !> What must be known beside the draft to go on with it: the question that is due, the way of the
-  !> structure, and the seldom names that are asked for: "pair(1).axis; pairs; pair.zero pair.moving_point".
+  !> The facts that are needed beside the draft to resume a conversation: the question that is due, the way of giving the
+  !> structure, and the rarely used names that the user wants, such as "pair(1).axis; pairs; pair.zero pair.moving_point".
   pure function bookmark(self) result(text)
     class(interview_type), intent(in) :: self  !< the interview
     character(len=:), allocatable :: text
@@ -294,7 +294,7 @@ contains
     end do
   end function bookmark
 
-  !> Go on where a bookmark says, as far as it means anything.
+  !> The interview is resumed at a bookmark. Unknown parts of a bookmark are ignored.
   pure subroutine open_at(self, text)
     class(interview_type), intent(inout) :: self  !< the interview
     character(len=*), intent(in) :: text          !< the bookmark, in the form of `bookmark`

@@ -1,4 +1,4 @@
-!> A program from the words of its command line to its exit code: a run of a data file, or a conversation.
+!> A program, from the words of its command line to its exit code. It runs a data file or holds a conversation.
 module mech9_program
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
@@ -14,7 +14,7 @@ module mech9_program
 
 contains
 
-  !> The whole program. It does not come back.
+  !> The whole program is run. There is no return from it.
   subroutine run_program(task)
     class(task_type), intent(in) :: task  !< what the program computes
     integer :: code
@@ -24,7 +24,7 @@ contains
     call exit_program(code)
   end subroutine run_program
 
-  !> The words are gone again before the program ends.
+  !> The command line is carried out. Its words are deallocated before the program ends.
   subroutine run_command_line(task, code)
     class(task_type), intent(in) :: task  !< what the program computes
     integer, intent(out) :: code          !< exit code of the program
@@ -34,7 +34,7 @@ contains
     call run_words(task, words, code)
   end subroutine run_command_line
 
-  !> Do what the words of a command line ask for; `code` is what the program answers to the shell.
+  !> The words of a command line are carried out. `code` is the exit code of the program.
   subroutine run_words(task, words, code)
     class(task_type), intent(in) :: task       !< what the program computes
     type(string_type), intent(in) :: words(:)  !< words of the command line without the program's name

@@ -16,7 +16,7 @@ module mech9_running
 
 contains
 
-  !> Run a data file, and again as often as the user wants; `code` is that of the last run.
+  !> A data file is run, and run again as often as the user wants. `code` is that of the last run.
   subroutine run_by_turns(conversation, task, options, path, code)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< what the program computes
@@ -32,7 +32,7 @@ contains
     do
       call run_file(task, options, path, code, kept)
       if (asked_to_end()) exit
-      ! Ctrl-C ended the run only, not the conversation
+      ! Ctrl-C ends the run only, not the conversation
       call catch_interrupts()
       conversation%state = going
       do
@@ -53,7 +53,7 @@ contains
     conversation%state = finished
   end subroutine run_by_turns
 
-  !> The last words: in which file the answers are, where this was not told when the data file was saved.
+  !> The user is told in which file the answers are, unless this was told when the data file was saved.
   subroutine tell_what_is_kept(conversation, path, changed, saved_again)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: path                  !< name of the file that was run
@@ -74,7 +74,7 @@ contains
     end if
   end subroutine tell_what_is_kept
 
-  !> Write the file that is run, if something was changed.
+  !> The file that is run is written if something was changed.
   subroutine keep_changes(conversation, path, changed)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: path                     !< name of the file that was run
@@ -91,7 +91,7 @@ contains
     if (allocated(err)) call conversation%say(err%message)
   end subroutine keep_changes
 
-  !> The results of the last run are now those of the run before.
+  !> The results of the last run become those of the run before.
   subroutine hand_over(kept, earlier)
     type(kept_rows_type), intent(inout) :: kept     !< results of the last run; empty afterwards
     type(kept_rows_type), intent(inout) :: earlier  !< receives them

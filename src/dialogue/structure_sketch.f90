@@ -1,4 +1,4 @@
-!> A structure drawn as text: its chains of links and pairs, and what the counts say of its mobility.
+!> A structure is drawn as text: its chains of links and pairs, and its mobility by the count.
 module mech9_structure_sketch
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type
@@ -8,12 +8,12 @@ module mech9_structure_sketch
   public :: print_sketch
 
   integer, parameter :: line_width = 78
-  integer, parameter :: most_chains = 30      !< more are not drawn
+  integer, parameter :: most_chains = 30      !< largest number of chains that are drawn
 
 contains
 
-  !> Draw the chains in the order of computation, each as links joined by pairs: "1 =5= 2 -4- 3", where
-  !> =5= is an independent coordinate; then tell the mobility by the count.
+  !> The chains are drawn in the order of computation, each as links joined by pairs, such as "1 =5= 2 -4- 3", where =5=
+  !> is an independent coordinate. The mobility by the count follows.
   subroutine print_sketch(unit, structure, vectors)
     integer, intent(in) :: unit                           !< number of the output unit
     type(structure_type), intent(in) :: structure         !< links of the pairs and independent coordinates
@@ -39,7 +39,7 @@ contains
     end if
   end subroutine print_sketch
 
-  !> "1 = 7 - 2 x 3".
+  !> The mobility by the count, as in "1 = 7 - 2 x 3".
   pure function count_text(coordinates, loops, each) result(text)
     integer, intent(in) :: coordinates  !< number of coordinates
     integer, intent(in) :: loops        !< number of closed chains
@@ -49,7 +49,7 @@ contains
     text = to_text(coordinates - loops*each)//' = '//to_text(coordinates)//' - '//to_text(loops)//' x '//to_text(each)
   end function count_text
 
-  !> One chain, on as many lines as it needs.
+  !> One chain is printed, on as many lines as it needs.
   subroutine print_chain(unit, vectors, chain)
     integer, intent(in) :: unit                           !< number of the output unit
     type(structural_vectors_type), intent(in) :: vectors  !< the structure as the second set

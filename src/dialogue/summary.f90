@@ -1,4 +1,4 @@
-!> All that a draft says as a list of numbered answers, and words that mean one of them.
+!> The content of a draft as a list of numbered answers, and the words by which an answer can be named.
 module mech9_summary
   use mech9_text, only: to_text, lower
   use mech9_grammar, only: group_table, find_group_row, words_of
@@ -10,12 +10,12 @@ module mech9_summary
   public :: print_summary, number_of_entry, entry_meant, title_of
 
   integer, parameter :: line_width = 79, indent = 4
-  !> Words longer than this mean no entry.
+  !> Longer texts name no entry.
   integer, parameter :: longest_words = 100
 
 contains
 
-  !> Print all answers, each with its number, a group or more lines each.
+  !> All answers are printed with their numbers. Each group has one line or more.
   subroutine print_summary(unit, draft)
     integer, intent(in) :: unit            !< number of the output unit
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
@@ -25,7 +25,7 @@ contains
     number = 0
     piece = ''
     do i = 1, size(draft%groups)
-      ! a coordinate of which nothing else is said
+      ! a group with nothing but its coordinate is not printed
       if (all([(is_hidden(draft, i, j), j=1, size(draft%groups(i)%entries))])) cycle
       line = '  '//title_of(draft, i)//':'
       do j = 1, size(draft%groups(i)%entries)
@@ -44,7 +44,7 @@ contains
     end do
   end subroutine print_summary
 
-  !> The number of a coordinate stands in the title of its group.
+  !> Whether an entry is not listed, since the title of its group already gives the number of the coordinate.
   pure logical function is_hidden(draft, group, entry)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: group           !< index of the group in the draft
@@ -56,7 +56,7 @@ contains
     if (row > 0) is_hidden = is_numbered(row) .and. draft%groups(group)%entries(entry)%name == 'coordinate'
   end function is_hidden
 
-  !> "pair 5", "load 2", "time".
+  !> The title of a group, such as "pair 5", "load 2" or "time".
   pure function title_of(draft, group) result(title)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: group           !< index of the group in the draft
@@ -73,7 +73,7 @@ contains
     end if
   end function title_of
 
-  !> The entry with a number; group 0 where there is none.
+  !> The entry with a number of the list; the group is 0 if there is none.
   pure subroutine entry_with_number(draft, number, group, entry)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: number          !< the number that the list shows
@@ -93,7 +93,7 @@ contains
     entry = 0
   end subroutine entry_with_number
 
-  !> The number of an entry; 0 where it has none.
+  !> The number of an entry in the list; 0 if it has none.
   pure integer function number_of_entry(draft, group, entry) result(number)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: group           !< index of the group in the draft
@@ -110,8 +110,8 @@ contains
     end do
   end function number_of_entry
 
-  !> What the number of an answer means, or words that name it: a group, its place, and a name, empty where only
-  !> a group is named. `group` is empty where they mean nothing.
+  !> The entry that is named by the number of an answer or by words: a group, its place, and a name, which is empty if
+  !> only a group is named. `group` is empty if the text names nothing.
   pure subroutine entry_meant(draft, which, group, place, name, by_number)
     type(draft_type), intent(in) :: draft                !< groups and names with their values as text
     character(len=*), intent(in) :: which                !< the words that were typed
@@ -133,9 +133,9 @@ contains
     end if
   end subroutine entry_meant
 
-  !> What "pair 3 axis", "time end" or "load 2" means: a group, its place, and a name, empty where none is
-  !> said. Where the group is one for each coordinate, its number is the coordinate's. `group` is empty where the
-  !> words mean nothing.
+  !> The entry that is named by words such as "pair 3 axis", "time end" or "load 2": a group, its place, and a name, which
+  !> is empty if none is given. A group for each coordinate is named by the number of the coordinate. `group` is empty if
+  !> the words name nothing.
   pure subroutine named_entry(draft, line, group, place, name)
     type(draft_type), intent(in) :: draft                !< groups and names with their values as text
     character(len=*), intent(in) :: line                 !< the words that were typed

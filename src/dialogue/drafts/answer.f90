@@ -1,4 +1,4 @@
-!> What was typed at a question, held against its row of the grammar as the reader of data files does.
+!> The answer to a question is checked against its row of the grammar, as the reader of data files does.
 module mech9_answer
   use mech9_text, only: lower, to_text
   use mech9_source, only: source_type, span_type, source_from_text
@@ -15,13 +15,13 @@ module mech9_answer
   private
   public :: read_answer, yes_or_no
 
-  !> Answers longer than this are no answers.
+  !> Longer answers are refused.
   integer, parameter :: longest_answer = 100000
 
 contains
 
-  !> Values as a data file writes them, or, if that cannot be, why not: one message or several, a line each.
-  !> Texts need no quotes, a switch may be answered by yes or no, and short forms are written in full.
+  !> An answer is read as values in the form of a data file. If this is impossible, `problem` has one message or several,
+  !> a line each. Texts need no quotes, a switch may be answered by yes or no, and short forms are written in full.
   pure subroutine read_answer(row, line, text, problem)
     type(item_row_type), intent(in) :: row                 !< row of the table of names for the question
     character(len=*), intent(in) :: line                   !< the answer, without blanks around it
@@ -79,7 +79,7 @@ contains
     if (mark == '/') text = '; write a quotient as a number, 0.5 instead of 1/2'
   end function advice
 
-  !> All messages, each once and in a line, at most a few.
+  !> The messages of the errors, each once and in a line of its own, at most a few.
   pure function messages_of(diagnostics) result(text)
     type(diagnostics_type), intent(in) :: diagnostics  !< the errors that were found
     character(len=:), allocatable :: text, message
@@ -91,7 +91,7 @@ contains
     shown = 0
     do i = 1, diagnostics%known()
       call diagnostics%get(i, message, span)
-      ! a word that is repeated is wrong once
+      ! a word that is repeated gives one message
       if (index(new_line('a')//text, new_line('a')//message//new_line('a')) > 0) cycle
       shown = shown + 1
       if (shown <= most) text = text//message//new_line('a')
@@ -103,7 +103,7 @@ contains
     end if
   end function messages_of
 
-  !> A text in quotes, its own quotes doubled.
+  !> A text in quotes, with its own quotes doubled.
   pure function quoted(line) result(text)
     character(len=*), intent(in) :: line  !< the text without quotes around it
     character(len=:), allocatable :: text

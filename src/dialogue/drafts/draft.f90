@@ -1,6 +1,6 @@
-!> A data file in the making: groups of names with their values as text, in an order that reads well.
+!> A draft is a data file in the making: groups of names with their values as text, in an order that reads well.
 !>
-!> A group is spoken of by its name and its place among the groups of that name, from 1 on.
+!> A group is identified by its name and its place among the groups of that name, from 1 on.
 module mech9_draft
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_grammar, only: find_group_row, find_item_rows
@@ -8,7 +8,7 @@ module mech9_draft
   private
   public :: draft_type, draft_group_type, entry_type, plain_name, integer_of, unquoted
 
-  !> One name and what it is given.
+  !> One name and its values.
   type :: entry_type
     character(len=:), allocatable :: name    !< in lower case, with its subscript if it has one: c(1,:)
     character(len=:), allocatable :: text    !< its values, as a data file writes them
@@ -17,14 +17,14 @@ module mech9_draft
   !> One group.
   type :: draft_group_type
     character(len=:), allocatable :: name
-    character(len=:), allocatable :: comment       !< whole lines to stand above it; empty: none
+    character(len=:), allocatable :: comment       !< whole comment lines that stand above the group; empty: none
     type(entry_type), allocatable :: entries(:)
   end type draft_group_type
 
   type :: draft_type
     character(len=:), allocatable :: head          !< comment lines at the beginning of the file
     type(draft_group_type), allocatable :: groups(:)
-    integer :: comments_left_out = 0               !< comments of the data file it was made from that it does not hold
+    integer :: comments_left_out = 0               !< number of comments of the original data file that the draft does not hold
   contains
     procedure :: clear
     procedure :: find
@@ -43,7 +43,7 @@ module mech9_draft
 
 contains
 
-  !> Nothing is said yet.
+  !> The draft becomes empty.
   pure subroutine clear(self)
     class(draft_type), intent(inout) :: self  !< the draft
 
@@ -53,7 +53,7 @@ contains
     allocate (self%groups(0))
   end subroutine clear
 
-  !> Index of a group; 0 where there is none.
+  !> The index of a group in the draft; 0 if there is none.
   pure integer function find(self, group, place) result(index)
     class(draft_type), intent(in) :: self  !< the draft
     character(len=*), intent(in) :: group  !< name of the group
@@ -68,7 +68,7 @@ contains
     index = 0
   end function find
 
-  !> Place of the group whose name `key` has this number; 0 where there is none.
+  !> The place of the group in which the name `key` has a given number; 0 if there is none.
   pure integer function with_number(self, group, key, number) result(place)
     class(draft_type), intent(in) :: self  !< the draft
     character(len=*), intent(in) :: group  !< name of the group
@@ -85,7 +85,7 @@ contains
     place = 0
   end function with_number
 
-  !> How many groups have this name.
+  !> The number of groups of a name.
   pure integer function count_of(self, group) result(n)
     class(draft_type), intent(in) :: self  !< the draft
     character(len=*), intent(in) :: group  !< name of the group
@@ -97,7 +97,7 @@ contains
     end do
   end function count_of
 
-  !> Place of the group with this index among those of its name.
+  !> The place of the group with this index among the groups of its name.
   pure integer function place_of(self, index) result(place)
     class(draft_type), intent(in) :: self  !< the draft
     integer, intent(in) :: index           !< index of the group in the draft
@@ -109,7 +109,7 @@ contains
     end do
   end function place_of
 
-  !> Number of an entry in its group; 0 where the group does not have it.
+  !> The number of an entry in its group; 0 if the group does not have it.
   pure integer function find_entry(self, group, place, name) result(number)
     class(draft_type), intent(in) :: self  !< the draft
     character(len=*), intent(in) :: group  !< name of the group
@@ -142,7 +142,7 @@ contains
     if (i > 0) text = group%entries(i)%text
   end function value_in
 
-  !> The values under a name as text; empty where it is not given.
+  !> The values of a name as text; empty if the name is not given.
   pure function value(self, group, place, name) result(text)
     class(draft_type), intent(in) :: self  !< the draft
     character(len=*), intent(in) :: group  !< name of the group
@@ -156,7 +156,7 @@ contains
     if (i > 0) text = value_in(self%groups(i), name)
   end function value
 
-  !> The whole number under a name; 0 where there is none.
+  !> The value of a name as a whole number; 0 if it is none.
   pure integer function number(self, group, place, name)
     class(draft_type), intent(in) :: self  !< the draft
     character(len=*), intent(in) :: group  !< name of the group
@@ -176,7 +176,7 @@ contains
     has = self%find_entry(group, place, name) > 0
   end function has
 
-  !> One group more, empty: after its fellows, or where the table of groups has it.
+  !> An empty group is added behind the groups of its name, or at the place that the table of groups gives it.
   pure subroutine add(self, group)
     class(draft_type), intent(inout) :: self  !< the draft
     character(len=*), intent(in) :: group     !< name of the group
@@ -197,7 +197,7 @@ contains
     call move_alloc(longer, self%groups)
   end subroutine add
 
-  !> Where groups of a name stand in a file: as in the table of groups, unknown ones at its end.
+  !> The rank of a group in a file: its row in the table of groups. Unknown groups stand at the end.
   pure integer function rank_of(group) result(rank)
     character(len=*), intent(in) :: group  !< name of the group
 
@@ -214,7 +214,7 @@ contains
     call move_alloc(from%entries, to%entries)
   end subroutine move_group
 
-  !> Give a name a value, in the place of an earlier one; a group that is not there yet is added.
+  !> A name gets a value, in the place of an earlier one. A group that is not there yet is added.
   pure subroutine give(self, group, place, name, text)
     class(draft_type), intent(inout) :: self  !< the draft
     character(len=*), intent(in) :: group     !< name of the group
@@ -230,7 +230,7 @@ contains
     self%groups(i)%entries(number)%text = text
   end subroutine give
 
-  !> One entry more, in the order of the table of names; rows of a matrix in theirs.
+  !> An entry is added in the order of the table of names. Rows of a matrix stand in the order of their numbers.
   pure subroutine add_entry(group, name, number)
     type(draft_group_type), intent(inout) :: group  !< the group
     character(len=*), intent(in) :: name            !< name with its subscript
@@ -277,7 +277,7 @@ contains
     if (first > 0) subscript = integer_of(name(first + 1:first + scan(name(first + 1:)//')', ',:)') - 1))
   end function subscript_of
 
-  !> Say nothing under a name any more.
+  !> The entry of a name is taken away.
   pure subroutine take_away(self, group, place, name)
     class(draft_type), intent(inout) :: self  !< the draft
     character(len=*), intent(in) :: group     !< name of the group
@@ -300,7 +300,7 @@ contains
     call move_alloc(shorter, self%groups(i)%entries)
   end subroutine take_away
 
-  !> A group less.
+  !> A group is removed with its entries.
   pure subroutine remove(self, group, place)
     class(draft_type), intent(inout) :: self  !< the draft
     character(len=*), intent(in) :: group     !< name of the group
@@ -325,7 +325,7 @@ contains
     plain = name(:index(name//'(', '(') - 1)
   end function plain_name
 
-  !> The whole number that a text is; 0 where it is none.
+  !> The whole number that a text holds; 0 if it holds none.
   pure integer function integer_of(text) result(number)
     character(len=*), intent(in) :: text  !< any text
     type(numeral_type) :: numeral
@@ -337,7 +337,7 @@ contains
     if (abs(numeral%whole) < huge(number)) number = int(numeral%whole)
   end function integer_of
 
-  !> A text value without its quotes; what has none stays as it is.
+  !> A text value without its quotes. A value without quotes stays as it is.
   pure function unquoted(text) result(plain)
     character(len=*), intent(in) :: text  !< value as a data file writes it
     character(len=:), allocatable :: plain

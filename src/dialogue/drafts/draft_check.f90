@@ -1,4 +1,4 @@
-!> What a draft says, read as the data file it will be: the same checks, with the place of each error in the draft.
+!> A draft is checked by reading it as the data file that it will be. Each error gets its place in the draft.
 module mech9_draft_check
   use mech9_text, only: to_text
   use mech9_source, only: span_type, source_from_text
@@ -17,7 +17,7 @@ module mech9_draft_check
   private
   public :: fault_type, read_draft, read_draft_structure, problem_with, faults_of
 
-  !> One thing that is wrong, and the entry of the draft it is about.
+  !> One error, and the entry of the draft that it concerns.
   type :: fault_type
     character(len=:), allocatable :: message
     integer :: group = 0       !< index in the draft; 0: no group
@@ -26,7 +26,7 @@ module mech9_draft_check
 
 contains
 
-  !> The mechanism of a draft. It is of use only where nothing is wrong.
+  !> The mechanism of a draft is read. It is of use only if there are no errors.
   subroutine read_draft(draft, path, needs_drives, mechanism, written, diagnostics)
     type(draft_type), intent(in) :: draft               !< groups and names with their values as text
     character(len=*), intent(in) :: path                !< path of the data file; tables of drives are sought beside it
@@ -41,7 +41,7 @@ contains
     call read_mechanism(document, needs_drives, mechanism, diagnostics)
   end subroutine read_draft
 
-  !> The structure alone. It is of use only where nothing is wrong.
+  !> The structure of a draft is read. It is of use only if there are no faults.
   pure subroutine read_draft_structure(draft, outline, structure, vectors, faults)
     type(draft_type), intent(in) :: draft                    !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                !< facts known beside the draft
@@ -71,8 +71,8 @@ contains
     call read_structure_only(document, structure, vectors, diagnostics)
   end subroutine read_part
 
-  !> What a draft says of the structure: counts, structural data, and the links of the pairs where they are
-  !> how it is given. Pairs need a kind to be read.
+  !> The part of a draft that gives the structure: counts, structural data, and the links of the pairs if the structure is
+  !> given by them. Pairs get some kind, since they cannot be read without one.
   pure function structural_part(draft, outline) result(part)
     type(draft_type), intent(in) :: draft      !< groups and names with their values as text
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
@@ -95,7 +95,7 @@ contains
     end do
   end function structural_part
 
-  !> From places in a part of a draft to those in the whole, by names.
+  !> Places in a part of a draft are replaced by those in the whole, which are found by names.
   pure subroutine translate(part, draft, faults)
     type(draft_type), intent(in) :: part          !< draft with the structure alone
     type(draft_type), intent(in) :: draft         !< the whole draft
@@ -114,7 +114,7 @@ contains
     end do
   end subroutine translate
 
-  !> Errors with the entries of the draft they are about, in the order in which they were found.
+  !> The errors with the entries of the draft that they concern, in the order in which they were found.
   pure subroutine find_faults(diagnostics, written, faults)
     type(diagnostics_type), intent(in) :: diagnostics        !< gets what is wrong
     type(draft_text_type), intent(in) :: written             !< text of the draft, with the place of each entry
@@ -138,8 +138,8 @@ contains
     call find_faults(diagnostics, written, faults)
   end subroutine faults_of
 
-  !> What is wrong with one entry of a draft, as far as this can be told now; empty: nothing. What the
-  !> entry's group still lacks is taken for given, with the examples of the table of names.
+  !> The errors of one entry of a draft, as far as they can be told now; empty if there are none. Values that the group
+  !> still lacks are taken from the examples of the table of names.
   subroutine problem_with(draft, outline, path, group, place, name, problem)
     type(draft_type), intent(in) :: draft                  !< groups and names with their values as text
     type(outline_type), intent(in) :: outline              !< facts known beside the draft
@@ -178,7 +178,7 @@ contains
     end do
   end subroutine problem_with
 
-  !> Give a group what it needs and lacks.
+  !> The values that a group needs and lacks are taken from the examples of the table of names.
   pure subroutine complete(draft, group, place)
     type(draft_type), intent(inout) :: draft  !< draft whose group is completed
     character(len=*), intent(in) :: group     !< name of the group
@@ -199,7 +199,7 @@ contains
     end do
   end subroutine complete
 
-  !> Rows of the coincidence matrix that are not given yet: as its symmetry says, else zeros.
+  !> Rows of the coincidence matrix that are not given yet are filled by its symmetry, and otherwise with zeros.
   pure subroutine complete_matrix(draft)
     type(draft_type), intent(inout) :: draft  !< draft whose coincidence matrix is completed
     integer :: n, i, j
@@ -223,7 +223,8 @@ contains
     end do
   end subroutine complete_matrix
 
-  !> Numbers from "1, 2, 3"; more than fit are left out, missing ones stay.
+  !> Numbers are read from text such as "1, 2, 3". Numbers beyond the size are left out, and missing ones stay as they
+  !> were.
   pure subroutine take_row(text, numbers)
     character(len=*), intent(in) :: text  !< numbers with commas between them
     integer, intent(inout) :: numbers(:)  !< the numbers; those that are missing in the text stay as they were

@@ -1,4 +1,4 @@
-!> Files of drafts: where a conversation keeps what was typed, and from which it goes on.
+!> Files of drafts, in which a conversation keeps the answers and from which it can be resumed.
 module mech9_draft_file
   use mech9_error, only: error_type, exit_data
   use mech9_text, only: to_text, lower
@@ -21,8 +21,8 @@ module mech9_draft_file
 
 contains
 
-  !> Write a draft as a data file. With a bookmark it is one that goes on there. What stood in the file before is kept
-  !> until all is written.
+  !> A draft is written as a data file. With a bookmark the conversation can be resumed there. The former content of the
+  !> file is kept until everything is written.
   subroutine save_draft(draft, path, bookmark, program_name, err)
     type(draft_type), intent(in) :: draft              !< groups and names with their values as text
     character(len=*), intent(in) :: path               !< name of the file
@@ -38,7 +38,7 @@ contains
     call replace_text(path, written%text, err)
   end subroutine save_draft
 
-  !> Read a data file as a draft, and its bookmark, empty where it has none. What cannot be read stands in the diagnostics.
+  !> A data file is read as a draft with its bookmark, which is empty if there is none. Errors go to the diagnostics.
   subroutine load_draft(path, most_parts, draft, bookmark, diagnostics)
     character(len=*), intent(in) :: path                    !< name of the file
     integer, intent(in) :: most_parts                       !< largest number of links or coordinates in a conversation
@@ -64,7 +64,7 @@ contains
     draft%comments_left_out = draft%comments_left_out - 1
   end subroutine load_draft
 
-  !> Remove a file; whether it was there or not does not matter.
+  !> A file is removed if it is there.
   subroutine delete_file(path)
     character(len=*), intent(in) :: path  !< name of the file
     integer :: unit, status
@@ -73,7 +73,7 @@ contains
     if (status == 0) close (unit, status='delete', iostat=status)
   end subroutine delete_file
 
-  !> Whether a file, or anything else of that name, is there.
+  !> Whether there is a file, or anything else, of this name.
   logical function file_exists(path)
     character(len=*), intent(in) :: path  !< name of the file
 
@@ -103,7 +103,7 @@ contains
     if (stem == '' .or. stem == '_') stem = 'mechanism'
   end function stem_of_title
 
-  !> A path for what is typed, of a file that is not there yet.
+  !> A path for a draft, of a file that is not there yet.
   function free_draft_path(stem) result(path)
     character(len=*), intent(in) :: stem  !< path without its ending
     character(len=:), allocatable :: path
@@ -117,7 +117,7 @@ contains
     end do
   end function free_draft_path
 
-  !> The path of the finished data file that belongs to a draft's.
+  !> The path of the finished data file that belongs to the path of a draft.
   pure function path_without_draft(path) result(plain)
     character(len=*), intent(in) :: path  !< name of the file
     character(len=:), allocatable :: plain

@@ -1,4 +1,4 @@
-!> A draft from an existing data file: what it says and the comments above its groups.
+!> A draft is made from an existing data file: its values, and the comments above its groups.
 module mech9_draft_source
   use mech9_error, only: place_type
   use mech9_text, only: to_text, join, string_type
@@ -16,8 +16,8 @@ module mech9_draft_source
 
 contains
 
-  !> Take over what a document says: one entry for each name, the coincidence matrix by rows. Values
-  !> that cannot be read are left out; they have been reported when the document was read.
+  !> The values of a document are taken over: one entry for each name, and the coincidence matrix by rows. Values that
+  !> cannot be read are left out; they were reported when the document was read.
   pure subroutine draft_from_document(document, draft)
     type(document_type), intent(in) :: document  !< the data file as groups and items
     type(draft_type), intent(out) :: draft       !< groups and names with their values as text
@@ -64,7 +64,7 @@ contains
     end do
   end subroutine take_group
 
-  !> The coincidence matrix, however it is given, as rows.
+  !> The coincidence matrix is taken over as rows, however it is given.
   pure subroutine take_matrix(document, group, draft)
     type(document_type), intent(in) :: document  !< the data file as groups and items
     type(group_type), intent(in) :: group        !< the group of the data file
@@ -76,7 +76,7 @@ contains
 
     if (.not. any([(group%items(i)%name == 'c', i=1, size(group%items))])) return
     if (all([(group%items(i)%name /= 'c' .or. is_row(group%items(i)), i=1, size(group%items))])) then
-      ! also where some are still missing
+      ! rows are taken over even if others are still missing
       do i = 1, size(group%items)
         if (group%items(i)%name == 'c') &
           call draft%give('structure', 1, 'c('//to_text(group%items(i)%subscripts(1)%first)//',:)', &
@@ -92,7 +92,7 @@ contains
     end do
   end subroutine take_matrix
 
-  !> Whether an item is a whole row of the matrix: c(2,:).
+  !> Whether an item is a whole row of the matrix, such as c(2,:).
   pure logical function is_row(item)
     type(item_type), intent(in) :: item  !< one name of a group with its subscripts and values
 
@@ -102,7 +102,7 @@ contains
                item%subscripts(2)%first == 0 .and. item%subscripts(2)%last == 0
   end function is_row
 
-  !> Values as they are written, with commas between.
+  !> Values as they are written, with commas between them.
   pure function values_text(source_text, values) result(text)
     character(len=*), intent(in) :: source_text  !< text in which the values stand
     type(value_type), intent(in) :: values(:)    !< the values
@@ -117,7 +117,8 @@ contains
     text = join(words, ', ')
   end function values_text
 
-  !> The comment lines right above a byte; with `to_the_top` those that stand over them, above a blank line.
+  !> The comment lines directly above a byte; or, with `to_the_top`, the lines from the top of the file that stand above
+  !> these and a blank line.
   pure subroutine find_comment(source, byte, to_the_top, comment)
     type(source_type), intent(in) :: source                !< text of the data file
     integer, intent(in) :: byte                            !< number of the byte below the comment
@@ -140,7 +141,7 @@ contains
     end if
   end subroutine find_comment
 
-  !> Comment lines and blank ones, without a blank one at the end; none where something else stands among them.
+  !> Comment lines and blank lines, without a blank line at the end. The text is empty if any other line is among them.
   pure subroutine take_lines(source, from, to, text)
     type(source_type), intent(in) :: source             !< text of the data file
     integer, intent(in) :: from                         !< number of the first line
@@ -162,7 +163,7 @@ contains
     end do
   end subroutine take_lines
 
-  !> How many comments a text has; an exclamation mark in quotes begins none.
+  !> The number of comments in a text. An exclamation mark in quotes begins none.
   pure integer function count_comments(text) result(count)
     character(len=*), intent(in) :: text  !< text of a data file
     character :: quote

@@ -1,4 +1,4 @@
-!> A draft as the text of a data file, and what stands where in it.
+!> A draft as the text of a data file, with the place of each group and entry in it.
 module mech9_draft_text
   use mech9_text, only: string_type, starts_with
   use mech9_grammar, only: group_table, find_group_row
@@ -7,23 +7,23 @@ module mech9_draft_text
   private
   public :: draft_text_type, write_draft, locate
 
-  !> Groups whose line is not longer than this are written in one line.
+  !> A group is written in one line if the line is not longer than this.
   integer, parameter :: longest_line = 120
   character(len=*), parameter :: line_end = achar(10)
 
-  !> The text, and the stretch of each entry and of each group.
+  !> The text, and the range of bytes of each entry and of each group.
   type :: draft_text_type
     character(len=:), allocatable :: text
-    integer, allocatable :: group(:)       !< index in the draft of each stretch
-    integer, allocatable :: entry(:)       !< number of its entry; 0: the whole group
-    integer, allocatable :: first(:)       !< its first byte
+    integer, allocatable :: group(:)       !< index in the draft of the group of each range
+    integer, allocatable :: entry(:)       !< number of the entry of each range; 0: the whole group
+    integer, allocatable :: first(:)       !< first byte of each range
     integer, allocatable :: last(:)
-    integer :: count = 0                   !< stretches in use
+    integer :: count = 0                   !< number of ranges in use
   end type draft_text_type
 
 contains
 
-  !> Write a draft. `remark` is a comment line for its end; empty: none.
+  !> A draft is written as text. `remark` is a comment line for its end; empty: none.
   pure subroutine write_draft(draft, remark, written)
     type(draft_type), intent(in) :: draft          !< groups and names with their values as text
     character(len=*), intent(in) :: remark         !< comment line for the end of the text; empty: none
@@ -47,7 +47,7 @@ contains
     if (remark /= '') written%text = written%text//line_end//remark//line_end
   end subroutine write_draft
 
-  !> A blank line, and what groups of this name are, unless a comment stands there already.
+  !> A blank line is appended, and a comment on the groups of this name unless the group has a comment of its own.
   pure subroutine begin_kind(group, text)
     type(draft_group_type), intent(in) :: group           !< the group
     character(len=:), allocatable, intent(inout) :: text  !< text to which the heading is appended
@@ -92,7 +92,7 @@ contains
     written%text = written%text//line_end
   end subroutine write_group
 
-  !> Rows of a matrix are easier to read one below the other.
+  !> Whether a group holds rows of a matrix, which are easier to read one below the other.
   pure logical function is_matrix(group)
     type(draft_group_type), intent(in) :: group  !< the group
     integer :: i
@@ -116,7 +116,7 @@ contains
     written%first(written%count) = first
   end subroutine note
 
-  !> Group and entry that a byte of the text belongs to; group 0 where it is none, entry 0 where it is the
+  !> The group and the entry to which a byte of the text belongs. The group is 0 if there is none; the entry is 0 for the
   !> group as a whole.
   pure subroutine locate(written, byte, group, entry)
     type(draft_text_type), intent(in) :: written  !< text of the draft, with the place of each entry

@@ -1,7 +1,8 @@
-!> What `?` says of each name of the data file in a conversation: whole sentences, and examples in the unit that is asked for.
+!> The explanation that `?` gives of each name of the data file in a conversation: whole sentences, and examples in the
+!> unit of the question.
 !>
-!> The table of names (the grammar) has a few words on each name, for lists; here stands what a newcomer needs. Every row of
-!> the grammar has its row here; a test sees to it.
+!> The table of names (the grammar) has a few words on each name, for lists; the sentences here are for newcomers. Every
+!> row of the grammar has its row here, which a test checks.
 module mech9_explanations
   implicit none
   private
@@ -11,7 +12,7 @@ module mech9_explanations
   type :: explanation_type
     character(len=9) :: group
     character(len=18) :: name
-    character(len=26) :: kinds                 !< as in the grammar, where it tells rows of one name apart
+    character(len=26) :: kinds                 !< kinds as in the grammar, which tell rows of one name apart
     character(len=275) :: text                 !< whole sentences
     character(len=84) :: example               !< a value as it is typed, for angles in rad, and its meaning in parentheses
     character(len=84) :: degrees = ''          !< the same for an angle in degrees; empty: as in rad
@@ -286,7 +287,7 @@ module mech9_explanations
 
 contains
 
-  !> Where the explanation of a name stands; 0 where there is none.
+  !> The number of the explanation of a name; 0 if there is none.
   pure integer function find_explanation(group, name, kinds) result(place)
     character(len=*), intent(in) :: group  !< group of the name
     character(len=*), intent(in) :: name   !< the name, without a subscript

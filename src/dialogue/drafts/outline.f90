@@ -1,5 +1,5 @@
-!> What a conversation knows beside the draft itself: how the structure is given, which seldom names are asked for, which
-!> coordinates are independent; and the groups that follow from it.
+!> The facts that a conversation knows beside the draft: the way in which the structure is given, the rarely used names
+!> that the user wants, and the independent coordinates. The groups that follow from them are made here.
 module mech9_outline
   use mech9_text, only: to_text, lower
   use mech9_grammar, only: item_table, find_item_rows, item_row_for_kind
@@ -8,23 +8,23 @@ module mech9_outline
   private
   public :: outline_type, ways, new_outline, make_groups, drop_empty_guesses, drop_foreign, kind_in
 
-  !> How the structure can be given: the links of each pair, the rows of the coincidence matrix, the second set.
+  !> The ways to give the structure: the links of each pair, the rows of the coincidence matrix, or the second set.
   character(len=7), parameter :: ways(3) = [character(len=7) :: 'pairs', 'matrix', 'vectors']
 
-  !> What is known beside the draft.
+  !> The facts known beside the draft.
   type :: outline_type
     character(len=6) :: program_name = ''
-    character(len=7) :: way = ways(1)                       !< one of `ways`
-    logical :: asked(size(item_table)) = .false.            !< seldom names that are asked for
-    logical :: guesses = .false.                            !< dependent coordinates at the start are asked for
+    character(len=7) :: way = ways(1)                       !< way in which the structure is given, one of `ways`
+    logical :: asked(size(item_table)) = .false.            !< rarely used names that the user wants to give
+    logical :: guesses = .false.                            !< guesses of the dependent coordinates at the start are wanted
     logical :: structure_known = .false.
-    logical, allocatable :: independent(:)                  !< of use where the structure is known
-    integer, allocatable :: links(:, :)                     !< (2,M) likewise
+    logical, allocatable :: independent(:)                  !< (M) which coordinates are independent, once the structure is known
+    integer, allocatable :: links(:, :)                     !< (2,M) links of the pairs, once the structure is known
   end type outline_type
 
 contains
 
-  !> The outline of what a draft says already.
+  !> The outline that follows from the values in a draft.
   pure function new_outline(program_name, draft) result(outline)
     character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     type(draft_type), intent(in) :: draft         !< groups and names with their values as text
@@ -46,7 +46,7 @@ contains
     end do
   end function new_outline
 
-  !> The kind that a group says it is, in lower case; empty where it has none.
+  !> The kind of a group, in lower case; empty if it has none.
   pure function kind_in(draft, group) result(kind)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: group           !< index of the group in the draft
@@ -61,8 +61,8 @@ contains
     end associate
   end function kind_in
 
-  !> A pair for each coordinate; a drive, or the values at the start, for each independent one; guesses for
-  !> the others where they are wanted.
+  !> The groups that are needed are made: a pair for each coordinate, a drive or initial values for each independent
+  !> coordinate, and guesses for the other coordinates if they are wanted.
   pure subroutine make_groups(draft, outline)
     type(draft_type), intent(inout) :: draft   !< groups and names with their values as text
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
@@ -80,7 +80,7 @@ contains
     if (outline%guesses) call make_numbered(draft, 'initial', .not. outline%independent)
   end subroutine make_groups
 
-  !> Links of the pairs as the structure says, where they are not the same in either order.
+  !> The pairs get their links from the structure, unless they have them already in either order.
   pure subroutine give_links(draft, links)
     type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
     integer, intent(in) :: links(:, :)        !< (2,M) reference link and moving link of each pair
@@ -96,7 +96,7 @@ contains
     end do
   end subroutine give_links
 
-  !> A group for each coordinate of a mask, where there is none yet.
+  !> A group is made for each wanted coordinate that has none yet.
   pure subroutine make_numbered(draft, group, wanted)
     type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the groups
@@ -117,7 +117,7 @@ contains
     end do
   end subroutine make_numbered
 
-  !> Values at the start that say nothing but their coordinate.
+  !> Initial values are removed if they hold nothing but their coordinate.
   pure subroutine drop_empty_guesses(draft)
     type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
     integer :: place
@@ -127,8 +127,8 @@ contains
     end do
   end subroutine drop_empty_guesses
 
-  !> Take away what does not belong to a group since its kind has changed, and drives and velocities of
-  !> coordinates that are not independent any more. `dropped` names it; empty: nothing.
+  !> Names that do not belong to a group since its kind has changed are taken away, as are drives and velocities of
+  !> coordinates that are no longer independent.
   pure subroutine drop_foreign(draft, outline, dropped)
     type(draft_type), intent(inout) :: draft               !< groups and names with their values as text
     type(outline_type), intent(in) :: outline              !< facts known beside the draft
@@ -150,7 +150,7 @@ contains
       if (k < 1 .or. k > size(outline%independent)) cycle
       if (outline%independent(k)) cycle
       if (name == 'drive') then
-        ! a drive of which nothing was entered yet goes without a word
+        ! a drive without values is removed without a message
         if (size(draft%groups(i)%entries) > 1) call note('drive '//to_text(k), dropped)
         call draft%remove(name, place)
       else if (name == 'initial' .and. draft%has(name, place, 'velocity')) then
@@ -168,7 +168,7 @@ contains
     list = what//list
   end subroutine note
 
-  !> Whether a known name does not belong to the kind of its group.
+  !> Whether a name of the grammar does not belong to the kind of its group.
   pure logical function is_foreign(draft, group, name)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: group           !< index of the group in the draft

@@ -1,5 +1,5 @@
-!> What is said about a question beyond its prompt: one line where a name comes up the first time, the answer to `?`, and what
-!> is said of Enter where it answers nothing.
+!> The texts about a question beyond its prompt: one line where a name comes up first, the answer to `?`, and the answer
+!> to an empty line where the question has no default.
 module mech9_question_help
   use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group
   use mech9_data_help, only: values_text, default_text
@@ -17,7 +17,7 @@ module mech9_question_help
 
 contains
 
-  !> One line on what a question means, with the words it takes.
+  !> One line on the meaning of a question, with the words that it takes.
   pure function gist_of(question) result(text)
     type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: text
@@ -28,7 +28,7 @@ contains
     end associate
   end function gist_of
 
-  !> What stands behind the colon of "text: fixed or link".
+  !> The part of a description such as "text: fixed or link" that stands behind the colon.
   pure function words_allowed(values) result(words)
     character(len=*), intent(in) :: values  !< a description such as "text: fixed or link"
     character(len=:), allocatable :: words
@@ -69,7 +69,7 @@ contains
                                                     ' that is asked about.'
   end function help_of
 
-  !> The names of a group that are asked for only when told so, each with what it means in a line.
+  !> The rarely used names of a group, each with its meaning in a line.
   pure function list_of_seldom(question, outline) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(outline_type), intent(in) :: outline    !< facts known beside the draft
@@ -107,7 +107,7 @@ contains
     end associate
   end function help_on_name
 
-  !> An example as it would be typed: in the unit of the coordinate that is meant.
+  !> An example of an answer, in the unit of the coordinate that is meant.
   pure function example_of(row, place, kind, angle) result(text)
     type(item_row_type), intent(in) :: row  !< row of the table of names
     integer, intent(in) :: place            !< number of the explanation; 0: none
@@ -124,7 +124,7 @@ contains
     end associate
   end function example_of
 
-  !> What is said where Enter is pressed at a question that has nothing in brackets.
+  !> The text for an empty answer to a question without a default.
   pure function refusal_of_enter(question) result(text)
     type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: text

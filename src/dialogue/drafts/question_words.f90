@@ -1,4 +1,5 @@
-!> Questions in words: headings, prompts, what Enter answers, and what can be completed; all from the table of names.
+!> The words of questions: headings, prompts, defaults, and the words that can be completed. They are made from the table
+!> of names.
 module mech9_question_words
   use mech9_text, only: to_text, string_type
   use mech9_grammar, only: group_table, item_table, rows_of_group, words_of
@@ -13,17 +14,17 @@ module mech9_question_words
   public :: default_type, default_of, prompt_of, heading_of, unit_here, coordinate_kind, angle_unit, words_for
   public :: is_lacking, is_needed, seldom_names
 
-  !> What Enter answers.
+  !> The answer that Enter gives.
   type :: default_type
-    character(len=:), allocatable :: text       !< in the form of a data file; empty: nothing can be noted
-    character(len=:), allocatable :: shown      !< in the brackets of the prompt; empty: no brackets
-    logical :: noted = .false.                  !< it is noted in the data file like an answer that was typed
+    character(len=:), allocatable :: text       !< value as a data file writes it; empty: there is nothing to note
+    character(len=:), allocatable :: shown      !< text in the brackets of the prompt; empty: no brackets
+    logical :: noted = .false.                  !< the value is noted in the data file like an answer that was typed
   end type default_type
 
 contains
 
-  !> What Enter answers to a question about a name: what was answered before, what the group before
-  !> says where something must be said, or the default of the table.
+  !> The answer that Enter gives to a question about a name: the earlier answer, a likely value if the name must be given,
+  !> or the default of the table.
   pure function default_of(question, draft, outline, table_file) result(default)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -47,7 +48,7 @@ contains
       else if (is_needed(question, draft, outline)) then
         default%text = likely_value(question, draft)
       else if (row%needed) then
-        default%shown = ''             ! of a group that a data file may leave out: here it must be said
+        default%shown = ''             ! a data file may leave out the group, but here the value must be given
       else if (index(row%default, '(') /= 1 .and. row%default /= '''''') then
         default%shown = unquoted(trim(row%default))
       else
@@ -68,8 +69,9 @@ contains
     if (text == '.false.') word = 'no'
   end function switch_word
 
-  !> A value for what must be given: the axis of the turning pair before, the first of the words allowed, or zero at the
-  !> start; empty where nothing is likely. A slide proposes neither its kind nor its axis for the pair after it.
+  !> A likely value for a name that must be given: the axis of the revolute pair before, the first of the words allowed,
+  !> or the default for a value at the start. It is empty if nothing is likely. A slide gives neither its kind nor its
+  !> axis to the pair after it.
   pure function likely_value(question, draft) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -87,7 +89,7 @@ contains
     end associate
   end function likely_value
 
-  !> For a revolute pair the axis of the last revolute pair before it that has one; empty where there is none.
+  !> For a revolute pair, the axis of the last revolute pair before it that has one; empty if there is none.
   pure function axis_before(place, draft) result(text)
     integer, intent(in) :: place           !< place of the pair among the pairs, from 1
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
@@ -102,7 +104,7 @@ contains
     end do
   end function axis_before
 
-  !> Whether a question about a name must be answered, and is not.
+  !> Whether a question about a name must be answered and is not answered yet.
   pure logical function is_lacking(question, draft, outline)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -114,8 +116,8 @@ contains
                  draft%has(trim(group_table(question%group_row)%name), question%place, entry_name(question))
   end function is_lacking
 
-  !> Whether a name must be given. Counts and structural data must here, though a data file can leave
-  !> some of them to be counted; a group that is not repeated may be left out as a whole.
+  !> Whether a name must be given. Counts and structural data must be given here, though in a data file some of them can
+  !> be left out. A group that is not repeated may be left out as a whole.
   pure logical function is_needed(question, draft, outline)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -151,7 +153,8 @@ contains
     if (coordinate >= 1 .and. coordinate <= size(outline%independent)) is_independent = outline%independent(coordinate)
   end function is_independent
 
-  !> The line above the questions of one group: "Pair 5, from link 1 to link 2"; empty where there is but one.
+  !> The heading of the questions of one group, such as "Pair 5, from link 1 to link 2"; empty if there is only one group
+  !> of this name.
   pure function heading_of(question, draft) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -180,7 +183,7 @@ contains
     end select
   end function heading_of
 
-  !> The prompt: name, unit, what Enter answers.
+  !> The prompt of a question: its name, its unit and its default.
   pure function prompt_of(question, draft, default) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -202,8 +205,8 @@ contains
     text = text//': '
   end function prompt_of
 
-  !> The unit of a name in this data file: angles in rad or degrees, coordinates as their pair moves, loads on
-  !> coordinates as these are.
+  !> The unit of a name in this data file: angles in rad or degrees, coordinates by the kind of their pair, and loads on
+  !> coordinates by the kind of the pair.
   pure function unit_here(question, draft) result(unit)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -223,7 +226,7 @@ contains
     call replace('q', q, unit)
   end function unit_here
 
-  !> Of the units of a length and of an angle, "N or N m", the one that fits the kind of pair.
+  !> The unit that fits the kind of pair, out of those for a length and for an angle, such as "N or N m".
   pure function unit_of_load(both, kind) result(unit)
     character(len=*), intent(in) :: both  !< the two units, separated by a comma or `or`; a single unit stays as it is
     character(len=*), intent(in) :: kind  !< kind of the pair; empty: unknown
@@ -242,7 +245,7 @@ contains
     if (kind == 'revolute' .or. kind == 'helical') unit = both(next:)
   end function unit_of_load
 
-  !> The kind of the pair whose coordinate the group of a question names; empty where it names none.
+  !> The kind of the pair whose coordinate the group of a question names; empty if it names none.
   pure function coordinate_kind(question, draft) result(kind)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -264,7 +267,7 @@ contains
     if (unquoted(draft%value('mechanism', 1, 'angle_unit')) == 'deg') unit = 'deg'
   end function angle_unit
 
-  !> Put a word in the place of another, once.
+  !> The first occurrence of a word is replaced by another word.
   pure subroutine replace(word, by, text)
     character(len=*), intent(in) :: word                  !< word to be replaced
     character(len=*), intent(in) :: by                    !< word that takes its place
@@ -282,7 +285,7 @@ contains
     has_word = word_place(text, word) > 0
   end function has_word
 
-  !> Where a word stands in a text that is made of words, blanks, commas and slashes; 0: nowhere.
+  !> The place of a word in a text of words, blanks, commas and slashes; 0 if it is not there.
   pure integer function word_place(text, word) result(at)
     character(len=*), intent(in) :: text  !< words between blanks, commas and slashes
     character(len=*), intent(in) :: word  !< the word that is looked for
@@ -298,7 +301,7 @@ contains
     at = 0
   end function word_place
 
-  !> The names of a group that are asked for only when told so: "zero, moving_point".
+  !> The rarely used names of a group, such as "zero, moving_point".
   pure function seldom_names(question, outline) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(outline_type), intent(in) :: outline    !< facts known beside the draft
@@ -315,7 +318,7 @@ contains
     end do
   end function seldom_names
 
-  !> What can be completed at a question: its words and the commands.
+  !> The words that can be completed at a question: those that it takes, and the commands.
   pure subroutine words_for(question, outline, words)
     type(question_type), intent(in) :: question              !< the question
     type(outline_type), intent(in) :: outline                !< facts known beside the draft

@@ -1,7 +1,7 @@
-!> The questions of a conversation, made from the tables of topics, groups and names and from what is known so far.
+!> The questions of a conversation are made from the tables of topics, groups and names and from the answers so far.
 !>
-!> The list is made anew after each answer, since an answer may open or close others. A question is the
-!> same in two lists if its label is.
+!> The list is made anew after each answer, since an answer may open or close other questions. A question is the same in
+!> two lists if it has the same label.
 module mech9_questions
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group, takes_kind, find_item_rows
@@ -13,8 +13,8 @@ module mech9_questions
   public :: question_type, make_questions, label_of, find_question, entry_name, is_open, is_seldom
   public :: ask_item, ask_seldom, ask_way, ask_guesses, check_structure, check_start, check_all
 
-  !> What a question is: about a name of a group, about which seldom names to ask for, how the structure is
-  !> given, whether dependent coordinates are guessed; or no question but a check that stands between them.
+  !> The kinds of questions: about a name of a group, about the rarely used names of a group, about the way in which the
+  !> structure is given, and about guesses of dependent coordinates. Checks between the questions are kinds of their own.
   integer, parameter :: ask_item = 1, ask_seldom = 2, ask_way = 3, ask_guesses = 4
   integer, parameter :: check_structure = 5, check_start = 6, check_all = 7
 
@@ -22,19 +22,19 @@ module mech9_questions
   type :: question_type
     integer :: kind = ask_item
     integer :: topic = 0
-    integer :: group_row = 0       !< in group_table
-    integer :: place = 0           !< of the group among those of its name; one more than there are: a new one
-    integer :: row = 0             !< in item_table
+    integer :: group_row = 0       !< row of the group in group_table
+    integer :: place = 0           !< place of the group among those of its name; one more than there are: a new one
+    integer :: row = 0             !< row of the name in item_table
     integer :: line = 0            !< row of the coincidence matrix; 0: none
-    logical :: is_new = .false.    !< opens a new group, or none
+    logical :: is_new = .false.    !< the answer begins a new group, or none
   end type question_type
 
-  !> Names that say in other words where a pair is.
+  !> Names that give the place of a pair instead of the Denavit-Hartenberg parameters.
   character(len=*), parameter :: instead_of_dh = ' point axis zero moving_point moving_axis moving_zero '
 
 contains
 
-  !> All questions in order; the last one is the check of all.
+  !> All questions are made in order. The last one is the check of everything.
   pure subroutine make_questions(draft, outline, questions)
     type(draft_type), intent(in) :: draft                          !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                      !< facts known beside the draft
@@ -77,7 +77,7 @@ contains
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism') then
-      ! a conversation does not begin with what is seldom: that of the mechanism is changed by its name where it is needed
+      ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)
@@ -89,7 +89,7 @@ contains
     if (group == 'initial') call append(questions, count, question_type(kind=check_start, topic=topic))
   end subroutine ask_about_group
 
-  !> The names of one group.
+  !> The questions about the names of one group are appended.
   pure subroutine ask_about_one(draft, outline, template, rows, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                        !< facts known beside the draft
@@ -110,7 +110,7 @@ contains
     end do
   end subroutine ask_about_one
 
-  !> The rows with that of the Denavit-Hartenberg parameters before those that they replace.
+  !> The rows of a pair, in an order that has the Denavit-Hartenberg parameters before the names that they replace.
   pure function dh_first(rows) result(order)
     integer, intent(in) :: rows(:)  !< rows of the names of a pair in item_table
     integer, allocatable :: order(:)
@@ -127,7 +127,7 @@ contains
     replaced = index(instead_of_dh, ' '//trim(name)//' ') > 0
   end function replaced
 
-  !> Whether a name is asked for in its group as it stands.
+  !> Whether there is a question about a name in its group as it stands.
   pure logical function is_open(draft, outline, question)
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     type(outline_type), intent(in) :: outline    !< facts known beside the draft
@@ -152,7 +152,8 @@ contains
     end associate
   end function is_open
 
-  !> Whether a name is asked for only when told so. Links of pairs are, where the structure gives them.
+  !> Whether a name is a rarely used one, about which there are questions only on request. The links of pairs are, if the
+  !> structure gives them.
   pure logical function is_seldom(outline, row)
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
     type(item_row_type), intent(in) :: row     !< row of the table of names
@@ -169,7 +170,8 @@ contains
     is_used = row%program == 'both' .or. row%program == outline%program_name
   end function is_used
 
-  !> Values at the start: of independent coordinates where they are integrated, guesses of dependent ones.
+  !> Whether there is a question about a value at the start. There is for independent coordinates in mech9d, and for
+  !> guesses of dependent ones.
   pure logical function is_open_at_start(draft, outline, question) result(open)
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     type(outline_type), intent(in) :: outline    !< facts known beside the draft
@@ -197,7 +199,8 @@ contains
     end do
   end function has_procedures
 
-  !> How the structure is given, and that; then the independent coordinates and the check.
+  !> The questions about the structure are appended: the way in which it is given, its data, the independent coordinates
+  !> and the check.
   pure subroutine ask_about_structure(draft, outline, topic, group_row, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                        !< facts known beside the draft
@@ -231,7 +234,8 @@ contains
     call append(questions, count, question_type(kind=check_structure, topic=topic))
   end subroutine ask_about_structure
 
-  !> The second set takes the place of cq; anything else is asked for in either case.
+  !> Whether a structural name belongs to the way in which the structure is given. The second set takes the place of cq;
+  !> other names belong to every way.
   pure logical function has_place_in(way, name)
     character(len=*), intent(in) :: way   !< how the structure is given, one of `ways` of mech9_outline
     character(len=*), intent(in) :: name  !< the name, without a subscript
@@ -285,7 +289,7 @@ contains
     if (question%line > 0) name = name//'('//to_text(question%line)//',:)'
   end function entry_name
 
-  !> What tells a question from all others: "pair(3).axis".
+  !> The label that tells a question from all others, such as "pair(3).axis".
   pure function label_of(question) result(label)
     type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: label
@@ -308,7 +312,7 @@ contains
     end select
   end function label_of
 
-  !> Number of the question with a label; 0 where there is none.
+  !> The number of the question with a label; 0 if there is none.
   pure integer function find_question(questions, label) result(number)
     type(question_type), intent(in) :: questions(:)  !< all questions in order
     character(len=*), intent(in) :: label            !< the label that is looked for

@@ -1,6 +1,6 @@
-!> Short ways to type an answer, and the full form in which a data file holds them.
+!> Short forms of answers, and the full forms in which a data file holds them.
 !>
-!> The reader of data files takes full forms only; short ones are understood where somebody can be asked again.
+!> The reader of data files takes full forms only. Short forms are understood where the user can be asked again.
 module mech9_short_answers
   use mech9_text, only: lower
   use mech9_grammar, only: item_row_type, words_of
@@ -11,13 +11,13 @@ module mech9_short_answers
   !> Names that take a direction, with blanks around each.
   character(len=*), parameter :: directions = ' axis zero moving_axis moving_zero '
   character(len=*), parameter :: digits = '0123456789', blanks = ' '//achar(9)
-  !> Short answers are not longer than this.
+  !> Longer answers are no short forms.
   integer, parameter :: longest = 40
 
 contains
 
-  !> The full form of an answer to the question about a name: "rev" and "hinge" are revolute, "-z" the axis 0, 0, -1,
-  !> "1-2" the links 1, 2, and for gravity "-y" is 0, -9.81, 0 and "none" 0, 0, 0. What is not short stays as it is.
+  !> The full form of an answer: "rev" and "hinge" are revolute, "-z" is the axis 0, 0, -1, and "1-2" means the links 1,
+  !> 2. For gravity "-y" is 0, -9.81, 0 and "none" is 0, 0, 0. Other answers stay as they are.
   pure function full_form(row, line) result(text)
     type(item_row_type), intent(in) :: row  !< row of the table of names for the question
     character(len=*), intent(in) :: line    !< the answer, without blanks around it
@@ -40,7 +40,7 @@ contains
     end if
   end function full_form
 
-  !> What mechanics call the kinds of pairs; empty for other words.
+  !> The kind of pair that a mechanic's word means; empty for other words.
   pure function kind_of_pair(line) result(kind)
     character(len=*), intent(in) :: line  !< the answer, without blanks around it
     character(len=:), allocatable :: kind
@@ -57,7 +57,8 @@ contains
     end select
   end function kind_of_pair
 
-  !> The one word of a list that begins with what was typed, or is it; empty where none does, or several do.
+  !> The word of a list that an answer means: the answer itself, or the only word that begins with it; empty if there is
+  !> no such word or more than one.
   pure function word_meant(line, words) result(word)
     character(len=*), intent(in) :: line      !< the answer, without blanks around it
     character(len=*), intent(in) :: words(:)  !< the words allowed, in lower case
@@ -109,7 +110,7 @@ contains
     end do
   end function along
 
-  !> "1, 2" for "1-2" and "1 - 2"; anything else as it is.
+  !> Two numbers with a comma between them, "1, 2" for "1-2" and "1 - 2". Other texts stay as they are.
   pure function two_numbers(line) result(text)
     character(len=*), intent(in) :: line  !< the answer, without blanks around it
     character(len=:), allocatable :: text, first, second

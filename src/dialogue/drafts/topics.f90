@@ -1,4 +1,4 @@
-!> What a conversation speaks of, in the order a person thinks: each topic takes some groups of the data file.
+!> The topics of a conversation, in the order in which a person thinks. Each topic has some groups of the data file.
 module mech9_topics
   use mech9_grammar, only: group_table, find_group_row, words_of
   implicit none
@@ -8,8 +8,8 @@ module mech9_topics
   !> One topic.
   type :: topic_type
     character(len=24) :: title
-    character(len=20) :: groups       !< their names; empty: those of no other topic
-    character(len=370) :: opening     !< what is said when it begins
+    character(len=20) :: groups       !< names of its groups; empty: all groups without another topic
+    character(len=370) :: opening     !< text at the beginning of the topic
   end type topic_type
 
   type(topic_type), parameter :: topics(*) = [ &
@@ -34,7 +34,7 @@ module mech9_topics
 
 contains
 
-  !> Rows of group_table that belong to a topic, in the topic's order.
+  !> The rows of group_table that belong to a topic, in the order of the topic.
   pure function groups_of_topic(topic) result(rows)
     integer, intent(in) :: topic  !< number of the topic
     integer, allocatable :: rows(:)
@@ -58,8 +58,8 @@ contains
     has_word = index(' '//trim(words)//' ', ' '//trim(word)//' ') > 0
   end function has_word
 
-  !> Whether the groups of a name are told apart by the number of a coordinate: then there is one for each
-  !> coordinate concerned, and the number itself is not asked for.
+  !> Whether the groups of a name are told apart by the number of a coordinate. There is then one for each coordinate
+  !> concerned, and no question about the number itself.
   pure logical function is_numbered(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
 
