@@ -1,5 +1,5 @@
-!> What is known of the mobility of a mechanism whose plan is made: ranks, redundant equations, which coordinates could be
-!> independent, and which are idle.
+!> A report on the mobility of a mechanism whose plan is made: ranks, redundant equations, coordinates that could be
+!> independent, and idle ones.
 module mech9_mobility_report
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
@@ -16,28 +16,28 @@ module mech9_mobility_report
   private
   public :: mobility_report_type, idle_type, report_mobility
 
-  !> Pivots below this fraction of the largest count as zero, and rates below it as none.
+  !> Pivots below this fraction of the largest count as zero, and so do rates below it.
   real(wp), parameter :: tolerance = 1.0e-9_wp
 
-  !> Coordinates in series that can move, in one way, while the links at both ends of the series stand still.
+  !> Coordinates in series that can move, with one freedom, while the links at both ends of the series stand still.
   type :: idle_type
-    integer, allocatable :: coordinates(:)
-    integer :: ends(2) = 0                    !< the links
+    integer, allocatable :: coordinates(:)    !< numbers of the coordinates
+    integer :: ends(2) = 0                    !< numbers of the links at both ends
   end type idle_type
 
   !> Ranks at a general position near the start, if one was found, and at the start.
   type :: mobility_report_type
-    logical :: general = .false.              !< was a general position found?
-    integer :: by_count = 0                   !< coordinates less the dimensions of the chains' motions
-    integer :: by_rank = 0                    !< coordinates less rank
-    integer, allocatable :: ranks(:)          !< of each block
-    integer, allocatable :: at_start(:)       !< the same at the start: less at a singular position
-    integer, allocatable :: redundant(:)      !< equations of each closure that follow from those before it
-    logical, allocatable :: moves(:)          !< (M): could it be independent?
-    integer, allocatable :: dimensions(:)     !< (M): most dimensions of the motions of a loop it is on; 0: on none
-    !> (M, independent): rate of each coordinate per unit rate of each independent one, in their units
+    logical :: general = .false.              !< a general position was found
+    integer :: by_count = 0                   !< mobility as number of coordinates less the dimensions of the chains' motions
+    integer :: by_rank = 0                    !< mobility as number of coordinates less rank
+    integer, allocatable :: ranks(:)          !< rank of each block
+    integer, allocatable :: at_start(:)       !< rank of each block at the start: smaller if that is singular
+    integer, allocatable :: redundant(:)      !< number of equations of each closure that follow from the closures before it
+    logical, allocatable :: moves(:)          !< (M) the coordinate could be independent
+    integer, allocatable :: dimensions(:)     !< (M) most dimensions of the motions of a loop with the coordinate; 0 if on none
+    !> (M, independent) rate of each coordinate per unit rate of each independent one, in their units
     real(wp), allocatable :: shares(:, :)
-    type(idle_type), allocatable :: idle(:)
+    type(idle_type), allocatable :: idle(:)   !< idle freedoms
   end type mobility_report_type
 
 contains
@@ -145,7 +145,7 @@ contains
     end do
   end subroutine find_shares
 
-  !> Idle freedoms of all series of pairs, that is, runs of pairs through links that have no others.
+  !> Idle freedoms of all series of pairs. A series goes through links that have no other pairs.
   subroutine find_idle(mechanism, plan, state, dimensions, idle)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -189,10 +189,10 @@ contains
     end associate
   end subroutine find_idle
 
-  !> The shortest runs in a series whose screws are dependent: they can move by themselves. Spherical
-  !> pairs at both ends let a rod spin, axes in one line turn freely. A run that uses all dimensions of
-  !> its loop is idle only if it ends at links with other pairs: else it is how the loop moves. A run that comes back to
-  !> its first link is a whole loop, overconstrained and moving as it should.
+  !> Find the shortest runs of a series whose screws are dependent: these can move alone, as a rod with spherical pairs at both
+  !> ends spins, or axes in one line turn. A run that uses all dimensions of its loop is idle only if it ends at links with
+  !> other pairs; otherwise it is the motion of the loop. A run that returns to its first link is a whole overconstrained
+  !> loop, whose motion is not idle.
   subroutine search_series(plan, state, series, links, dimension, idle)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
@@ -219,7 +219,7 @@ contains
     end do
   end subroutine search_series
 
-  !> One series more. An array constructor would be shorter, but gfortran 12 leaks what is in it.
+  !> Append a series to a list. An array constructor would be shorter, but gfortran 12 leaks the components of its elements.
   pure subroutine append(list, series)
     type(idle_type), allocatable, intent(inout) :: list(:)   !< the list, which gets one more
     type(idle_type), intent(in) :: series   !< the series to add
@@ -242,7 +242,7 @@ contains
     do i = 1, size(coordinates)
       call step_screw(plan, state, plan%step_of(coordinates(i)), screws(1:3, i), v, place)
       if (i == 1) first_place = place
-      ! about the first axis: far from the origin all screws would look alike
+      ! moments are taken about the first axis: about a distant origin all screws would be nearly equal
       screws(4:6, i) = (v + cross(place - first_place, screws(1:3, i)))/plan%length
       screws(:, i) = screws(:, i)/norm2(screws(:, i))
     end do

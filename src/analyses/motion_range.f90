@@ -1,4 +1,4 @@
-!> How far each independent coordinate can go with the others held where they are.
+!> The range of motion of an independent coordinate while the others are held.
 module mech9_motion_range
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
@@ -12,36 +12,38 @@ module mech9_motion_range
   private
   public :: motion_range_type, end_type, find_range, ends_at_limit, ends_never, ends_round, ends_otherwise
 
-  integer, parameter :: ends_at_limit = 1       !< a dead point
-  integer, parameter :: ends_never = 2          !< none was found as far as was looked
-  integer, parameter :: ends_round = 3          !< the mechanism comes round to where it began
-  integer, parameter :: ends_otherwise = 4      !< it cannot be followed farther, for another reason
+  integer, parameter :: ends_at_limit = 1       !< the range ends at a dead point
+  integer, parameter :: ends_never = 2          !< no end was found as far as the motion was tried
+  integer, parameter :: ends_round = 3          !< after some turns the mechanism is in its starting position again
+  integer, parameter :: ends_otherwise = 4      !< the motion cannot go on, for another reason than a dead point
 
   !> One end of a range.
   type :: end_type
-    integer :: kind = ends_never
-    real(wp) :: value = 0.0_wp                  !< the limit, or how far was looked [rad or m]
-    integer :: block = 0                        !< that is at its dead point
-    integer :: turns = 0                        !< after which it comes round
-    character(len=:), allocatable :: reason     !< why it cannot be followed
+    integer :: kind = ends_never                !< one of the kinds above
+    real(wp) :: value = 0.0_wp                  !< the limit, or the value up to which the motion was tried [rad or m]
+    integer :: block = 0                        !< number of the block at its dead point
+    integer :: turns = 0                        !< number of turns after which the start is reached again
+    character(len=:), allocatable :: reason     !< reason why the motion cannot go on
   end type end_type
 
   !> The range of a coordinate.
   type :: motion_range_type
-    integer :: coordinate = 0
-    real(wp) :: start = 0.0_wp                  !< [rad or m]
-    type(end_type) :: lower, upper
+    integer :: coordinate = 0                   !< number of the coordinate
+    real(wp) :: start = 0.0_wp                  !< its value at the start [rad or m]
+    type(end_type) :: lower                     !< end in the negative direction
+    type(end_type) :: upper                     !< end in the positive direction
   end type motion_range_type
 
-  !> How far a coordinate without an end is followed: turns, or lengths of the mechanism.
+  !> Number of turns in each direction that are tried.
   integer, parameter :: most_turns = 4
+  !> Distance in each direction that a slide is tried [lengths of the mechanism].
   real(wp), parameter :: most_lengths = 20.0_wp
-  !> Come round: all coordinates within this of the start, in their units.
+  !> The start is reached again where all coordinates differ from it by less than this, in their units.
   real(wp), parameter :: same = 1.0e-6_wp
 
 contains
 
-  !> Follow one independent coordinate both ways from an assembled start.
+  !> Move one independent coordinate in both directions from an assembled start.
   subroutine find_range(mechanism, plan, start, coordinate, range)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -59,7 +61,7 @@ contains
     end if
   end subroutine find_range
 
-  !> Follow a coordinate one way, at one unit a second.
+  !> Move a coordinate in one direction, at one unit per second.
   subroutine find_end(mechanism, plan, start, coordinate, direction, found)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -101,7 +103,7 @@ contains
     found%block = driven%ahead%block
   end subroutine find_end
 
-  !> Drives that hold all independent coordinates but one.
+  !> Set drives that move one independent coordinate and hold the others.
   subroutine drive_one(plan, start, coordinate, direction, swept)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< the assembled start
@@ -122,7 +124,7 @@ contains
     end do
   end subroutine drive_one
 
-  !> Whether all other coordinates are again what they were, whole turns of revolute pairs aside.
+  !> Whether all other coordinates have their values at the start again, except for whole turns of revolute pairs.
   pure logical function has_come_round(plan, start, state, coordinate)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< the assembled start

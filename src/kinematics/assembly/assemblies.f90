@@ -1,4 +1,4 @@
-!> The assemblies of a mechanism: all the positions in which its chains close for the same independent coordinates, as far as
+!> The assemblies of a mechanism: the positions in which its chains close for the same independent coordinates, as far as
 !> random starts lead to them.
 module mech9_assemblies
   use mech9_kinds, only: wp, pi
@@ -17,16 +17,16 @@ module mech9_assemblies
 
   !> Assemblies, in the order in which they were found.
   type :: assembly_list_type
-    integer :: starts = 0                    !< that were tried
-    integer :: closed = 0                    !< starts that led to a closed position
-    real(wp), allocatable :: q(:, :)         !< (M, assemblies): coordinates; angles within half a turn
-    integer, allocatable :: found(:)         !< how many starts led to each
+    integer :: starts = 0                    !< number of starts that were tried
+    integer :: closed = 0                    !< number of starts that led to a closed position
+    real(wp), allocatable :: q(:, :)         !< (M, assemblies) coordinates; angles within half a turn [rad, m]
+    integer, allocatable :: found(:)         !< number of starts that led to each assembly
   end type assembly_list_type
 
 contains
 
-  !> Assemblies for the independent coordinates of an assembled start, which is the first of them. The
-  !> starts are always the same ones.
+  !> Find the assemblies with the independent coordinates of an assembled start, which is the first of them. The random
+  !> starts are the same in every run.
   subroutine find_assemblies(plan, start, n_starts, list)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< an assembled position
@@ -51,7 +51,7 @@ contains
     end do
   end subroutine find_assemblies
 
-  !> Close blocks, of which the last one does not close on the others as they are, from starts ever
+  !> Close blocks, the last of which does not close with the others at their present positions, from starts farther and
   !> farther from the coordinates in `state`.
   subroutine close_from_random_starts(plan, blocks, state, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -62,7 +62,7 @@ contains
     type(random_type) :: random
     integer :: i, starts
 
-    ! the larger the mechanism, the fewer
+    ! fewer starts for larger mechanisms
     starts = max(4, min(40, 4000/blocks(size(blocks))%last_step))
     trial = state
     do i = 1, starts
@@ -101,7 +101,7 @@ contains
     end do
   end subroutine close_from
 
-  !> Count an assembly, new or found before.
+  !> Count an assembly, and add it to the list if it is new.
   subroutine count_assembly(plan, q, list)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: q(:)   !< (M) coordinates of the assembly [rad, m]
@@ -132,13 +132,14 @@ contains
     list%found = [list%found, 1]
   end subroutine count_assembly
 
-  !> Is a full turn of its coordinate the same position?
+  !> Whether a full turn of a step's coordinate gives the same position.
   pure logical function turns(step)
     type(step_type), intent(in) :: step   !< the step
 
     turns = step%is_screw .and. abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp
   end function turns
 
+  !> An angle without whole turns, from -pi to pi.
   pure real(wp) function within_half_a_turn(angle)
     real(wp), intent(in) :: angle   !< an angle [rad]
 

@@ -1,7 +1,7 @@
-!> Assembly, that is, closing the chains of a block from a rough guess.
+!> Assembly: closing the chains of a block from a rough guess.
 !>
-!> Damped least squares (Levenberg and Marquardt), finished by Newton's method. Where the guess leads
-!> to no closed position, the guesses are changed by growing random amounts, always the same ones.
+!> The residual is reduced by damped least squares (Levenberg and Marquardt), and Newton's method finishes at round-off. Where
+!> the guess leads to no closed position, the guesses are changed by growing random amounts, the same in every run.
 module mech9_assembly
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
@@ -16,34 +16,36 @@ module mech9_assembly
   private
   public :: assemble_block, assembly_outcome_type
 
+  !> Largest number of restarts.
   integer, parameter :: most_restarts = 100
   !> Large blocks are restarted less often: unknowns times restarts stay below this.
   integer, parameter :: most_restarted = 3000
+  !> Largest number of damped steps from one guess.
   integer, parameter :: most_steps = 200
-  !> Steps in which the errors must have become clearly smaller.
+  !> Number of steps in which the residual must become clearly smaller.
   integer, parameter :: patience = 25
-  !> From errors as small as this Newton's method takes over.
+  !> Newton's method takes over from residuals below this.
   real(wp), parameter :: newton_radius = 1.0e-8_wp
-  !> Newton's corrections from there, unless the position is singular.
+  !> A larger correction of Newton's method from there shows a singular position.
   real(wp), parameter :: regular_correction = 1.0e-5_wp
-  !> Errors that are left at a singular position where they fall slowly: still far below any tolerance.
+  !> Residual that is accepted at a singular position, where convergence is slow: still far below any tolerance.
   real(wp), parameter :: closed_singular = 1.0e-12_wp
 
-  !> The length of the errors of a block, several closures together, against what one may stay open by.
+  !> Factor from the tolerance of the data, which holds for one closure, to the residual of a block with several closures.
   real(wp), parameter :: allowed_gap = 10.0_wp
 
-  !> How an assembly went.
+  !> The result of an assembly.
   type :: assembly_outcome_type
-    logical :: closed = .false.
-    integer :: restarts = 0           !< changed guesses that were needed
-    integer :: worst_closure = 0      !< where it failed: the closure that is farthest from closed ...
-    real(wp) :: gap = 0.0_wp          !< ... and how far [m, rotations times the mechanism's size]
+    logical :: closed = .false.       !< a closed position was found
+    integer :: restarts = 0           !< number of changed guesses that were needed
+    integer :: worst_closure = 0      !< number of the closure with the largest gap
+    real(wp) :: gap = 0.0_wp          !< this gap [m, rotations times the mechanism's size]
   end type assembly_outcome_type
 
 contains
 
-  !> Close the chains of a block from the guesses in `state`. Where no closed position is found, the
-  !> coordinates are those that came nearest from the first guess.
+  !> Close the chains of a block from the guesses in `state`. Where no closed position is found, the coordinates are those of
+  !> the least residual that was reached from the first guess.
   subroutine assemble_block(plan, block, state, work, may_restart, outcome, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -67,7 +69,7 @@ contains
       end do
       call close_from_guess(plan, block, state, work, outcome, err)
       if (allocated(err)) then
-        ! a user pair without a pose: only at the guess itself is that the user's affair
+        ! a user's pair has no pose: an error only at the guess that the user gave
         if (restart == 0) return
         cycle
       end if
@@ -85,9 +87,9 @@ contains
     call find_worst_closure(plan, block, state, outcome)
   end subroutine assemble_block
 
-  !> Damped least squares from the coordinates in `state`, then Newton's method to round-off. At a
-  !> singular position Newton's method would leave the chains closed anyhow but the coordinates
-  !> elsewhere: there damped least squares goes on as far as it gets.
+  !> Reduce the residual by damped least squares from the coordinates in `state`, then by Newton's method to round-off. At a
+  !> singular position Newton's method would close the chains too, but at coordinates far away: there damped least squares
+  !> goes on as far as possible.
   subroutine close_from_guess(plan, block, state, work, outcome, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -98,7 +100,7 @@ contains
     type(newton_outcome_type) :: newton
     real(wp) :: before(size(block%unknowns)), residual_norm, small_enough
 
-    ! redundant equations that may stay open must be as near to closed as they get
+    ! where inexact redundant equations stay open, the residual must be the least one
     small_enough = newton_radius
     if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) small_enough = closed_enough
     call reduce_errors(plan, block, state, work, small_enough, 1.0e-2_wp, residual_norm, err)
@@ -116,12 +118,11 @@ contains
       end if
     end if
     call find_worst_closure(plan, block, state, outcome)
-    ! all six components of every closure count here, also those outside its space of motions
+    ! the gap counts all six components of every closure, also those outside its space of motions
     outcome%closed = outcome%closed .and. outcome%gap <= max(1.0e-10_wp, plan%data_tolerance)*plan%length
   end subroutine close_from_guess
 
-  !> Damped least squares (Levenberg and Marquardt) until the errors are as small as asked for, or get
-  !> no smaller.
+  !> Damped least squares (Levenberg and Marquardt) until the residual is small enough, or becomes no smaller.
   subroutine reduce_errors(plan, block, state, work, small_enough, damping_at_first, residual_norm, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -147,7 +148,7 @@ contains
       before = state%q(block%coordinates)
       call apply_change(plan, block, work%change, state)
       call find_residual(plan, block, state, work, trial_norm, err)
-      ! where a user pair has no pose the step was too long, like any other that does not help
+      ! a step to a position where a user's pair has no pose is too long, like any other that does not reduce the residual
       if (allocated(err)) deallocate (err)
       if (trial_norm < residual_norm) then
         damping = max(damping*0.2_wp, 1.0e-20_wp)
@@ -166,8 +167,7 @@ contains
     end do
   end subroutine reduce_errors
 
-  !> The change of the unknowns that a damped linear step asks for, in work%change. The errors stand
-  !> in work%right.
+  !> Find the change of the unknowns in a damped linear step, in work%change, from the residual in work%right.
   subroutine damped_change(plan, block, state, damping, damped, right, work)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -188,11 +188,11 @@ contains
     right(m + 1:) = 0.0_wp
     call damped%factorize()
     call damped%solve(right, work%change)
-    ! no more than about a radian at once: beyond it the closures bend too much to follow
+    ! no more than about a radian at once: beyond it the linear model of the closures is useless
     work%change = work%change/max(1.0_wp, maxval(abs(work%change)))
   end subroutine damped_change
 
-  !> Length of the block's errors at the coordinates in `state`; the errors stay in work%right.
+  !> The residual of the block at the coordinates in `state`, in work%right, and its norm.
   subroutine find_residual(plan, block, state, work, residual_norm, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -208,7 +208,7 @@ contains
     residual_norm = norm2(work%right)
   end subroutine find_residual
 
-  !> The closure of a block that is farthest from closed.
+  !> The closure of a block with the largest gap.
   subroutine find_worst_closure(plan, block, state, outcome)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block

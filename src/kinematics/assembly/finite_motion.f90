@@ -1,9 +1,9 @@
-!> Whether chains with redundant equations stay closed over a finite motion.
+!> A test whether chains with redundant equations stay closed over a finite motion.
 !>
 !> The rank of a chain at its start can be lower than at every other position. Its equations then seem redundant, and rates
 !> that satisfy them exist, but the chain is locked: no finite motion keeps it closed. Bennett's linkage, whose equations are
-!> redundant at every closed position, moves; with one dimension changed it has rates at no position but special ones.
-!> The difference is the residual that least squares leave after a finite displacement: round-off, or a gap.
+!> redundant at every closed position, moves; with one dimension changed it has rates only at special positions.
+!> The least residual after a finite displacement tells the two cases apart: it is round-off, or a gap.
 !>
 !> For a chain that opens, the smallest changes of its dimensions are estimated that would keep it closed, to first order:
 !> changes of the constant poses of the loop's steps enter the closures like motions of six more pairs in each step.
@@ -27,13 +27,13 @@ module mech9_finite_motion
 
   !> A chain that does not stay closed.
   type :: locked_chain_type
-    logical :: exists = .false.
-    integer :: block = 0
-    integer :: closure = 0
-    integer :: redundant = 0               !< equations of the block that seem to follow from the others at the start
-    real(wp) :: gap = huge(1.0_wp)         !< that opens [m, rotations times the mechanism's size]
-    real(wp) :: displacement = 0.0_wp      !< of an independent coordinate at which it opens [rad, or parts of the size]
-    real(wp) :: distance = huge(1.0_wp)    !< from dimensions that let it move [rad, or parts of the size]; huge: not known
+    logical :: exists = .false.            !< there is such a chain
+    integer :: block = 0                   !< number of its block
+    integer :: closure = 0                 !< number of its closure
+    integer :: redundant = 0               !< number of equations of the block that seem redundant at the start
+    real(wp) :: gap = huge(1.0_wp)         !< gap after a displacement [m, rotations times the mechanism's size]
+    real(wp) :: displacement = 0.0_wp      !< this displacement of the independent coordinates [rad, or parts of the size]
+    real(wp) :: distance = huge(1.0_wp)    !< distance from dimensions with which it moves [rad, parts of the size]; huge: unknown
   end type locked_chain_type
 
   !> Residuals of a chain that stays closed [rad, parts of the size]: sums of round-off over the steps of a loop.
@@ -41,28 +41,28 @@ module mech9_finite_motion
   !> Residuals below this, and below this part of the squared displacement, come from inexact dimensions if the position is
   !> regular: inputs out of reach and other branches of an earlier block leave larger ones.
   real(wp), parameter :: small_gap = 1.0e-6_wp, small_part = 1.0e-4_wp
-  !> Worst conditioning of a position whose residual is a verdict by itself: round-off of earlier blocks grows by its square.
+  !> Least conditioning of a position whose residual decides alone: round-off of earlier blocks grows by its inverse square.
   real(wp), parameter :: regular = 1.0e-3_wp
-  !> Changes of the unknowns by which a position may still miss the least residual.
+  !> Largest distance of the unknowns from those with the least residual.
   real(wp), parameter :: settled = 1.0e-8_wp
-  !> Displacements that are tried, halved each time and then again from the first one: the smallest is 0.3/64.
+  !> Number of displacements that are tried, and number of their sizes, each half of the one before.
   integer, parameter :: most_trials = 21, sizes = 7
+  !> Largest displacement, in units of the coordinates.
   real(wp), parameter :: first_displacement = 0.3_wp
-  !> A motion of all coordinates counts from this on.
+  !> Least change of a coordinate, in its unit, that counts as a motion where all coordinates are displaced.
   real(wp), parameter :: finite = 1.0e-2_wp
-  !> Blocks up to this last step are also moved with all coordinates free.
+  !> Blocks whose last step is at most this one are also moved with all coordinates free.
   integer, parameter :: largest_free_block = 200
   !> Singular values of the effect of dimensions on closures below this part of the largest do not count.
   real(wp), parameter :: ineffective = 1.0e-3_wp
-  !> Gaps that changes of dimensions act on to first order.
+  !> Largest gap, in parts of the size, on which changes of dimensions act to first order.
   real(wp), parameter :: first_order = 1.0e-2_wp
-  !> Part of the gaps that changes of dimensions must explain.
+  !> Largest part of the gaps that changes of dimensions may leave unexplained.
   real(wp), parameter :: unexplained = 0.1_wp
 
 contains
 
-  !> Find a chain whose redundant equations do not stay satisfied when its block is moved from the start. The paths of the
-  !> closures must be those of whole loops.
+  !> Find a chain whose redundant equations do not stay satisfied when its block is moved from the start.
   subroutine find_locked_chain(plan, start, locked)
     type(plan_type), intent(in) :: plan   !< the plan, with its blocks
     type(state_type), intent(in) :: start   !< the assembled position
@@ -84,7 +84,7 @@ contains
     do b = 1, size(moves)
       if (locked%exists .or. moves(b)) cycle
       call displace_all(spatial, home, b, moves(b))
-      ! a block that no trial reached, since an earlier one did not close, is not judged
+      ! a block that no trial reached, because an earlier one did not close, is not judged
       if (.not. moves(b) .and. nearest(b)%exists) locked = nearest(b)
     end do
     if (.not. locked%exists) return
@@ -92,7 +92,7 @@ contains
     call estimate_distance(spatial, home, locked)
   end subroutine find_locked_chain
 
-  !> Displace the independent coordinates by less and less, close the blocks in order and judge what stays open.
+  !> Displace the independent coordinates by less and less, close the blocks in order and judge the gaps that stay.
   subroutine displace_inputs(plan, home, moves, nearest, locked)
     type(plan_type), intent(in) :: plan                       !< in spatial arithmetic
     type(state_type), intent(in) :: home                      !< assembled coordinates
@@ -104,7 +104,7 @@ contains
     real(wp) :: amount, change
     integer :: trial, i, k
 
-    ! first from the assembled position; then from places beside it, where branches meet there
+    ! first from the assembled position, then from positions beside it, because branches may meet in the assembled one
     do trial = 1, most_trials
       amount = first_displacement/2.0_wp**modulo(trial - 1, sizes)
       state = home
@@ -162,7 +162,7 @@ contains
     end do
   end subroutine close_in_order
 
-  !> Whether the unknowns of a block, whose Jacobian is factorized, leave the least residual.
+  !> Whether the unknowns of a block, whose Jacobian is factorized, give the least residual.
   logical function is_least(plan, block, state, work)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -174,7 +174,7 @@ contains
     is_least = maxval(abs(work%change)) <= settled
   end function is_least
 
-  !> Where the independent coordinates cannot be displaced: displace all coordinates up to block b and close them together.
+  !> Displace all coordinates up to block b and close them together, for independent coordinates that cannot be displaced alone.
   subroutine displace_all(plan, home, b, moves)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: home   !< an assembled position
@@ -263,8 +263,8 @@ contains
     both(size(upper, 1) + 1:, :) = lower
   end function stacked
 
-  !> Gaps of a block in the directions that its unknowns cannot close, at a displaced position, and how changes of
-  !> dimensions act on them. Nothing where an earlier block stays open, or the gap is not small, or the position singular.
+  !> Gaps of a block in the directions that its unknowns cannot close, at a displaced position, and their derivatives by the
+  !> dimensions. They are empty where an earlier block stays open, or the gap is not small, or the position is singular.
   subroutine find_effects(plan, b, state, effects, gaps)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: b   !< number of the block
@@ -326,7 +326,7 @@ contains
     end do
   end subroutine dimension_columns
 
-  !> x of least length with a x = b in its effective directions.
+  !> The x of least norm with a x = b in the effective directions of a.
   subroutine least_changes(a, b, x, explained)
     real(wp), intent(inout) :: a(:, :)           !< (m,n); overwritten
     real(wp), intent(in) :: b(:)                 !< (m)

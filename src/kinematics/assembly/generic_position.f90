@@ -1,4 +1,4 @@
-!> A closed position away from the start: where ranks are judged when the start is, or may be, singular.
+!> A generic position: a closed position away from the start, at which ranks are judged if the start is, or may be, singular.
 module mech9_generic_position
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -11,33 +11,32 @@ module mech9_generic_position
   private
   public :: generic_position_type, find_generic_position, free_block
 
-  !> The position, closed up to some step; made when it is first asked for.
+  !> The generic position, as far as blocks needed it.
   type :: generic_position_type
-    type(state_type) :: state
-    logical :: exists = .false.
-    integer :: closed_to = 0               !< last step of the blocks that are closed there
-    integer :: trials = 0                  !< whole positions that were tried
-    type(random_type) :: random
+    type(state_type) :: state              !< the position
+    logical :: exists = .false.            !< there is a position in `state`
+    integer :: closed_to = 0               !< number of the last step of the blocks that are closed there
+    integer :: trials = 0                  !< number of whole positions that were tried
+    type(random_type) :: random            !< source of the changes of coordinates
   end type generic_position_type
 
-  !> Positions that are tried in all, however many blocks ask.
+  !> Largest number of positions that are tried for all blocks together.
   integer, parameter :: most_trials = 40
-  !> And positions tried for one block.
+  !> Largest number of positions that are tried for one block.
   integer, parameter :: most_trials_each = 12
-  !> Blocks up to this size are also closed with their independent coordinates free.
+  !> Blocks whose last step is at most this one are also closed with their independent coordinates free.
   integer, parameter :: largest_free_block = 200
-  !> Less than this, in its units, is no motion of a coordinate. Round-off of a closure moves coordinates of
-  !> a singular position by its root.
+  !> A change of a coordinate below this, in its unit, is no motion: at a singular position the round-off of a closure changes
+  !> coordinates by its square root.
   real(wp), parameter :: moved = 1.0e-4_wp
 
 contains
 
-  !> Make the position closed for all the given blocks; whether that succeeded is in `closed`.
+  !> Find a generic position that is closed for all the given blocks; `closed` tells the success.
   !>
-  !> First the independent coordinates are changed at random, by less and less, and the blocks closed
-  !> from coordinates that are changed too: where branches meet at the start, any of them will do. Where
-  !> the independent coordinates cannot move both ways at the start, half of the trials are in vain;
-  !> where no trial closes, all coordinates are set free.
+  !> First the independent coordinates are changed at random, by less and less, and the blocks are closed from coordinates
+  !> that are changed too: where branches meet at the start, any of them serves. Where the independent coordinates cannot
+  !> move in both directions from the start, half of the trials fail; where no trial closes, all coordinates are set free.
   subroutine find_generic_position(plan, blocks, start, generic, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)   !< the first blocks of the plan, in their order
@@ -63,13 +62,14 @@ contains
     if (blocks(n)%last_step <= largest_free_block) call try_all_free(plan, blocks(n), start, generic, closed)
   end subroutine find_generic_position
 
-  !> How much coordinates are changed in a trial, in their units.
+  !> The change of coordinates in a trial, in their units.
   pure real(wp) function amount_of(trial)
     integer, intent(in) :: trial   !< number of the trial, from 1
 
     amount_of = 0.3_wp/2.0_wp**modulo(trial - 1, 5)
   end function amount_of
 
+  !> Change the independent coordinates and close all blocks.
   subroutine try_inputs(plan, blocks, start, amount, generic, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)   !< the first blocks of the plan, in their order
@@ -88,7 +88,7 @@ contains
     do i = 1, size(plan%independent)
       k = plan%independent(i)
       change = generic%random%symmetric()
-      ! never by so little that contradicting chains seem to stay closed
+      ! a change that is too small would let contradicting chains seem closed
       generic%state%q(k) = start%q(k) + amount*plan%unit_of(k)*(change + sign(0.5_wp, change))
     end do
     do i = 1, size(blocks)
@@ -97,7 +97,7 @@ contains
     end do
   end subroutine try_inputs
 
-  !> Close one more block, from its coordinates at the start, somewhat changed.
+  !> Close one more block from its coordinates at the start with random changes.
   subroutine close_next_block(plan, block, start, amount, generic, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -120,7 +120,7 @@ contains
     if (closed) generic%closed_to = block%last_step
   end subroutine close_next_block
 
-  !> Change and close everything up to a block at once, the independent coordinates with the others.
+  !> Change all coordinates up to a block, the independent ones too, and close all these blocks as one.
   subroutine try_all_free(plan, last, start, generic, closed)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: last           !< the last block that must be closed
@@ -136,14 +136,14 @@ contains
       generic%exists = .true.
       generic%closed_to = 0
       call close_next_block(plan, block, start, amount_of(trial), generic, closed)
-      ! a chain that cannot move comes back to where it was, and shows nothing new
+      ! a chain that cannot move returns to the start, which is not a generic position
       closed = closed .and. has_moved(plan, last, start, generic%state)
       if (closed) return
       generic%closed_to = 0
     end do
   end subroutine try_all_free
 
-  !> Does some coordinate on the loops of a block differ between two positions?
+  !> Whether some coordinate on the loops of a block differs between two positions.
   pure logical function has_moved(plan, block, start, state)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -160,8 +160,7 @@ contains
     end do
   end function has_moved
 
-  !> All steps and closures up to some as one block with every coordinate unknown. Its equations are right
-  !> only while the paths of the closures are those of whole loops.
+  !> All steps and closures up to the given ones as one block, in which every coordinate is unknown.
   pure function free_block(plan, last_step, last_closure) result(block)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: last_step   !< number of the last step of the block

@@ -1,4 +1,4 @@
-!> The motions that the chains of a mechanism allow, and which coordinates can describe them.
+!> The motions that the chains of a mechanism allow, and the coordinates that can describe them.
 module mech9_mobility
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgesvd
@@ -13,16 +13,15 @@ module mech9_mobility
 
   !> Singular values below this fraction of the largest count as zero.
   real(wp), parameter :: rank_tolerance = 1.0e-8_wp
-  !> Singular values that inexact dimensions make, against their error.
+  !> Factor from the error of inexact dimensions to the singular values that it causes.
   real(wp), parameter :: inexact = 10.0_wp
-  !> Coordinates that take a smaller part than this in motions of length one do not move.
+  !> Coordinates whose rates in all motions of norm one are below this do not move.
   real(wp), parameter :: moves_least = 1.0e-8_wp
 
 contains
 
-  !> All rates that keep the chains closed at a closed position: an orthonormal basis, a column for
-  !> each freedom, rates in the units of the coordinates. The frames must be in place, and the paths
-  !> of the closures be those of whole loops.
+  !> All rates that keep the chains closed at a closed position whose frames are placed: an orthonormal basis with a column for
+  !> each freedom, in the units of the coordinates.
   subroutine find_motions(plan, state, held, motions)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
@@ -56,8 +55,8 @@ contains
     end do
   end subroutine find_motions
 
-  !> As many coordinates as there are freedoms, whose rates determine all rates: the wanted ones as far
-  !> as they are independent of each other, then others that move well.
+  !> Choose as many coordinates as there are freedoms, whose rates determine all rates: the wanted ones as far as they are
+  !> independent of each other, then others with large rates.
   pure subroutine choose_coordinates(motions, wanted, chosen)
     real(wp), intent(in) :: motions(:, :)   !< (M, mobility) orthonormal basis of the rates, in the units of the coordinates
     logical, intent(in) :: wanted(:)   !< (M) the coordinate should be independent
@@ -73,7 +72,7 @@ contains
         may = .not. chosen .and. (wanted .or. stage == 2)
         lengths = [(norm2(rest(k, :)), k=1, size(wanted))]
         if (maxval(lengths, may) <= moves_least) exit
-        ! the first of those that move nearly as much as any
+        ! the first of those with nearly the largest rate
         best = findloc(may .and. lengths >= 0.3_wp*maxval(lengths, may), .true., dim=1)
         chosen(best) = .true.
         e = rest(best, :)/lengths(best)
@@ -84,8 +83,8 @@ contains
     end do
   end subroutine choose_coordinates
 
-  !> The rate of each coordinate per unit rate of each of some coordinates that determine all:
-  !> (M, mobility), the columns in ascending order of these.
+  !> The rate of each coordinate per unit rate of each chosen coordinate; these must determine all others, and have the columns
+  !> in ascending order.
   subroutine shares_of(motions, chosen, shares)
     real(wp), intent(in) :: motions(:, :)   !< (M, mobility) orthonormal basis of the rates, in the units of the coordinates
     logical, intent(in) :: chosen(:)   !< (M) the coordinate is independent

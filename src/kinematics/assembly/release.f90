@@ -1,8 +1,7 @@
-!> Closing a mechanism with its independent coordinates set free, and carrying these back to their values.
+!> Assembly with the independent coordinates set free, and a motion that moves these back to their given values.
 !>
-!> A position in which all chains close is found more easily when every coordinate may give way. It
-!> tells what the mechanism can do, and it is a start from which the given values may be reached. The
-!> paths of the closures must be those of whole loops.
+!> A position in which all chains close is found more easily if every coordinate may change. The mobility can be judged
+!> there, and the given values may be reached from there by a motion.
 module mech9_release
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
@@ -15,9 +14,9 @@ module mech9_release
   private
   public :: close_free, carry_inputs, most_free_coordinates
 
-  !> Larger mechanisms are not closed in one piece.
+  !> Mechanisms with more coordinates are not closed as one block.
   integer, parameter :: most_free_coordinates = 500
-  !> The least part of the way that is gone at once.
+  !> The motion is given up when a step would be less than this part of the whole distance.
   real(wp), parameter :: least_part = 1.0e-4_wp
 
 contains
@@ -37,8 +36,8 @@ contains
     call assemble_block(plan, block, state, work, may_restart, outcome, err)
   end subroutine close_free
 
-  !> From a position with all chains closed, move the independent coordinates to given values and keep
-  !> the chains closed; `arrived` says whether that was possible. Angles go the shorter way round.
+  !> Move the independent coordinates from a closed position to given values and keep the chains closed; `arrived` tells
+  !> whether that was possible. Angles change by at most half a turn.
   subroutine carry_inputs(plan, target, state, arrived)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: target(:)   !< (M) coordinates; only those of the independent ones count [rad, m]
