@@ -1,4 +1,4 @@
-!> Assembly: closing the chains of a block from a rough guess.
+!> The assembly of a block: its chains are closed from a rough guess.
 !>
 !> The residual is reduced by damped least squares (Levenberg and Marquardt), and Newton's method finishes at round-off. Where
 !> the guess leads to no closed position, the guesses are changed by growing random amounts, the same in every run.
