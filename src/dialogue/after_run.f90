@@ -96,6 +96,7 @@ contains
     end do
   end subroutine words_here
 
+  !> The user is told the names of the columns.
   subroutine say_columns(conversation, kept)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -182,6 +183,7 @@ contains
     if (said /= '') call conversation%say(said)
   end subroutine plot
 
+  !> The largest differences between the last run and the run before are shown.
   subroutine compare(conversation, kept, earlier)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -217,6 +219,7 @@ contains
     end do
   end function with_points
 
+  !> Whether the results have a column with this name.
   pure logical function is_column(kept, name)
     type(kept_rows_type), intent(in) :: kept  !< results of the last run
     character(len=*), intent(in) :: name      !< name that is looked for

@@ -110,6 +110,7 @@ contains
     call self%say('What you type cannot be kept: '//err%message)
   end subroutine keep
 
+  !> Whether a draft has no entries.
   pure logical function says_nothing(draft)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer :: i

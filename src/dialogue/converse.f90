@@ -90,6 +90,7 @@ contains
     end if
   end subroutine begin
 
+  !> The first words of a conversation.
   subroutine greet(conversation, program_name, path)
     type(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: program_name         !< mech9k or mech9d

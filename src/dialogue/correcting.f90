@@ -98,6 +98,7 @@ contains
     end if
   end subroutine take_otherwise
 
+  !> The words that can be completed in a correction.
   function correction_words() result(words)
     type(string_type) :: words(6)
 

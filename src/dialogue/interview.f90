@@ -134,6 +134,7 @@ contains
     self%return_to = ''
   end subroutine step
 
+  !> Whether two questions are about names of one group.
   pure logical function same_group(one, other)
     type(question_type), intent(in) :: one    !< the question that is due
     type(question_type), intent(in) :: other  !< the question after it

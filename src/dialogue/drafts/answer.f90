@@ -45,6 +45,7 @@ contains
     call read_values(row, written, text, problem)
   end subroutine read_answer
 
+  !> Values in full form are read and checked against a row of the grammar.
   pure subroutine read_values(row, written, text, problem)
     type(item_row_type), intent(in) :: row                   !< row of the table of names for the question
     character(len=*), intent(in) :: written                  !< values in full form
@@ -71,6 +72,7 @@ contains
     if (diagnostics%failed()) problem = messages_of(diagnostics)
   end subroutine read_values
 
+  !> The advice for a letter that cannot stand in an answer; empty if there is none.
   pure function advice(mark) result(text)
     character, intent(in) :: mark  !< first letter that cannot be read
     character(len=:), allocatable :: text
@@ -111,6 +113,7 @@ contains
     text = ''''//with_escapes(line, '''', [''''''])//''''
   end function quoted
 
+  !> A switch as a data file writes it; an answer other than yes or no stays as it is.
   pure function switch_text(line) result(text)
     character(len=*), intent(in) :: line  !< the answer, without blanks around it
     character(len=:), allocatable :: text
@@ -135,6 +138,7 @@ contains
     end select
   end function yes_or_no
 
+  !> Whether a text has a control character other than a tab.
   pure logical function has_control_byte(line)
     character(len=*), intent(in) :: line  !< the answer, without blanks around it
     integer :: i

@@ -122,6 +122,7 @@ contains
     if (i > 0) number = entry_number(self%groups(i), name)
   end function find_entry
 
+  !> The number of an entry in a group; 0 if the group does not have it.
   pure integer function entry_number(group, name) result(number)
     type(draft_group_type), intent(in) :: group  !< the group
     character(len=*), intent(in) :: name         !< name with its subscript
@@ -131,6 +132,7 @@ contains
     end do
   end function entry_number
 
+  !> The values of a name of a group as text; empty if the name is not given.
   pure function value_in(group, name) result(text)
     type(draft_group_type), intent(in) :: group  !< the group
     character(len=*), intent(in) :: name         !< name with its subscript
@@ -205,6 +207,7 @@ contains
     if (rank == 0) rank = huge(rank)
   end function rank_of
 
+  !> The content of a group is moved to another group.
   pure subroutine move_group(from, to)
     type(draft_group_type), intent(inout) :: from  !< loses its contents
     type(draft_group_type), intent(inout) :: to    !< receives them
@@ -254,6 +257,7 @@ contains
     call move_alloc(longer, group%entries)
   end subroutine add_entry
 
+  !> Whether a name stands before another name of its group.
   pure logical function stands_before(group, name, other)
     character(len=*), intent(in) :: group  !< name of the group
     character(len=*), intent(in) :: name   !< name with its subscript
@@ -268,6 +272,7 @@ contains
     if (rows(1) == others(1)) stands_before = subscript_of(name) < subscript_of(other)
   end function stands_before
 
+  !> The first subscript of a name such as c(2,:); 0 if there is none.
   pure integer function subscript_of(name) result(subscript)
     character(len=*), intent(in) :: name  !< name with its subscript
     integer :: first

@@ -58,6 +58,7 @@ contains
     call translate(part, draft, faults)
   end subroutine read_draft_structure
 
+  !> The structural part of a draft is read like a data file.
   pure subroutine read_part(part, structure, vectors, written, diagnostics)
     type(draft_type), intent(in) :: part                   !< draft with the structure alone
     type(structure_type), intent(out) :: structure         !< links of the pairs and independent coordinates

@@ -135,6 +135,7 @@ contains
     if (ends_with(stem, data_ending)) stem = stem(:len(stem) - len(data_ending))
   end function stem_of_path
 
+  !> Whether a text has a given ending and something before it.
   pure logical function ends_with(text, ending)
     character(len=*), intent(in) :: text    !< any text
     character(len=*), intent(in) :: ending  !< the ending that is looked for

@@ -43,6 +43,7 @@ contains
     end do
   end subroutine draft_from_document
 
+  !> A group of a document is taken over, with the comment above it.
   pure subroutine take_group(document, group, draft)
     type(document_type), intent(in) :: document  !< the data file as groups and items
     type(group_type), intent(in) :: group        !< the group of the data file
@@ -185,6 +186,7 @@ contains
     end do
   end function count_comments
 
+  !> Whether a line is a comment.
   pure logical function is_comment(line)
     character(len=*), intent(in) :: line  !< one line
 

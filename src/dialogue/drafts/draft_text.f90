@@ -58,6 +58,7 @@ contains
     if (group%comment == '' .and. row > 0) text = text//'! '//trim(group_table(row)%help)//line_end
   end subroutine begin_kind
 
+  !> A group is appended to the text, and the ranges of bytes are noted.
   pure subroutine write_group(group, number, written)
     type(draft_group_type), intent(in) :: group      !< the group
     integer, intent(in) :: number                    !< index of the group in the draft
@@ -104,6 +105,7 @@ contains
     is_matrix = .false.
   end function is_matrix
 
+  !> The beginning of a range of bytes is noted; its end follows later.
   pure subroutine note(written, group, entry, first)
     type(draft_text_type), intent(inout) :: written  !< text to which the group is appended, with the place of each entry
     integer, intent(in) :: group                     !< index of the group in the draft

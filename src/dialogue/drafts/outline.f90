@@ -160,6 +160,7 @@ contains
     end do
   end subroutine drop_foreign
 
+  !> A name is put in front of a list.
   pure subroutine note(what, list)
     character(len=*), intent(in) :: what                  !< name that is put in front
     character(len=:), allocatable, intent(inout) :: list  !< names with commas between

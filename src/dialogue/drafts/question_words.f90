@@ -60,6 +60,7 @@ contains
     end associate
   end function default_of
 
+  !> The word yes or no for a switch of a data file; another value stays as it is.
   pure function switch_word(text) result(word)
     character(len=*), intent(in) :: text  !< a value as a data file writes it
     character(len=:), allocatable :: word
@@ -145,6 +146,7 @@ contains
     end associate
   end function is_needed
 
+  !> Whether a coordinate is independent by the structure.
   pure logical function is_independent(outline, coordinate)
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
     integer, intent(in) :: coordinate          !< number of the coordinate
@@ -278,6 +280,7 @@ contains
     if (at > 0) text = text(:at - 1)//by//text(at + len(word):)
   end subroutine replace
 
+  !> Whether a text has a word.
   pure logical function has_word(text, word)
     character(len=*), intent(in) :: text  !< words between blanks, commas and slashes
     character(len=*), intent(in) :: word  !< the word that is looked for

@@ -55,6 +55,7 @@ contains
     questions = questions(:count)
   end subroutine make_questions
 
+  !> The questions about all groups of a name are appended.
   pure subroutine ask_about_group(draft, outline, topic, group_row, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                        !< facts known beside the draft
@@ -121,6 +122,7 @@ contains
              pack(rows, [(replaced(item_table(rows(i))%name), i=1, size(rows))])]
   end function dh_first
 
+  !> Whether the Denavit-Hartenberg parameters replace a name of a pair.
   pure logical function replaced(name)
     character(len=*), intent(in) :: name  !< the name, without a subscript
 
@@ -189,6 +191,7 @@ contains
     end if
   end function is_open_at_start
 
+  !> Whether the draft uses procedures of the user.
   pure logical function has_procedures(draft)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer :: i
@@ -250,6 +253,7 @@ contains
     end select
   end function has_place_in
 
+  !> The questions about the rows of the coincidence matrix are appended.
   pure subroutine ask_about_matrix(draft, template, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(question_type), intent(in) :: template                      !< question about the coincidence matrix, without a row
@@ -265,6 +269,7 @@ contains
     end do
   end subroutine ask_about_matrix
 
+  !> A question is appended to a list that grows when it is full.
   pure subroutine append(questions, count, question)
     type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
     integer, intent(inout) :: count                                  !< number of questions in use

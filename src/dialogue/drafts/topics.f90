@@ -51,6 +51,7 @@ contains
     end if
   end function groups_of_topic
 
+  !> Whether a list of words has a word.
   pure logical function has_word(words, word)
     character(len=*), intent(in) :: words  !< words with blanks between
     character(len=*), intent(in) :: word   !< the word that is looked for

@@ -3,7 +3,7 @@ const $ = id => document.getElementById(id);
 const slider = $("frame"), speed = $("speed"), clock = svg.querySelector("#time");
 let playing = false, phase = 0, before = null, waiting = 0;
 
-// a film of less than 3 s is slowed down, one of more than 15 s made faster
+// A film of less than 3 s is slowed down, and one of more than 15 s is made faster.
 const span = Math.abs(film.times[frames - 1] - film.times[0]);
 const length = Math.min(15, Math.max(3, span));
 
@@ -23,8 +23,8 @@ function draw(frame) {
   if ($("values").open) writeValues();
 }
 
-// Time is told by the frames alone: the first one after a start or a pause says from when on, whatever other
-// clocks say; after a second without frames, as in a tab that nobody sees, the film goes on where it was.
+// Time is measured between the frames of the browser, from the first one after a start or a pause, whatever other
+// clocks say. After a second without frames, as in a hidden tab, the film goes on where it was.
 function tick(now) {
   if (!playing) return;
   if (before !== null) {
@@ -46,7 +46,7 @@ function play(on) {
   if (playing) waiting = requestAnimationFrame(tick);
 }
 
-// stops at a frame; half of its time has passed then, so that rounding leads to no other
+// The film stops in the middle of the time of a frame, so that rounding leads to no other frame.
 function show(frame) {
   play(false);
   phase = (frame + 0.5)/frames;
@@ -55,7 +55,7 @@ function show(frame) {
 
 const step = by => show((shown + by + frames) % frames);
 
-// The recorded columns: those whose names hold one of the words that are asked for, as many as one can look at.
+// The recorded columns with names that hold one of the typed words, up to a number that fits a page.
 const most = 60;
 let listed = [];
 
@@ -91,7 +91,7 @@ function writeValues() {
   }
 }
 
-// The picture as it is seen, three times as large, with the style that the page adds to its own.
+// The picture is saved as it is seen, three times as large, with the style that the page adds to its own.
 async function saveImage() {
   const box = svg.viewBox.baseVal, copy = svg.cloneNode(true), image = new Image();
   const canvas = document.createElement("canvas"), link = document.createElement("a");
@@ -109,7 +109,8 @@ async function saveImage() {
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);
 }
 
-// One finger or the mouse turns or moves, with shift or the middle button the other one; two fingers zoom and move.
+// One finger or the mouse turns or moves the picture; with shift or the middle button it does the other one of these.
+// Two fingers zoom and move.
 const pointers = new Map();
 
 function onPage(x, y) {

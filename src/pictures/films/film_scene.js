@@ -4,10 +4,10 @@ const frames = film.times.length, nodes = film.links.length, elements = [];
 const xy = new Float64Array(2*nodes), depth = new Float64Array(nodes);
 for (const g of scene.children) elements[g.dataset.i - 1] = g;
 
-// what is seen, and how: `zoom` and `aside` are those of the picture as drawn by `film.scale` around `film.middle`
+// The view and its state; `zoom` and `aside` are relative to a picture drawn by `film.scale` around `film.middle`.
 let view = film.view.slice(), zoom = 1, aside = [0, 0], letters = 1, shown = 0, order = "";
 
-// where the nodes of a frame stand: turned with their links by quaternions, then seen
+// The places of the nodes in a frame: quaternions turn them with their links, and the view projects them.
 function place(frame) {
   const poses = film.poses[frame], unit = film.unit*film.scale;
   for (let i = 0; i < nodes; i++) {
@@ -52,7 +52,7 @@ function windings(thread, [a, b], aside) {
   return d + "L" + at(x + dx, y + dy);
 }
 
-// a cup with a piston in it: places along the line by twos, each with its side
+// A cup with a piston in it: every two places are a line, each given along the axis and to the side.
 const cup = [[0, 0], [0.42, 0], [0.42, -1], [0.42, 1], [0.42, -1], [0.66, -1], [0.42, 1], [0.66, 1], [0.56, -0.7], [0.56, 0.7],
   [0.56, 0], [1, 0]];
 
@@ -64,7 +64,7 @@ function damper([a, b], aside) {
   }).join("");
 }
 
-// bodies from the farthest to the nearest, but none before those that it lies upon
+// The bodies are put in order from the farthest to the nearest, but none before those that it lies upon.
 function arrange() {
   const [first, last] = film.sorted, keys = [];
   for (let i = first; i <= last; i++) {
@@ -80,7 +80,7 @@ function arrange() {
   for (const i of sorted) scene.insertBefore(elements[i - 1], next);
 }
 
-// labels keep their size when the picture is zoomed, and grow where the page is small; their places do not come nearer
+// Labels keep their size when the picture is zoomed, and grow on a small page; their distances never shrink.
 function drawItem(g, item) {
   const n = item.nodes, x = xy[2*n[0]], y = xy[2*n[0] + 1];
   if (item.shape == 6) {
@@ -96,7 +96,7 @@ function drawItem(g, item) {
   }
 }
 
-// a frame; `all`: also what stands still, as the view is another one
+// A frame is drawn; with `all` also the items that stand still, since the view has changed.
 function drawScene(frame, all) {
   shown = frame;
   place(frame);
@@ -115,7 +115,7 @@ function drawAxes() {
   });
 }
 
-// the largest of 1, 2, 5, 10 ... m whose bar is at most 90 px long
+// The bar of the scale is the longest one of 1, 2, 5, 10, ... m that is at most 90 px long.
 function drawScale() {
   const [line, text] = svg.querySelector("#scale").children, most = 90/(film.scale*zoom);
   const power = 10**Math.floor(Math.log10(most) + 1e-9);
@@ -125,7 +125,7 @@ function drawScale() {
   text.textContent = Number(bar.toPrecision(3)) + " m";
 }
 
-// all of the present frame, after a change of the view
+// The whole present frame is drawn, after a change of the view.
 function drawView() {
   const box = svg.viewBox.baseVal;
   scene.setAttribute("transform", "translate(" + aside.map(x => x.toFixed(2)).join(" ") + ") scale(" + zoom + ")");
@@ -137,7 +137,7 @@ function drawView() {
   drawScale();
 }
 
-// turns the view about the picture's own axes
+// The view is turned about the axes of the picture.
 function turn(sideways, upward) {
   for (const [i, j, angle] of [[0, 6, sideways], [3, 6, upward]]) {
     const c = Math.cos(angle), s = Math.sin(angle);
@@ -150,13 +150,13 @@ function turn(sideways, upward) {
   drawView();
 }
 
-// moves the picture, in px of the picture
+// The picture is moved, by px of the picture.
 function move(x, y) {
   aside = [aside[0] + x, aside[1] + y];
   drawView();
 }
 
-// makes all larger around a place of the picture, which stays where it is
+// The picture is enlarged around one of its places, which stays where it is.
 function zoomAt(factor, x = film.middle[0], y = film.middle[1]) {
   const next = Math.max(0.25, Math.min(20, zoom*factor)), by = next/zoom;
   aside = [x - by*(x - aside[0]), y - by*(y - aside[1])];

@@ -83,6 +83,7 @@ contains
     call add_place(err, 'no moving picture '//path)
   end subroutine save_gif_film
 
+  !> One frame of the film is appended to the script.
   subroutine put_frame(title, scene, film, projection, frame, decimals, script)
     character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
@@ -199,6 +200,7 @@ contains
     call self%polygon(corners(:, order), none, line, width)
   end subroutine polyline
 
+  !> The numbers from 1 to n and back to 1.
   pure function forth_and_back(n) result(numbers)
     integer, intent(in) :: n  !< number of corners
     integer :: numbers(max(0, 2*n - 1))
@@ -207,6 +209,7 @@ contains
     numbers = [(i, i=1, n), (i, i=n - 1, 1, -1)]
   end function forth_and_back
 
+  !> A filled circle is drawn.
   subroutine circle(self, centre, radius, fill, line, width)
     class(script_type), intent(inout) :: self  !< the script
     real(wp), intent(in) :: centre(2)          !< centre of the circle [px]
@@ -250,6 +253,7 @@ contains
     end associate
   end subroutine put_path
 
+  !> One segment of an item is drawn: a line, or a band with cut or round ends.
   subroutine put_segment(style, ends, light, dark, script)
     type(style_type), intent(in) :: style       !< how the item is drawn
     real(wp), intent(in) :: ends(2, 2)          !< (2,2) the two ends [px]
@@ -334,6 +338,7 @@ contains
     end select
   end subroutine put_mark
 
+  !> A label of the scene is drawn.
   subroutine put_label(item, at, script)
     type(item_type), intent(in) :: item         !< one thing to draw
     real(wp), intent(in) :: at(2)               !< place on the page [px]
@@ -355,6 +360,7 @@ contains
     end select
   end subroutine put_label
 
+  !> A text is drawn at a place.
   subroutine put_text(text, at, side, colour, script)
     character(len=*), intent(in) :: text        !< any text
     real(wp), intent(in) :: at(2)               !< place on the page [px]

@@ -119,6 +119,7 @@ contains
     call page%line('</g>')
   end subroutine put_moving
 
+  !> A path is appended with its form in each frame.
   subroutine put_moving_path(item, drawings, symbol, duration, class, page)
     type(item_type), intent(in) :: item            !< one thing to draw
     type(drawing_type), intent(in) :: drawings(:)  !< (frames) where the nodes stand on the page in each frame
@@ -142,6 +143,7 @@ contains
     text = ' calcMode="discrete" repeatCount="indefinite" dur="'//decimal(duration)//'s" values="'
   end function timing
 
+  !> The forms of an item in all frames are appended, with semicolons between them.
   subroutine put_values(item, drawings, symbol, page)
     type(item_type), intent(in) :: item            !< one thing to draw
     type(drawing_type), intent(in) :: drawings(:)  !< (frames) where the nodes stand on the page in each frame

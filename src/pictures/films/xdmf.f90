@@ -62,6 +62,7 @@ contains
     path = with_ending(hdf5_path, 'xdmf')
   end function xdmf_path
 
+  !> Rows of results are counted.
   subroutine write_rows(self, rows, err)
     class(xdmf_type), intent(inout) :: self            !< the description in XDMF
     real(wp), intent(in) :: rows(:, :)                 !< (columns,rows) rows of the results, which are only counted
@@ -70,6 +71,7 @@ contains
     self%rows = self%rows + size(rows, 2)
   end subroutine write_rows
 
+  !> The description is written when the results are complete. Errors are exit_file.
   subroutine save_description(self, err)
     class(xdmf_type), intent(inout) :: self            !< the description in XDMF
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -123,6 +125,7 @@ contains
            merge('8', '4', type == 'Float')//'" Format="HDF">'//xml_text(self%data_name)//':/'//data_set//'</DataItem>'
   end function item
 
+  !> The line for the user after the description is written.
   function words(self)
     class(xdmf_type), intent(in) :: self  !< the description in XDMF
     character(len=:), allocatable :: words

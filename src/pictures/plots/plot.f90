@@ -98,6 +98,7 @@ contains
     if (allocated(self%said)) words = self%said
   end function words
 
+  !> The plot is drawn in the terminal.
   subroutine draw_in_terminal(self, err)
     class(plot_type), intent(in) :: self               !< the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -113,6 +114,7 @@ contains
     call add_place(err, 'no plot in the terminal')
   end subroutine draw_in_terminal
 
+  !> The script of a picture is written, and gnuplot draws the picture.
   subroutine draw_picture(self, err)
     class(plot_type), intent(inout) :: self            !< the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed

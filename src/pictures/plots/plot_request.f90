@@ -165,6 +165,7 @@ contains
     call skip_blanks(text, at)
   end subroutine take_name
 
+  !> A place in a text moves over the blanks that begin there.
   pure subroutine skip_blanks(text, at)
     character(len=*), intent(in) :: text  !< the argument of --plot
     integer, intent(inout) :: at          !< place in `text`; afterwards the next place without a blank

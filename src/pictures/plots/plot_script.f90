@@ -240,6 +240,7 @@ contains
            merge('2', '5', all(over_time(curves)))//line_end
   end function stack
 
+  !> The number of letters of the longest name of a curve.
   pure integer function longest_name(curves, data)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted

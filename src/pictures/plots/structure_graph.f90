@@ -163,6 +163,7 @@ contains
     end do
   end function edges
 
+  !> The colour of a block.
   pure character(len=7) function colour(b)
     integer, intent(in) :: b  !< number of the block
 

@@ -117,6 +117,7 @@ contains
     end if
   end function outline_of
 
+  !> The area within a closed path [px^2], positive if the path is clockwise on the page.
   pure real(wp) function area(corners)
     real(wp), intent(in) :: corners(:, :)  !< (2,n) corners of a closed path [px]
     integer :: i, next

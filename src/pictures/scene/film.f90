@@ -145,6 +145,7 @@ contains
     end do
   end subroutine curve_to
 
+  !> The present position and the values of the columns are kept as a frame.
   pure subroutine take_frame(self, plan, state, row)
     class(film_type), intent(inout) :: self  !< the film
     type(plan_type), intent(in) :: plan      !< the plan of the mechanism

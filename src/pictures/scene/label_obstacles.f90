@@ -46,6 +46,7 @@ contains
     end do
   end subroutine find_obstacles
 
+  !> The obstacles of one item are added.
   pure subroutine add_item(item, drawing, symbol, obstacles)
     type(item_type), intent(in) :: item               !< one thing to draw
     type(drawing_type), intent(in) :: drawing         !< where the nodes stand on the page

@@ -115,6 +115,7 @@ contains
     end do
   end function spots_around
 
+  !> The spot whose box has its middle at a place, without a leading line.
   pure function box_at(centre, size_of_box, cost) result(spot)
     real(wp), intent(in) :: centre(2)       !< middle of the box [px]
     real(wp), intent(in) :: size_of_box(2)  !< width and height of the box [px]
@@ -252,6 +253,7 @@ contains
     end do
   end function clashes
 
+  !> Whether a spot has a leading line.
   pure logical function leads(spot)
     type(spot_type), intent(in) :: spot  !< box and leading line of the label
 

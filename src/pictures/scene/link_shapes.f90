@@ -82,6 +82,7 @@ contains
     end do
   end function beside
 
+  !> The number of the point that is farthest from a place.
   pure integer function farthest(points, from)
     real(wp), intent(in) :: points(:, :)  !< (3,n) points in the system of the link [m]
     real(wp), intent(in) :: from(3)       !< place from which distances are measured [m]

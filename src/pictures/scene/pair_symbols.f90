@@ -237,6 +237,7 @@ contains
     end do
   end subroutine add_symbols
 
+  !> The symbols of one joint are added.
   subroutine add_joint(film, skeleton, projection, shapes, pairs, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn

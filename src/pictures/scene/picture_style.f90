@@ -109,6 +109,7 @@ contains
                                decimal(symbol*style%width)//'}'
   end function rule_of
 
+  !> The rules of the colours of one class.
   pure function colour_rules(class, dark, light) result(rules)
     character(len=*), intent(in) :: class  !< selector of the class, with its point
     character(len=*), intent(in) :: dark   !< colour of lines and texts

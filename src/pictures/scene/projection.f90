@@ -135,6 +135,7 @@ contains
     end do
   end subroutine enclose_curve
 
+  !> The box is enlarged by a place.
   pure subroutine enclose(view, place, box)
     type(view_type), intent(in) :: view   !< direction from which the mechanism is seen
     real(wp), intent(in) :: place(3)      !< place in the system of link 1 [m]
@@ -177,6 +178,7 @@ contains
     end do
   end function usual_distance
 
+  !> The place of a pair in the first frame, in the system of link 1 [m].
   pure function place_of(film, place) result(at)
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
     class(place_type), intent(in) :: place  !< where the pair is drawn

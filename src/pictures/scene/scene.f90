@@ -115,6 +115,7 @@ contains
     end associate
   end subroutine add_item
 
+  !> The content of an item is moved to another item.
   pure subroutine move_item(from, to)
     type(item_type), intent(inout) :: from  !< loses its nodes and its text
     type(item_type), intent(inout) :: to    !< receives them

@@ -112,6 +112,7 @@ contains
     end do
   end subroutine find_outline
 
+  !> A point of a link gets a node, and is added to the outline of the link.
   subroutine add_place(scene, link, at, outline)
     type(scene_type), intent(inout) :: scene      !< nodes and items of the picture
     integer, intent(in) :: link                   !< number of the link
@@ -123,6 +124,7 @@ contains
     call add_to_outline(outline, at, node)
   end subroutine add_place
 
+  !> A point and its node are added to an outline.
   pure subroutine add_to_outline(outline, point, node)
     type(outline_type), intent(inout) :: outline  !< points that give the link its shape
     real(wp), intent(in) :: point(3)              !< the point, in the system of the link [m]

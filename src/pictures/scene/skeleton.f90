@@ -111,6 +111,7 @@ contains
     end do
   end subroutine look_along
 
+  !> The median of some values; of an even number, the lower one of the two in the middle.
   pure real(wp) function median(values)
     real(wp), intent(in) :: values(:)  !< the values, one at least
     real(wp) :: least
@@ -156,6 +157,7 @@ contains
     if (.not. size_of > 0.0_wp) size_of = 1.0_wp
   end function size_of
 
+  !> The bounds of a box are enlarged by a place.
   pure subroutine enclose(place, low, high)
     real(wp), intent(in) :: place(3)    !< place in the system of link 1 [m]
     real(wp), intent(inout) :: low(3)   !< smallest coordinates so far [m]

@@ -79,6 +79,7 @@ contains
     end do
   end subroutine find_pins
 
+  !> A point is added to the pins of a link.
   pure subroutine add_pin(pins, point)
     type(pins_type), intent(inout) :: pins  !< places of the other pairs of the link
     real(wp), intent(in) :: point(3)        !< the point, in the system of the link [m]

@@ -131,6 +131,7 @@ contains
     svg = '<text class="'//classes_of(item)//'">'//xml_text(item%text)//'</text>'
   end function label_svg
 
+  !> The classes of an item in the style sheet.
   pure function classes_of(item) result(classes)
     type(item_type), intent(in) :: item  !< one thing to draw
     character(len=:), allocatable :: classes
