@@ -1,4 +1,4 @@
-!> What the benchmarks share: reading a mechanism, and an end that tells why.
+!> Procedures that the benchmarks share: reading a mechanism, medians, and an end that tells why.
 module mech9_bench_support
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
@@ -16,9 +16,9 @@ contains
 
   !> A mechanism from its data file; ends the program where something is wrong with it.
   subroutine read_data_file(path, needs_drives, mechanism)
-    character(len=*), intent(in) :: path
-    logical, intent(in) :: needs_drives
-    type(mechanism_type), intent(out) :: mechanism
+    character(len=*), intent(in) :: path                !< of the data file
+    logical, intent(in) :: needs_drives                 !< each independent coordinate must have a drive
+    type(mechanism_type), intent(out) :: mechanism      !< all that the file says, checked
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
@@ -31,8 +31,8 @@ contains
 
   !> End the program with the words of an error; does nothing when all is well.
   subroutine stop_at(err, place)
-    type(error_type), allocatable, intent(in) :: err
-    character(len=*), intent(in) :: place
+    type(error_type), allocatable, intent(in) :: err   !< allocated where something failed
+    character(len=*), intent(in) :: place              !< of the failure, for the message
 
     if (.not. allocated(err)) return
     write (error_unit, '(3a)') place, ': ', err%message
@@ -41,7 +41,7 @@ contains
 
   !> The middle one of some numbers.
   pure real(wp) function median(numbers)
-    real(wp), intent(in) :: numbers(:)
+    real(wp), intent(in) :: numbers(:)   !< in any order; 0 is returned where there are none
     integer :: i, below
 
     do i = 1, size(numbers)
@@ -54,7 +54,7 @@ contains
 
   !> Word i of the command line.
   function argument(i) result(word)
-    integer, intent(in) :: i
+    integer, intent(in) :: i   !< from 1 on
     character(len=:), allocatable :: word
     integer :: length
 

@@ -1,4 +1,4 @@
-!> The four-bar linkage in closed form, written by hand for this one mechanism: what a general program is held against.
+!> The four-bar linkage in closed form, written by hand for this one mechanism: the measure of a general program.
 module mech9_closed_four_bar
   use mech9_kinds, only: wp
   implicit none
@@ -11,10 +11,10 @@ module mech9_closed_four_bar
 
 contains
 
-  !> Where the point is at a crank angle, on the open branch.
+  !> Position of the point at a crank angle, on the open branch.
   pure subroutine four_bar_position(angle, point)
-    real(wp), intent(in) :: angle
-    real(wp), intent(out) :: point(2)   !< [m]
+    real(wp), intent(in) :: angle       !< of the crank [rad]
+    real(wp), intent(out) :: point(2)   !< from the crank's bearing, x along the ground link [m]
     real(wp) :: pin(2), u(2), v(2)
 
     call find_pins(angle, pin, u, v)
@@ -24,8 +24,11 @@ contains
 
   !> Position, velocity and acceleration of the point at a constant crank speed.
   pure subroutine four_bar_motion(angle, speed, point, velocity, acceleration)
-    real(wp), intent(in) :: angle, speed   !< [rad], [rad/s]
-    real(wp), intent(out) :: point(2), velocity(2), acceleration(2)
+    real(wp), intent(in) :: angle              !< of the crank [rad]
+    real(wp), intent(in) :: speed              !< of the crank, constant [rad/s]
+    real(wp), intent(out) :: point(2)          !< from the crank's bearing, x along the ground link [m]
+    real(wp), intent(out) :: velocity(2)       !< of the point [m/s]
+    real(wp), intent(out) :: acceleration(2)   !< of the point [m/s^2]
     real(wp) :: pin(2), u(2), v(2), arm(2), swept(2), r(2), w_coupler, w_rocker, a_coupler, determinant
 
     call find_pins(angle, pin, u, v)
@@ -44,8 +47,10 @@ contains
 
   !> The crank's pin and the directions of coupler and rocker: two circles meet in the rocker's pin.
   pure subroutine find_pins(angle, pin, u, v)
-    real(wp), intent(in) :: angle
-    real(wp), intent(out) :: pin(2), u(2), v(2)
+    real(wp), intent(in) :: angle     !< of the crank [rad]
+    real(wp), intent(out) :: pin(2)   !< of crank and coupler, from the crank's bearing [m]
+    real(wp), intent(out) :: u(2)     !< unit vector along the coupler, towards the rocker
+    real(wp), intent(out) :: v(2)     !< unit vector along the rocker, away from its bearing
     real(wp) :: x, y, square, a, h
 
     pin = crank*[cos(angle), sin(angle)]

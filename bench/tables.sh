@@ -118,7 +118,7 @@ Ladders of N parallelograms side by side, 2 N + 2 links, the first upright drive
 
 $(growth_table ladder)
 
-Open chains of N links of 1 m and 1 kg, turning about x and y by turns, all coordinates independent:
+Open chains of N links of 1 m and 1 kg, with axes x and y in alternation, all coordinates independent:
 
 $(growth_table chain)
 EOT
