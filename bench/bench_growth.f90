@@ -14,8 +14,8 @@ program bench_growth
   use mech9_state, only: state_type
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_motion_system, only: motion_system_type, set_motion_system
-  use mech9_kinematic_run, only: assemble_start
-  use mech9_dynamic_run, only: assemble_initial_state
+  use mech9_driven_simulation, only: assemble_driven
+  use mech9_free_simulation, only: assemble_free
   use mech9_bench_support, only: read_data_file, stop_at, median, argument
   implicit none
 
@@ -50,9 +50,9 @@ contains
     reading = seconds() - clock
     clock = seconds()
     if (argument(1) == 'ladder') then
-      call assemble_start(mechanism, plan, start, err)
+      call assemble_driven(mechanism, plan, start, err)
     else
-      call assemble_initial_state(mechanism, plan, start, err)
+      call assemble_free(mechanism, plan, start, err)
     end if
     planning = seconds() - clock
     call stop_at(err, argument(1))

@@ -12,7 +12,7 @@ program bench_positions
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type, requested_by_results, leave_out
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
-  use mech9_kinematic_run, only: assemble_start
+  use mech9_driven_simulation, only: assemble_driven
   use mech9_closed_four_bar, only: four_bar_position, four_bar_motion
   use mech9_bench_support, only: read_data_file, stop_at, median, argument
   use mech9_frame_motion, only: point_motion
@@ -81,7 +81,7 @@ contains
 
     call read_data_file(path, .true., mechanism)
     mechanism%time%intervals = positions
-    call assemble_start(mechanism, plan, start, err)
+    call assemble_driven(mechanism, plan, start, err)
     call stop_at(err, name)
     lean = plan
     requested = requested_by_results(mechanism)

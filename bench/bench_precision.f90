@@ -16,7 +16,8 @@ program bench_precision
   use mech9_state, only: state_type
   use mech9_integration_methods, only: integration_methods
   use mech9_integrator, only: integration_statistics_type
-  use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
+  use mech9_row_source, only: row_source_type, new_row_source
   use mech9_bench_support, only: read_data_file, stop_at, median, argument
   implicit none
 
@@ -150,23 +151,25 @@ contains
     type(error_type), allocatable, intent(out) :: err
     type(plan_type) :: plan
     type(state_type) :: start
-    type(dynamic_run_type) :: run
+    type(free_simulation_type), target :: simulation
+    type(row_source_type) :: rows
     real(wp), allocatable :: row(:)
     real(wp) :: begin
 
     time = 0.0_wp
-    call assemble_initial_state(mechanism, plan, start, err)
-    if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err)
+    call assemble_free(mechanism, plan, start, err)
+    if (.not. allocated(err)) call new_free_simulation(mechanism, plan, start, simulation, err)
     if (.not. allocated(err)) then
-      allocate (row(run%columns%count), source=0.0_wp)
+      call new_row_source('mech9d', mechanism, simulation, rows)
+      allocate (row(rows%columns%count), source=0.0_wp)
       begin = seconds()
-      call run%row_at(mechanism%time%start, row, err)
-      if (.not. allocated(err)) call run%row_at(mechanism%time%end, row, err)
+      call rows%row_at(mechanism%time%start, row, err)
+      if (.not. allocated(err)) call rows%row_at(mechanism%time%end, row, err)
       time = seconds() - begin
-      call pick(run%columns%names(:run%columns%count), row, problem%columns, values)
-      counts = run%statistics()
+      call pick(rows%columns%names(:rows%columns%count), row, problem%columns, values)
+      counts = simulation%motion%statistics()
     end if
-    call run%close()
+    call simulation%close()
   end subroutine integrate
 
   !> The columns of these names.

@@ -13,7 +13,7 @@ module mech9_dynamic_report
   use mech9_integration_methods, only: integration_methods
   use mech9_block_solver, only: work_count_type
   use mech9_integrator, only: integration_statistics_type
-  use mech9_dynamic_run, only: dynamic_run_type
+  use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each, begin_report, add_structure
   implicit none
   private
@@ -23,39 +23,39 @@ module mech9_dynamic_report
 contains
 
   !> The short report of a run.
-  subroutine print_dynamic_report(unit, table_path, outcome, run)
+  subroutine print_dynamic_report(unit, table_path, outcome, simulation)
     integer, intent(in) :: unit
     character(len=*), intent(in) :: table_path
     type(recording_outcome_type), intent(in) :: outcome
-    type(dynamic_run_type), intent(inout) :: run
+    type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
     type(integration_statistics_type) :: counts
     integer :: i
 
-    counts = run%statistics()
+    counts = simulation%motion%statistics()
     write (unit, '(a)') to_text(outcome%rows)//' outputs: '//duration(outcome%seconds_solving)//' to solve, '// &
       duration(outcome%seconds_writing)//' to write'
-    write (unit, '(a)') method_of(run)//': '//to_text(counts%steps)//' steps, '// &
+    write (unit, '(a)') method_of(simulation)//': '//to_text(counts%steps)//' steps, '// &
       to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
       to_text(counts%rate_evaluations)//' evaluations'//each(outcome%seconds_solving, int(counts%rate_evaluations))
-    write (unit, '(a)', advance='no') 'largest closure '//to_text(run%worst_closure, 3)//' m'
-    if (run%system%mechanism%output%energies) &
-      write (unit, '(a)', advance='no') '; largest change of energy '//to_text(run%largest_energy_change, 3)//' J'
+    write (unit, '(a)', advance='no') 'largest closure '//to_text(simulation%worst_closure, 3)//' m'
+    if (simulation%motion%system%mechanism%output%energies) &
+      write (unit, '(a)', advance='no') '; largest change of energy '//to_text(simulation%largest_energy_change, 3)//' J'
     write (unit, '(a)') ''
-    if (run%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
-      to_text(run%conditioning%least, 3)//' at t = '//to_text(run%conditioning%t, 6)//' s'
-    do i = 1, size(run%events)
-      write (unit, '(a)') 't = '//to_text(run%events(i)%t, 8)//' s: independent coordinates are now '// &
-        to_text(run%events(i)%independent)
+    if (simulation%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
+      to_text(simulation%conditioning%least, 3)//' at t = '//to_text(simulation%conditioning%t, 6)//' s'
+    do i = 1, size(simulation%events)
+      write (unit, '(a)') 't = '//to_text(simulation%events(i)%t, 8)//' s: independent coordinates are now '// &
+        to_text(simulation%events(i)%independent)
     end do
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_dynamic_report
 
   !> The method in use.
-  pure function method_of(run) result(name)
-    type(dynamic_run_type), intent(in) :: run
+  pure function method_of(simulation) result(name)
+    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
     character(len=:), allocatable :: name
 
-    name = run%system%mechanism%solver%method
+    name = simulation%motion%system%mechanism%solver%method
     if (name == '') name = trim(integration_methods(1)%name)
   end function method_of
 
@@ -76,18 +76,18 @@ contains
   end subroutine print_coefficients
 
   !> What a program may want to know of a run.
-  subroutine dynamic_facts(mechanism, plan, outcome, run, facts)
+  subroutine dynamic_facts(mechanism, plan, outcome, simulation, facts)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome
-    type(dynamic_run_type), intent(inout) :: run
+    type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
     type(facts_type), intent(out) :: facts
     type(integration_statistics_type) :: counts
     type(work_count_type) :: work
 
-    counts = run%statistics()
+    counts = simulation%motion%statistics()
     call facts%add('outputs', outcome%rows, 'outputs computed')
-    call facts%add('method', method_of(run), 'method of integration')
+    call facts%add('method', method_of(simulation), 'method of integration')
     call facts%add('relative_tolerance', mechanism%solver%relative_tolerance, 'relative error allowed in a step', '1')
     call facts%add('absolute_tolerance', mechanism%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
     call facts%add('steps', counts%steps, 'steps of the integrator')
@@ -97,45 +97,47 @@ contains
     call facts%add('error_test_failures', counts%error_test_failures, 'steps made again for their error')
     call facts%add('convergence_failures', counts%convergence_failures, 'steps made again that did not converge')
     call facts%add('refusals', counts%refusals, 'steps made again for what they met')
-    call facts%add('newton_iterations', run%system%iterations, 'Newton iterations')
-    call facts%add('largest_closure', run%worst_closure, 'largest error of a closed chain', 'm')
+    call facts%add('newton_iterations', simulation%motion%iterations(), 'Newton iterations')
+    call facts%add('largest_closure', simulation%worst_closure, 'largest error of a closed chain', 'm')
     call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
     if (mechanism%output%energies) then
-      call facts%add('energy_at_start', run%energy_at_start, 'kinetic and potential energy at the start', 'J')
-      call facts%add('largest_energy_change', run%largest_energy_change, 'largest change of that energy', 'J')
+      call facts%add('energy_at_start', simulation%energy_at_start, 'kinetic and potential energy at the start', 'J')
+      call facts%add('largest_energy_change', simulation%largest_energy_change, 'largest change of that energy', 'J')
     end if
-    call facts%add('least_conditioning', run%conditioning%least, 'least singular value of any block: 0 is singular', '1')
-    call facts%add('least_conditioning_time', run%conditioning%t, 'when it was that', 's')
-    if (associated(run%system)) then
-      work = run%work_done()
+    call facts%add('least_conditioning', simulation%conditioning%least, 'least singular value of any block: 0 is singular', '1')
+    call facts%add('least_conditioning_time', simulation%conditioning%t, 'when it was that', 's')
+    if (associated(simulation%motion%system)) then
+      work = simulation%motion%work_done()
       call facts%add('frames_placed', work%frames_placed, 'poses of frames that were found in closing chains')
       call facts%add('factorizations', work%factorizations, 'Jacobians of blocks that were factorized')
-      call facts%add('links_with_inertia', size(run%system%dynamics%bodies), 'links that the coefficients of motion have terms of')
-      call facts%add('acting_loads', size(run%system%dynamics%acting), 'loads that may move anything')
-      call facts%add('frames_carried', count(run%system%dynamics%carries(1:)), 'frames whose motion a mass or a load depends on')
+      call facts%add('links_with_inertia', size(simulation%motion%system%dynamics%bodies), &
+                     'links that the coefficients of motion have terms of')
+      call facts%add('acting_loads', size(simulation%motion%system%dynamics%acting), 'loads that may move anything')
+      call facts%add('frames_carried', count(simulation%motion%system%dynamics%carries(1:)), &
+                     'frames whose motion a mass or a load depends on')
     end if
     call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
   end subroutine dynamic_facts
 
   !> The same, and more, as JSON.
-  subroutine save_dynamic_report(path, mechanism, plan, table_path, diagnostics, outcome, run, err)
+  subroutine save_dynamic_report(path, mechanism, plan, table_path, diagnostics, outcome, simulation, err)
     character(len=*), intent(in) :: path
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan             !< at the start
     character(len=*), intent(in) :: table_path
     type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
     type(recording_outcome_type), intent(in) :: outcome
-    type(dynamic_run_type), intent(inout) :: run
+    type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
 
     call begin_report(json, 'mech9d', mechanism, diagnostics, table_path)
-    call dynamic_facts(mechanism, plan, outcome, run, facts)
+    call dynamic_facts(mechanism, plan, outcome, simulation, facts)
     call facts%to_json(json)
-    call add_coefficients(json, plan, run%coefficients)
-    call add_events(json, run)
+    call add_coefficients(json, plan, simulation%coefficients)
+    call add_events(json, simulation)
     call add_structure(json, mechanism, plan)
     call json%end_object()
     call json%save(path, err)
@@ -162,18 +164,18 @@ contains
   end subroutine add_coefficients
 
   !> Changes of the independent coordinates.
-  subroutine add_events(json, run)
+  subroutine add_events(json, simulation)
     type(json_type), intent(inout) :: json
-    type(dynamic_run_type), intent(in) :: run
+    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
     integer :: i, k
 
     call json%begin_array('events')
-    do i = 1, size(run%events)
+    do i = 1, size(simulation%events)
       call json%begin_object()
-      call json%add('t', run%events(i)%t)
+      call json%add('t', simulation%events(i)%t)
       call json%begin_array('independent')
-      do k = 1, size(run%events(i)%independent)
-        call json%add(run%events(i)%independent(k))
+      do k = 1, size(simulation%events(i)%independent)
+        call json%add(simulation%events(i)%independent(k))
       end do
       call json%end_array()
       call json%end_object()
@@ -182,16 +184,16 @@ contains
   end subroutine add_events
 
   !> Coefficients of motion as data sets, and room for events.
-  subroutine write_dynamics(hdf5, plan, run)
+  subroutine write_dynamics(hdf5, plan, simulation)
     type(hdf5_sink_type), intent(inout) :: hdf5
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamic_run_type), intent(in) :: run
+    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
     real(wp) :: coefficients(size(plan%independent), size(plan%independent))
     integer :: p
 
     do p = 1, size(plan%independent)
-      coefficients(p:, p) = run%coefficients(p:, p)
-      coefficients(p, p:) = run%coefficients(p:, p)
+      coefficients(p:, p) = simulation%coefficients(p:, p)
+      coefficients(p, p:) = simulation%coefficients(p:, p)
     end do
     associate (file => hdf5%file)
       call file%put('dynamics/p', plan%independent, 'number of an independent coordinate at the start')
@@ -205,14 +207,14 @@ contains
   end subroutine write_dynamics
 
   !> Changes of the independent coordinates as data sets.
-  subroutine write_events(hdf5, run)
+  subroutine write_events(hdf5, simulation)
     type(hdf5_sink_type), intent(inout) :: hdf5
-    type(dynamic_run_type), intent(in) :: run
-    integer :: independent(size(run%system%plan%independent), size(run%events)), i
+    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
+    integer :: independent(size(simulation%motion%system%plan%independent), size(simulation%events)), i
 
-    do i = 1, size(run%events)
-      independent(:, i) = run%events(i)%independent
+    do i = 1, size(simulation%events)
+      independent(:, i) = simulation%events(i)%independent
     end do
-    call hdf5%write_events(run%events%t, independent)
+    call hdf5%write_events(simulation%events%t, independent)
   end subroutine write_events
 end module mech9_dynamic_report

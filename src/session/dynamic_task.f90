@@ -14,8 +14,10 @@ module mech9_dynamic_task
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_row_source, only: row_source_type, new_row_source
   use mech9_recording, only: recording_outcome_type, record
-  use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
+  use mech9_explained_assembly, only: assemble_free_start
   use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients, &
                                    dynamic_facts, write_dynamics, write_events
   implicit none
@@ -46,7 +48,7 @@ contains
     type(state_type), intent(out) :: state   !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call assemble_initial_state(mechanism, plan, state, err)
+    call assemble_free_start(mechanism, plan, state, err)
   end subroutine assemble
 
   !> Plan, assemble, work out the start, and run unless only a check is asked for.
@@ -60,48 +62,51 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
-    type(dynamic_run_type) :: run
+    type(free_simulation_type), target :: simulation
     type(error_type), allocatable :: err
 
     reported = .false.
     call read_picture_requests(options, mechanism, self%program_name, pictures, err)
-    if (.not. allocated(err)) call assemble_initial_state(mechanism, plan, start, err)
-    if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err, pictures%any_wanted())
+    if (.not. allocated(err)) call assemble_free_start(mechanism, plan, start, err)
+    if (.not. allocated(err)) call new_free_simulation(mechanism, plan, start, simulation, err, pictures%any_wanted())
     if (allocated(err)) then
       if (options%has('check')) call print_given(mechanism, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      call print_check(options, pictures, mechanism, plan, run%requested, start, diagnostics)
-      if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, run%coefficients)
-      if (options%has('check')) call check_motion(mechanism, run, err)
+      call print_check(options, pictures, mechanism, plan, simulation%requested, start, diagnostics)
+      if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, simulation%coefficients)
+      if (options%has('check')) call check_motion(mechanism, simulation, err)
       if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
+      call carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
     end if
-    call run%close()
+    call simulation%close()
   end subroutine work
 
   !> What a run would refuse at its start, is refused by a check.
-  subroutine check_motion(mechanism, run, err)
+  subroutine check_motion(mechanism, simulation, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(dynamic_run_type), intent(inout) :: run     !< that was begun; the first row is taken of it
+    type(free_simulation_type), intent(inout), target :: simulation   !< is started
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(row_source_type) :: source
     real(wp), allocatable :: row(:)
 
-    allocate (row(run%columns%width()))
-    call run%row_at(mechanism%time%start, row, err)
+    call new_row_source('mech9d', mechanism, simulation, source)
+    allocate (row(source%columns%width()))
+    call source%row_at(mechanism%time%start, row, err)
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamic_run_type), intent(inout) :: run
+    type(free_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
+    type(row_source_type) :: source
     type(results_type), target :: results
     type(facts_type) :: facts
     type(hdf5_sink_type), pointer :: hdf5
@@ -109,23 +114,24 @@ contains
     type(error_type), allocatable :: err
     logical :: ready
 
-    call begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
+    call new_row_source('mech9d', mechanism, simulation, source)
+    call begin_run(options, pictures, mechanism, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return
-    call dynamic_facts(mechanism, plan, outcome, run, facts)
+    call dynamic_facts(mechanism, plan, outcome, simulation, facts)
     call results%write_facts(facts)
     hdf5 => results%hdf5()
-    if (associated(hdf5)) call write_dynamics(hdf5, plan, run)
-    call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
-    if (.not. options%has('quiet')) call print_dynamic_report(error_unit, results%table_path, outcome, run)
+    if (associated(hdf5)) call write_dynamics(hdf5, plan, simulation)
+    call record(source, mechanism, results, options%has('quiet'), outcome, err, kept)
+    if (.not. options%has('quiet')) call print_dynamic_report(error_unit, results%table_path, outcome, simulation)
     if (allocated(err)) call diagnostics%add_error(err)
-    call dynamic_facts(mechanism, plan, outcome, run, facts)
+    call dynamic_facts(mechanism, plan, outcome, simulation, facts)
     call results%write_facts(facts, diagnostics%code())
-    if (associated(hdf5)) call write_events(hdf5, run)
-    call end_run(options, pictures, mechanism, run, results, diagnostics)
+    if (associated(hdf5)) call write_events(hdf5, simulation)
+    call end_run(options, pictures, mechanism, source, results, diagnostics)
     if (.not. reported) return
     call save_dynamic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics, &
-                             outcome, run, err)
+                             outcome, simulation, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out
 end module mech9_dynamic_task

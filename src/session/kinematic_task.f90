@@ -11,13 +11,15 @@ module mech9_kinematic_task
   use mech9_state, only: state_type
   use mech9_requested, only: requested_by_results
   use mech9_driven_motion, only: set_inputs
+  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
+  use mech9_row_source, only: row_source_type, new_row_source
   use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
   use mech9_range_text, only: print_ranges
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_recording, only: recording_outcome_type, record
-  use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
+  use mech9_explained_assembly, only: assemble_driven_start
   use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report, kinematic_facts
   implicit none
   private
@@ -47,7 +49,7 @@ contains
     type(state_type), intent(out) :: state   !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call assemble_start(mechanism, plan, state, err)
+    call assemble_driven_start(mechanism, plan, state, err)
   end subroutine assemble
 
   !> Plan, assemble, and run unless only a check is asked for.
@@ -61,12 +63,12 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
-    type(kinematic_run_type) :: run
+    type(driven_simulation_type), target :: simulation
     type(error_type), allocatable :: err
 
     reported = .false.
     call read_picture_requests(options, mechanism, self%program_name, pictures, err)
-    if (.not. allocated(err)) call assemble_start(mechanism, plan, start, err)
+    if (.not. allocated(err)) call assemble_driven_start(mechanism, plan, start, err)
     if (allocated(err)) then
       if (options%has('check')) call print_given(mechanism, .false.)
       call diagnostics%add_error(err)
@@ -80,8 +82,8 @@ contains
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
-    call new_kinematic_run(mechanism, plan, start, run, pictures%any_wanted())
-    call carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
+    call new_driven_simulation(mechanism, plan, start, simulation, pictures%any_wanted())
+    call carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
   end subroutine work
 
   !> What a run would refuse, is refused by a check: a start from which the motion cannot begin, drives without values
@@ -91,47 +93,51 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start            !< assembled
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(kinematic_run_type) :: run
+    type(driven_simulation_type), target :: simulation
+    type(row_source_type) :: source
     real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
     real(wp), allocatable :: row(:)
 
-    call new_kinematic_run(mechanism, plan, start, run)
-    allocate (row(run%columns%width()))
-    call run%row_at(mechanism%time%start, row, err)
+    call new_driven_simulation(mechanism, plan, start, simulation)
+    call new_row_source('mech9k', mechanism, simulation, source)
+    allocate (row(source%columns%width()))
+    call source%row_at(mechanism%time%start, row, err)
     if (.not. allocated(err)) call set_inputs(mechanism, mechanism%time%end, q, dq, ddq, err)
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, mechanism, plan, run, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(kinematic_run_type), intent(inout) :: run
+    type(driven_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: reported
     type(kept_rows_type), intent(inout), optional :: kept
+    type(row_source_type) :: source
     type(results_type), target :: results
     type(facts_type) :: facts
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
     logical :: ready
 
-    call begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
+    call new_row_source('mech9k', mechanism, simulation, source)
+    call begin_run(options, pictures, mechanism, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return
-    call kinematic_facts(run%plan, outcome, run%driven, facts)
+    call kinematic_facts(simulation%plan, outcome, simulation%driven, facts)
     call results%write_facts(facts)
-    call record(run, mechanism, results, options%has('quiet'), outcome, err, kept)
+    call record(source, mechanism, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) &
-      call print_kinematic_report(error_unit, mechanism, run%plan, results%table_path, outcome, run%driven)
+      call print_kinematic_report(error_unit, mechanism, simulation%plan, results%table_path, outcome, simulation%driven)
     if (allocated(err)) call diagnostics%add_error(err)
-    call kinematic_facts(run%plan, outcome, run%driven, facts)
+    call kinematic_facts(simulation%plan, outcome, simulation%driven, facts)
     call results%write_facts(facts, diagnostics%code())
-    call end_run(options, pictures, mechanism, run, results, diagnostics)
+    call end_run(options, pictures, mechanism, source, results, diagnostics)
     if (.not. reported) return
-    call save_kinematic_report(options%argument('report'), mechanism, run%plan, results%table_path, diagnostics, &
-                               outcome, run%driven, err)
+    call save_kinematic_report(options%argument('report'), mechanism, simulation%plan, results%table_path, diagnostics, &
+                               outcome, simulation%driven, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out
 end module mech9_kinematic_task

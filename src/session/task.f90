@@ -13,7 +13,7 @@ module mech9_task
   use mech9_requested, only: requested_type
   use mech9_picture_requests, only: picture_requests_type
   use mech9_results, only: results_type
-  use mech9_recording, only: motion_source_type
+  use mech9_row_source, only: row_source_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
@@ -139,30 +139,31 @@ contains
   end subroutine draw_graph
 
   !> Before a run: tell what runs, and open what takes its results. Not `ready` after an error.
-  subroutine begin_run(options, pictures, mechanism, plan, run, results, diagnostics, ready)
+  subroutine begin_run(options, pictures, mechanism, plan, requested, source, results, diagnostics, ready)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    class(motion_source_type), intent(inout) :: run
+    type(requested_type), intent(in) :: requested   !< what is worked out of the motion
+    type(row_source_type), intent(inout) :: source   !< computes the rows; gets a film where pictures are wanted
     type(results_type), intent(out) :: results
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: ready
     type(error_type), allocatable :: err
 
-    call announce(options, mechanism, plan, run%requested)
-    if (pictures%any_wanted()) run%film = new_film(mechanism, mechanism%time%intervals + 1, run%columns)
-    call results%open(options, mechanism, diagnostics%sources(1)%text, run%program_name, run%columns, err)
+    call announce(options, mechanism, plan, requested)
+    if (pictures%any_wanted()) source%film = new_film(mechanism, mechanism%time%intervals + 1, source%columns)
+    call results%open(options, mechanism, diagnostics%sources(1)%text, source%program_name, source%columns, err)
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)
   end subroutine begin_run
 
   !> After a run: close its results, draw the mechanism, and say what was written.
-  subroutine end_run(options, pictures, mechanism, run, results, diagnostics)
+  subroutine end_run(options, pictures, mechanism, source, results, diagnostics)
     type(command_line_type), intent(in) :: options
     type(picture_requests_type), intent(in) :: pictures
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    class(motion_source_type), intent(in) :: run
+    type(row_source_type), intent(in) :: source   !< of the rows that were written
     type(results_type), intent(inout) :: results
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
@@ -172,7 +173,7 @@ contains
     call results%print_words(error_unit, options%has('quiet'))
     ! pictures take longer than a program may take that is asked to end
     if (asked_to_end()) return
-    if (allocated(run%film)) call draw(options, pictures, mechanism, run%film, diagnostics)
+    if (allocated(source%film)) call draw(options, pictures, mechanism, source%film, diagnostics)
   end subroutine end_run
 
   !> The title, and with --verbose the structure and the plan.

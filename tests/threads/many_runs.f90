@@ -9,9 +9,10 @@ module many_runs
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_recording, only: motion_source_type
-  use mech9_kinematic_run, only: kinematic_run_type, new_kinematic_run, assemble_start
-  use mech9_dynamic_run, only: dynamic_run_type, start_dynamic_run, assemble_initial_state
+  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
+  use mech9_simulation, only: simulation_type
+  use mech9_row_source, only: row_source_type, new_row_source
   implicit none
   private
   public :: run_type, list_runs, carry_out, same
@@ -78,12 +79,12 @@ contains
     type(error_type), allocatable, intent(out) :: err
     type(plan_type) :: plan
     type(state_type) :: start
-    type(kinematic_run_type) :: run
+    type(driven_simulation_type) :: simulation
 
-    call assemble_start(mechanism, plan, start, err)
+    call assemble_driven(mechanism, plan, start, err)
     if (allocated(err)) return
-    call new_kinematic_run(mechanism, plan, start, run)
-    call fill(run, mechanism, rows, err)
+    call new_driven_simulation(mechanism, plan, start, simulation)
+    call fill(simulation, mechanism, rows, err)
   end subroutine follow
 
   subroutine integrate(mechanism, rows, err)
@@ -92,21 +93,23 @@ contains
     type(error_type), allocatable, intent(out) :: err
     type(plan_type) :: plan
     type(state_type) :: start
-    type(dynamic_run_type) :: run
+    type(free_simulation_type) :: simulation
 
-    call assemble_initial_state(mechanism, plan, start, err)
-    if (.not. allocated(err)) call start_dynamic_run(mechanism, plan, start, run, err)
-    if (.not. allocated(err)) call fill(run, mechanism, rows, err)
-    call run%close()
+    call assemble_free(mechanism, plan, start, err)
+    if (.not. allocated(err)) call new_free_simulation(mechanism, plan, start, simulation, err)
+    if (.not. allocated(err)) call fill(simulation, mechanism, rows, err)
+    call simulation%close()
   end subroutine integrate
 
-  subroutine fill(source, mechanism, rows, err)
-    class(motion_source_type), intent(inout) :: source
+  subroutine fill(simulation, mechanism, rows, err)
+    class(simulation_type), intent(inout), target :: simulation
     type(mechanism_type), intent(in) :: mechanism
     real(wp), allocatable, intent(out) :: rows(:, :)
     type(error_type), allocatable, intent(out) :: err
+    type(row_source_type) :: source
     integer :: i
 
+    call new_row_source('mech9', mechanism, simulation, source)
     allocate (rows(source%columns%count, 0:mechanism%time%intervals), source=0.0_wp)
     do i = 0, mechanism%time%intervals
       call source%row_at(mechanism%time%time(i), rows(:, i), err)

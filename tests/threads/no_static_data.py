@@ -8,13 +8,14 @@ import re
 import subprocess
 import sys
 
-FLOORS = 'base numerics spatial structure model user kinematics dynamics input'.split()
+FLOORS = 'base numerics spatial structure model user kinematics ode dynamics simulation input'.split()
 SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'src')
 PRINTS_HELP = 'data_help.f90'    # of use to a program's --help only
 
 CONSTANT = re.compile(r'^jumptable\.|^A\.\d|___def_init_|^(print_warning|is_recursive)\.')   # the compiler's own
 
-floor_of = {name.replace('.in', ''): floor for floor in FLOORS for name in os.listdir(os.path.join(SOURCES, floor))}
+floor_of = {name.replace('.in', ''): floor for floor in FLOORS
+            for _, _, names in os.walk(os.path.join(SOURCES, floor)) for name in names}
 listing = subprocess.run(sys.argv[1:], capture_output=True, text=True, check=True).stdout
 member, seen, shared = None, set(), []
 for line in listing.splitlines():

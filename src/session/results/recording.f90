@@ -1,20 +1,16 @@
-!> Recording a motion: rows are computed and written by turns, whatever computes them.
+!> Recording a motion: rows are computed and written by turns.
 module mech9_recording
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_interrupted
-  use mech9_text, only: to_text
+  use mech9_error, only: error_type
   use mech9_clock, only: seconds, pacer_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_requested, only: requested_type
-  use mech9_columns, only: columns_type
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_film, only: film_type
+  use mech9_row_source, only: row_source_type
   use mech9_results, only: results_type
   use mech9_progress, only: progress_type
-  use mech9_system, only: interrupted
   implicit none
   private
-  public :: motion_source_type, recording_outcome_type, record, stop_if_interrupted
+  public :: recording_outcome_type, record
 
   !> Rows that are computed before they are written together, so that both can be timed without a
   !> clock in the inner loop.
@@ -22,32 +18,11 @@ module mech9_recording
   !> ... unless they take longer than this: they are written then, lest a run that is killed lose them [s].
   real(wp), parameter :: longest_wait = 0.25_wp
 
-  !> What computes rows.
-  type, abstract :: motion_source_type
-    character(len=6) :: program_name = ''
-    type(columns_type) :: columns
-    type(requested_type) :: requested              !< what it works out
-    type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
-  contains
-    procedure(row_interface), deferred :: row_at
-  end type motion_source_type
-
-  abstract interface
-    !> Go on to output time t and give its row. Output times come in order, the first one is the start.
-    subroutine row_interface(self, t, row, err)
-      import :: motion_source_type, error_type, wp
-      class(motion_source_type), intent(inout) :: self   !< the motion source
-      real(wp), intent(in) :: t
-      real(wp), intent(inout) :: row(:)
-      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    end subroutine row_interface
-  end interface
-
   !> How the recording went.
   type :: recording_outcome_type
-    integer :: rows = 0
-    real(wp) :: seconds_solving = 0.0_wp
-    real(wp) :: seconds_writing = 0.0_wp
+    integer :: rows = 0                       !< that were computed
+    real(wp) :: seconds_solving = 0.0_wp      !< real time [s]
+    real(wp) :: seconds_writing = 0.0_wp      !< real time [s]
   end type recording_outcome_type
 
 contains
@@ -55,13 +30,13 @@ contains
   !> Rows at all output times, into the results, which stay open. When the motion cannot go on, or the
   !> user interrupts, what was computed is written first.
   subroutine record(source, mechanism, results, quiet, outcome, err, kept)
-    class(motion_source_type), intent(inout) :: source
+    type(row_source_type), intent(inout) :: source              !< computes the rows
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(results_type), intent(inout) :: results
-    logical, intent(in) :: quiet
-    type(recording_outcome_type), intent(out) :: outcome
+    type(results_type), intent(inout) :: results                !< open
+    logical, intent(in) :: quiet                                !< no progress is shown
+    type(recording_outcome_type), intent(out) :: outcome        !< how the recording went
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(kept_rows_type), intent(inout), optional :: kept   !< for who looks at the rows after the run
+    type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows, for use after the run
     type(error_type), allocatable :: stopped, at_flush
     type(progress_type) :: progress
     type(pacer_type) :: pacer
@@ -95,19 +70,17 @@ contains
 
   !> The next rows, from output number `next` on; fewer than fit where the motion or the run ends, or takes long.
   subroutine compute_rows(source, mechanism, progress, pacer, next, rows, count, err)
-    class(motion_source_type), intent(inout) :: source
+    type(row_source_type), intent(inout) :: source              !< computes the rows
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(progress_type), intent(inout) :: progress
-    type(pacer_type), intent(inout) :: pacer
-    integer, intent(inout) :: next
-    real(wp), intent(inout) :: rows(:, :)
-    integer, intent(out) :: count
+    type(progress_type), intent(inout) :: progress              !< is told of each row
+    type(pacer_type), intent(inout) :: pacer                    !< says when rows must be written
+    integer, intent(inout) :: next                              !< number of the next output, from 0 on
+    real(wp), intent(inout) :: rows(:, :)                       !< (width, most rows)
+    integer, intent(out) :: count                               !< rows that were computed
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     count = 0
     do while (count < size(rows, 2) .and. next <= mechanism%time%intervals)
-      call stop_if_interrupted(mechanism%time%time(next), err)
-      if (allocated(err)) return
       call source%row_at(mechanism%time%time(next), rows(:, count + 1), err)
       if (allocated(err)) return
       count = count + 1
@@ -117,17 +90,10 @@ contains
     end do
   end subroutine compute_rows
 
-  !> An error where the user wants the run to end. What takes long to come to an output asks on the way.
-  subroutine stop_if_interrupted(t, err)
-    real(wp), intent(in) :: t            !< the output that comes next [s]
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-
-    if (interrupted()) call raise(err, exit_interrupted, 'interrupted before t = '//to_text(t, 10)//' s')
-  end subroutine stop_if_interrupted
-
   !> Add the time since `clock` to a sum and set the clock.
   subroutine lap(clock, sum)
-    real(wp), intent(inout) :: clock, sum
+    real(wp), intent(inout) :: clock   !< a time before [s]; set to now
+    real(wp), intent(inout) :: sum     !< gets the time since then [s]
     real(wp) :: now
 
     now = seconds()

@@ -1,0 +1,93 @@
+!> Rows of results from a simulation: a row of numbers for each output time.
+module mech9_row_source
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_system, only: interrupted
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_simulation, only: simulation_type, interruption_type
+  use mech9_columns, only: columns_type, kinematic_columns
+  use mech9_film, only: film_type
+  implicit none
+  private
+  public :: row_source_type, new_row_source
+
+  type :: row_source_type
+    character(len=6) :: program_name = ''
+    class(simulation_type), pointer, private :: simulation => null()   !< not owned
+    type(columns_type) :: columns
+    type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
+  contains
+    procedure :: row_at
+  end type row_source_type
+
+  !> A motion stops where the user interrupts the program.
+  type, extends(interruption_type) :: signal_interruption_type
+  contains
+    procedure :: is_wanted
+  end type signal_interruption_type
+
+contains
+
+  !> The rows of a simulation, which must have the target attribute and outlive them.
+  subroutine new_row_source(program_name, mechanism, simulation, source)
+    character(len=*), intent(in) :: program_name                   !< for messages and files
+    type(mechanism_type), intent(in) :: mechanism                  !< says which columns there are
+    class(simulation_type), intent(inout), target :: simulation    !< made, and not started
+    type(row_source_type), intent(out) :: source                   !< its rows
+
+    source%program_name = program_name
+    source%simulation => simulation
+    source%columns = kinematic_columns(mechanism)
+    if (simulation%with_energies) then
+      call source%columns%append('E.kinetic', 'J', 'kinetic energy')
+      call source%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
+      call source%columns%append('E.total', 'J', 'kinetic and potential energy')
+    end if
+    call source%columns%append('closure', 'm', 'largest error of a closed chain')
+    if (simulation%with_conditioning) &
+      call source%columns%append('conditioning', '1', 'least singular value of the worst chains')
+  end subroutine new_row_source
+
+  !> Go on to output time t and give its row. Output times come in order, the first one is the start.
+  subroutine row_at(self, t, row, err)
+    class(row_source_type), intent(inout) :: self       !< the row source
+    real(wp), intent(in) :: t                           !< output time [s]
+    real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_type), pointer :: mechanism
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+    integer :: next
+
+    if (self%simulation%started) then
+      call self%simulation%advance(t, err)
+    else
+      call self%simulation%start(err, signal_interruption_type())
+    end if
+    if (allocated(err)) return
+    call self%simulation%present(mechanism, plan, state)
+    call self%columns%fill(mechanism, plan, state, row)
+    call self%columns%fill_poses(plan, state, row)
+    next = self%columns%motion
+    associate (simulation => self%simulation)
+      if (simulation%with_energies) then
+        row(next + 1) = simulation%kinetic_energy
+        row(next + 2) = simulation%potential_energy
+        row(next + 3) = simulation%kinetic_energy + simulation%potential_energy
+        next = next + 3
+      end if
+      row(next + 1) = simulation%closure
+      if (simulation%with_conditioning) row(next + 2) = simulation%least_conditioning
+    end associate
+    if (allocated(self%film)) call self%film%take(mechanism, plan, state, row)
+  end subroutine row_at
+
+  !> Whether the user has interrupted the program.
+  logical function is_wanted(self)
+    class(signal_interruption_type), intent(in) :: self   !< asks the operating system; it has no data of its own
+
+    is_wanted = interrupted()
+  end function is_wanted
+end module mech9_row_source

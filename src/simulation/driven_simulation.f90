@@ -1,0 +1,144 @@
+!> A driven motion: all independent coordinates are given as functions of time.
+module mech9_driven_simulation
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_motion_view, only: motion_view_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_requested, only: requested_by_results, leave_out
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, set_inputs
+  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_generalized_forces, only: show_state
+  use mech9_energy, only: kinetic_energy, potential_energy
+  use mech9_simulation, only: simulation_type, simulation_statistics_type
+  implicit none
+  private
+  public :: driven_simulation_type, new_driven_simulation, assemble_driven
+
+  type, extends(simulation_type) :: driven_simulation_type
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan              !< of the requested part of the motion
+    type(state_type) :: assembled        !< the closed position at the start
+    type(driven_motion_type) :: driven
+    type(dynamics_plan_type), allocatable, private :: dynamics   !< made when energies are asked for first
+    type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
+  contains
+    procedure :: begin
+    procedure :: go_to
+    procedure :: present
+    procedure :: present_closure
+    procedure :: watch_conditioning
+    procedure :: energies
+    procedure :: count_work
+  end type driven_simulation_type
+
+contains
+
+  !> The plan, and the closed position at the start of the motion.
+  subroutine assemble_driven(mechanism, plan, state, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism, with a drive for each independent coordinate
+    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
+    type(state_type), intent(out) :: state              !< the closed position
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
+
+    q = mechanism%initial_position
+    call set_inputs(mechanism, mechanism%time%start, q, dq, ddq, err)
+    if (allocated(err)) return
+    call make_plan(mechanism, q, plan, state, err)
+    state%t = mechanism%time%start
+  end subroutine assemble_driven
+
+  !> A driven motion from its assembled start.
+  subroutine new_driven_simulation(mechanism, plan, assembled, simulation, pictures)
+    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(plan_type), intent(in) :: plan                       !< its plan
+    type(state_type), intent(in) :: assembled                 !< its closed position at the start
+    type(driven_simulation_type), intent(out) :: simulation   !< to be started
+    logical, intent(in), optional :: pictures                 !< the motion of all links is requested; not unless given
+
+    simulation%mechanism = mechanism
+    simulation%plan = plan
+    simulation%requested = requested_by_results(mechanism, pictures)
+    call leave_out(simulation%plan, simulation%requested)
+    simulation%assembled = assembled
+    simulation%with_conditioning = mechanism%output%conditioning
+    allocate (simulation%events(0))
+  end subroutine new_driven_simulation
+
+  !> The position at the start.
+  subroutine begin(self, t, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                              !< time of the start [s]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    call start_driven_motion(self%mechanism, self%plan, self%assembled, t, self%driven, err, self%requested%derivatives > 1)
+  end subroutine begin
+
+  !> The position at time t, on the same branch.
+  subroutine go_to(self, t, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                              !< time to go to [s]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    call advance(self%mechanism, self%plan, self%driven, t, err)
+  end subroutine go_to
+
+  !> The mechanism, its plan and the present state.
+  subroutine present(self, mechanism, plan, state)
+    class(driven_simulation_type), intent(in), target :: self   !< the simulation
+    type(mechanism_type), pointer, intent(out) :: mechanism     !< the mechanism
+    type(plan_type), pointer, intent(out) :: plan               !< the plan that is executed
+    type(state_type), pointer, intent(out) :: state             !< the present state; before the start the assembled one
+
+    mechanism => self%mechanism
+    plan => self%plan
+    state => self%driven%state
+    if (.not. self%started) state => self%assembled
+  end subroutine present
+
+  !> Largest closure error of the present position [m].
+  real(wp) function present_closure(self)
+    class(driven_simulation_type), intent(in) :: self   !< the simulation
+
+    present_closure = self%driven%closure
+  end function present_closure
+
+  !> The conditioning of the present position. Whether it is the worst was seen already.
+  subroutine watch_conditioning(self, always)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    logical, intent(in) :: always                          !< work it out in any case
+
+    if (always) call self%driven%conditioning%look(self%t, self%driven%work, self%least_conditioning)
+  end subroutine watch_conditioning
+
+  !> Energies of the present position.
+  subroutine energies(self, kinetic, potential)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(out) :: kinetic                       !< of all bodies [J]
+    real(wp), intent(out) :: potential                     !< of gravity and springs [J]
+
+    if (.not. allocated(self%dynamics)) then
+      allocate (self%dynamics, self%view)
+      call make_dynamics_plan(self%mechanism, self%plan, self%dynamics)
+      allocate (self%view%links(self%plan%n_links))
+      allocate (self%view%q(self%plan%n_coordinates), self%view%dq(self%plan%n_coordinates), source=0.0_wp)
+    end if
+    call show_state(self%plan, self%dynamics, self%driven%state, self%view)
+    kinetic = kinetic_energy(self%dynamics, self%driven%state)
+    potential = potential_energy(self%mechanism, self%plan, self%driven%state, self%view)
+  end subroutine energies
+
+  !> Steps of branch stepping, and their work.
+  subroutine count_work(self, statistics)
+    class(driven_simulation_type), intent(inout) :: self            !< the simulation
+    type(simulation_statistics_type), intent(inout) :: statistics   !< gets the work
+
+    statistics%steps = self%driven%steps
+    statistics%newton_iterations = self%driven%iterations
+    statistics%halvings = self%driven%halvings
+    statistics%crossings = self%driven%crossings
+  end subroutine count_work
+end module mech9_driven_simulation

@@ -1,0 +1,300 @@
+!> A free motion: the equations of motion are integrated from time to time, in other independent coordinates where the present
+!> ones come to a singular position.
+module mech9_free_simulation
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data, exit_singular, exit_integrator
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_block_equations, only: largest_gap
+  use mech9_planning, only: make_plan
+  use mech9_requested, only: requested_by_results, add_forces, leave_out, stay_with
+  use mech9_conditioning, only: conditioning_type
+  use mech9_energy, only: kinetic_energy, potential_energy
+  use mech9_integrator, only: integration_statistics_type
+  use mech9_motion_system, only: set_motion_system
+  use mech9_integrated_motion, only: integrated_motion_type, doubtful
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
+  implicit none
+  private
+  public :: free_simulation_type, new_free_simulation, assemble_free
+
+  !> Above this conditioning a step may go beyond the time that is asked for: it will not come to a singular position unseen.
+  real(wp), parameter :: regular = 0.14_wp
+  !> A step from a well conditioned state is made again, shorter, where it meets worse than this.
+  real(wp), parameter :: refused = 0.03_wp
+
+  type, extends(simulation_type) :: free_simulation_type
+    type(integrated_motion_type) :: motion
+    type(conditioning_type) :: conditioning       !< the worst of all positions
+    real(wp), allocatable :: coefficients(:, :)   !< a_pr at the start, lower triangle [kg m^2, kg m, kg]
+    real(wp) :: end = 0.0_wp                      !< steps go to this time at most, unless a later one is asked for [s]
+    logical, private :: steps_onto = .false.      !< no step may go beyond the time that is asked for
+  contains
+    procedure :: begin
+    procedure :: go_to
+    procedure :: present
+    procedure :: present_closure
+    procedure :: watch_conditioning
+    procedure :: energies
+    procedure :: count_work
+    procedure :: close => close_simulation
+    procedure, private :: step
+    procedure, private :: look_between
+    procedure, private :: change_coordinates
+  end type free_simulation_type
+
+contains
+
+  !> The plan, and the closed position at the start: positions and rates of the independent coordinates as given; those
+  !> at rest need no velocity.
+  subroutine assemble_free(mechanism, plan, state, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
+    type(state_type), intent(out) :: state              !< the closed position, with the rates of independent coordinates
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer :: k
+
+    do k = 1, size(mechanism%pairs)
+      if (mechanism%position_given(k) .or. .not. mechanism%structure%independent(k)) cycle
+      call raise(err, exit_data, 'the independent coordinate '//to_text(k)//' of this pair has no initial position; '// &
+                 'give &initial coordinate='//to_text(k)//', position=..., velocity=... /', &
+                 mechanism%pairs(k)%pair%place)
+      return
+    end do
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    if (allocated(err)) return
+    state%t = mechanism%time%start
+    state%dq(plan%independent) = mechanism%initial_velocity(plan%independent)
+  end subroutine assemble_free
+
+  !> A free motion from its assembled start; the accelerations there are worked out. To be closed at the end, also where this
+  !> failed.
+  subroutine new_free_simulation(mechanism, plan, assembled, simulation, err, pictures)
+    type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+    type(plan_type), intent(in) :: plan                     !< its plan
+    type(state_type), intent(in) :: assembled               !< its closed position, with the rates of independent coordinates
+    type(free_simulation_type), intent(out) :: simulation   !< to be started
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    logical, intent(in), optional :: pictures               !< the motion of all links is requested; not unless given
+    type(plan_type) :: used
+
+    simulation%with_energies = mechanism%output%energies
+    simulation%with_conditioning = mechanism%output%conditioning
+    simulation%motion%t = mechanism%time%start
+    simulation%end = mechanism%time%end
+    allocate (simulation%events(0))
+    simulation%requested = requested_by_results(mechanism, pictures)
+    call add_forces(mechanism, simulation%requested)
+    used = plan
+    call leave_out(used, simulation%requested)
+    call stay_with(used, simulation%requested)
+    allocate (simulation%motion%system)
+    call set_motion_system(mechanism, used, assembled, simulation%motion%system, err)
+    if (allocated(err)) then
+      if (err%code == exit_singular) &
+        err%message = err%message//'; choose other independent coordinates, or start a little beside it'
+      return
+    end if
+    simulation%coefficients = simulation%motion%system%work%coefficients
+  end subroutine new_free_simulation
+
+  !> Begin to integrate. The position at the start is that of the system.
+  subroutine begin(self, t, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                            !< time of the start [s]
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    self%motion%t = t
+    call self%motion%begin(err)
+  end subroutine begin
+
+  !> The motion at time t, by steps up to there or beyond.
+  subroutine go_to(self, t, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                            !< time to go to [s]
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    logical :: found
+
+    self%steps_onto = .false.
+    associate (motion => self%motion)
+      do
+        do while ((t - motion%t)*sign(1.0_wp, self%end - motion%system%mechanism%time%start) > 0.0_wp)
+          call self%stop_if_interrupted(t, err)
+          if (.not. allocated(err)) call self%step(t, err)
+          if (allocated(err)) return
+        end do
+        if (.not. abs(t - motion%t) > 0.0_wp) exit
+        call self%look_between(t, found)
+        if (found) return
+        self%steps_onto = .true.
+        call motion%step_back(t, err)
+        if (allocated(err)) return
+      end do
+      call motion%system%move_to(t, motion%y, err)
+    end associate
+  end subroutine go_to
+
+  !> One accepted step towards t, with a change of coordinates before it where that helps. It may go beyond, but near
+  !> a singular position of the independent coordinates, where the times that are asked for are ends of steps.
+  subroutine step(self, t, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                            !< time to go to [s]
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    type(error_type), allocatable :: failure
+    real(wp) :: farthest
+    logical :: changed, is_regular
+
+    associate (motion => self%motion)
+      is_regular = motion%conditioning_here > doubtful
+      if (is_regular) motion%look_below = doubtful
+      if (motion%conditioning_here < motion%look_below) then
+        call self%change_coordinates(changed, err)
+        if (allocated(err)) return
+        is_regular = motion%conditioning_here > doubtful
+      end if
+      motion%system%refuse_below = merge(refused, 0.0_wp, is_regular)
+      farthest = t
+      if (motion%conditioning_here > regular .and. .not. self%steps_onto .and. (self%end - t)*(t - motion%t) > 0.0_wp) &
+        farthest = self%end
+      call motion%integrator%step(t, motion%t, motion%y, failure, farthest)
+      if (.not. allocated(failure)) then
+        motion%conditioning_here = motion%system%conditioning()
+        call motion%dense_output%add(motion%system, motion%t, motion%y)
+        return
+      end if
+    end associate
+    ! perhaps the integrator stopped at a singular position of these coordinates only
+    if (failure%code == exit_singular .or. failure%code == exit_integrator) then
+      call self%change_coordinates(changed, err)
+      if (changed .or. allocated(err)) return
+    end if
+    call move_alloc(failure, err)
+  end subroutine step
+
+  !> Go on in better conditioned independent coordinates, if there are any; that is an event.
+  subroutine change_coordinates(self, changed, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    logical, intent(out) :: changed                      !< the independent coordinates are others now
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    call self%motion%change_coordinates(self%requested, changed, err)
+    if (changed) call add_event(self%events, self%motion%t, self%motion%system%plan%independent)
+  end subroutine change_coordinates
+
+  !> One more event. By hand: an array constructor of them would leak (gfortran 12).
+  pure subroutine add_event(events, t, independent)
+    type(coordinate_change_type), allocatable, intent(inout) :: events(:)   !< in the order of time
+    real(wp), intent(in) :: t                                               !< time of the new one [s]
+    integer, intent(in) :: independent(:)                                   !< the independent coordinates from then on
+    type(coordinate_change_type), allocatable :: grown(:)
+    integer :: i
+
+    allocate (grown(size(events) + 1))
+    do i = 1, size(events)
+      grown(i)%t = events(i)%t
+      call move_alloc(events(i)%independent, grown(i)%independent)
+    end do
+    grown(size(grown))%t = t
+    grown(size(grown))%independent = independent
+    call move_alloc(grown, events)
+  end subroutine add_event
+
+  !> The motion at a time within the last step: by the method's own interpolation, or by dense output from the ends of the last
+  !> steps, or from these and points between them, or by steps onto it. `found` is false where none of these leads there.
+  subroutine look_between(self, t, found)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                            !< time within the last step [s]
+    logical, intent(out) :: found                        !< the system stands at this time
+    type(error_type), allocatable :: err
+    real(wp) :: from, y(size(self%motion%y))
+
+    found = .false.
+    associate (motion => self%motion)
+      if (motion%dense_output%crosses()) return
+      call motion%integrator%interpolate(t, y, found)
+      if (.not. found) call motion%dense_output%find(motion%system, t, y, found, err)
+      if (.not. (found .or. motion%dense_output%count_inserted() > 0)) then
+        call motion%insert(0.5_wp, err)
+        if (.not. allocated(err)) call motion%dense_output%find(motion%system, t, y, found, err)
+      end if
+      if (.not. (found .or. allocated(err) .or. motion%dense_output%count_inserted() > 1)) then
+        call motion%insert(0.25_wp, err)
+        if (.not. allocated(err)) call motion%insert(0.75_wp, err)
+        if (.not. allocated(err)) call motion%dense_output%find(motion%system, t, y, found, err)
+      end if
+      if (allocated(err)) return
+      if (found) call motion%system%close_near(t, y, found, err)
+      if (found) found = motion%dense_output%agrees(motion%system)
+      if (found) return
+      call motion%dense_output%start_of_step(from, y)
+      call motion%aside%reach(motion%system, from, y, t, err)
+      if (.not. allocated(err)) call motion%system%move_to(t, motion%aside%y, err)
+      found = .not. allocated(err)
+    end associate
+  end subroutine look_between
+
+  !> The mechanism and the plan in the present independent coordinates, and the present state.
+  subroutine present(self, mechanism, plan, state)
+    class(free_simulation_type), intent(in), target :: self   !< the simulation
+    type(mechanism_type), pointer, intent(out) :: mechanism   !< with the present independent coordinates
+    type(plan_type), pointer, intent(out) :: plan             !< the plan that is executed
+    type(state_type), pointer, intent(out) :: state           !< the present state
+
+    mechanism => self%motion%system%mechanism
+    plan => self%motion%system%plan
+    state => self%motion%system%state
+  end subroutine present
+
+  !> Largest closure error of the present position [m].
+  real(wp) function present_closure(self)
+    class(free_simulation_type), intent(in) :: self   !< the simulation
+
+    present_closure = largest_gap(self%motion%system%plan, self%motion%system%state)
+  end function present_closure
+
+  !> Take the conditioning of the present position into account.
+  subroutine watch_conditioning(self, always)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    logical, intent(in) :: always                        !< work it out in any case
+
+    if (always) then
+      call self%conditioning%look(self%t, self%motion%system%work%blocks, self%least_conditioning)
+    else
+      call self%conditioning%glance(self%t, self%motion%system%work%blocks)
+    end if
+  end subroutine watch_conditioning
+
+  !> Energies of the present position.
+  subroutine energies(self, kinetic, potential)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(out) :: kinetic                     !< of all bodies [J]
+    real(wp), intent(out) :: potential                   !< of gravity and springs [J]
+
+    associate (system => self%motion%system)
+      kinetic = kinetic_energy(system%dynamics, system%state)
+      potential = potential_energy(system%mechanism, system%plan, system%state, system%work%view)
+    end associate
+  end subroutine energies
+
+  !> Steps of the integrators, evaluations of the accelerations, and iterations of Newton's method.
+  subroutine count_work(self, statistics)
+    class(free_simulation_type), intent(inout) :: self              !< the simulation
+    type(simulation_statistics_type), intent(inout) :: statistics   !< gets the work
+    type(integration_statistics_type) :: counts
+
+    counts = self%motion%statistics()
+    statistics%steps = counts%steps
+    statistics%evaluations = counts%rate_evaluations
+    statistics%newton_iterations = self%motion%iterations()
+  end subroutine count_work
+
+  !> Give back what the motion holds.
+  subroutine close_simulation(self)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+
+    call self%motion%close()
+    self%started = .false.
+  end subroutine close_simulation
+end module mech9_free_simulation

@@ -1,0 +1,218 @@
+!> A free motion under integration: the equations of motion in the present independent coordinates, their integrator, and the
+!> change to other coordinates.
+module mech9_integrated_motion
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: work_count_type, work_of
+  use mech9_requested, only: requested_type
+  use mech9_expectation, only: expectation_type
+  use mech9_ode_system, only: is_recoverable
+  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_coordinate_choice, only: best_independent, with_independent
+  use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_dense_output, only: dense_output_type
+  use mech9_side_steps, only: side_steps_type, begin_integration
+  implicit none
+  private
+  public :: integrated_motion_type, doubtful
+
+  !> Below this conditioning other independent coordinates are looked for ...
+  real(wp), parameter :: doubtful = 0.08_wp
+  !> ... and taken if they are so many times better conditioned; else the next look is at so many
+  !> times worse conditioning.
+  real(wp), parameter :: worth_it = 4.0_wp
+
+  !> It must not be copied: the integrator keeps hold of the system.
+  type :: integrated_motion_type
+    type(motion_system_type), pointer :: system => null()   !< owned
+    type(integrator_type) :: integrator
+    type(dense_output_type) :: dense_output       !< motion within the last step
+    type(side_steps_type) :: aside                !< steps to times at which dense output is not certain
+    real(wp) :: t = 0.0_wp                        !< end of the last step [s]
+    real(wp), allocatable :: y(:)                 !< the integrated vector there
+    real(wp) :: conditioning_here = 0.0_wp        !< worst pivot ratio there
+    real(wp) :: look_below = doubtful             !< conditioning at which other coordinates are looked for
+    type(integration_statistics_type), private :: before   !< of the integrators before the present one
+    type(work_count_type), private :: work_before          !< for the blocks of the systems before the present one
+  contains
+    procedure :: begin
+    procedure :: change_coordinates
+    procedure :: insert
+    procedure :: step_back
+    procedure :: statistics
+    procedure :: work_done
+    procedure :: iterations
+    procedure :: close => close_motion
+  end type integrated_motion_type
+
+contains
+
+  !> Begin to integrate at the present state of the system.
+  subroutine begin(self, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    self%y = self%system%vector()
+    self%conditioning_here = self%system%conditioning()
+    call self%dense_output%begin()
+    call self%dense_output%add(self%system, self%t, self%y)
+    call begin_integration(self%integrator, self%system, self%t, self%y, err)
+  end subroutine begin
+
+  !> Go on in better conditioned independent coordinates, if there are any. Where the others cannot serve, the motion goes on
+  !> in the present ones; any other failure ends it.
+  subroutine change_coordinates(self, requested, changed, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
+    logical, intent(out) :: changed                        !< the independent coordinates are others now
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(motion_system_type), allocatable :: other
+    type(error_type), allocatable :: failure
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: state
+    logical :: independent(self%system%plan%n_coordinates)
+
+    changed = .false.
+    self%system%refuse_below = 0.0_wp
+    ! the state of the last accepted step, with the rates of all coordinates
+    call self%system%settle(self%t, self%y, failure)
+    if (.not. allocated(failure)) call self%system%present(failure)
+    if (gives_up(failure, err)) return
+    call best_independent(self%system%plan, self%system%state, independent)
+    if (all(independent .eqv. self%system%mechanism%structure%independent)) then
+      self%look_below = self%system%conditioning()/worth_it
+      return
+    end if
+    call with_independent(self%system%mechanism, self%system%state, independent, requested, mechanism, plan, state, failure)
+    if (gives_up(failure, err)) return
+    allocate (other)
+    call set_motion_system(mechanism, plan, state, other, failure)
+    ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
+    if (allocated(failure)) return
+    if (other%conditioning() < worth_it*self%system%conditioning()) then
+      self%look_below = self%system%conditioning()/worth_it
+      return
+    end if
+    call replace_system(self, other)
+    changed = .true.
+    call self%begin(err)
+  end subroutine change_coordinates
+
+  !> Whether there is a failure. One that has nothing to do with the choice of coordinates is handed on.
+  logical function gives_up(failure, err)
+    type(error_type), allocatable, intent(inout) :: failure   !< of trying other coordinates
+    type(error_type), allocatable, intent(inout) :: err       !< that ends the motion
+
+    gives_up = allocated(failure)
+    if (.not. gives_up) return
+    if (.not. is_recoverable(failure)) call move_alloc(failure, err)
+  end function gives_up
+
+  !> Put another system into the place of the present one, and keep the counts of both.
+  subroutine replace_system(self, other)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    type(motion_system_type), intent(inout) :: other       !< in other coordinates, with its motion worked out
+
+    call stop_integrators(self)
+    other%iterations = self%system%iterations
+    self%work_before = self%work_done()
+    deallocate (self%system)
+    allocate (self%system, source=other)
+    self%look_below = min(doubtful, self%system%conditioning()/worth_it)
+  end subroutine replace_system
+
+  !> Work out a point that divides the last step, for dense output.
+  subroutine insert(self, part, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    real(wp), intent(in) :: part                           !< part of the step before the point, 0 to 1
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp) :: from, y(size(self%y))
+
+    call self%dense_output%start_of_step(from, y)
+    call self%aside%reach(self%system, from, y, from + part*(self%t - from), err)
+    if (.not. allocated(err)) call self%dense_output%insert(self%aside%t, self%aside%y)
+  end subroutine insert
+
+  !> Back to the start of the last step, to go onto time t within it.
+  subroutine step_back(self, t, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    real(wp), intent(in) :: t                              !< time within the last step [s]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(expectation_type) :: nothing
+
+    call self%dense_output%start_of_step(self%t, self%y)
+    call self%system%resume(nothing)
+    call self%system%move_to(self%t, self%y, err)
+    if (.not. allocated(err)) call self%integrator%restart(self%t, self%y, err, first_step=t - self%t)
+    if (allocated(err)) return
+    self%conditioning_here = self%system%conditioning()
+    call self%dense_output%begin()
+    call self%dense_output%add(self%system, self%t, self%y)
+  end subroutine step_back
+
+  !> Counts of all integrators of the motion together.
+  function statistics(self) result(all)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    type(integration_statistics_type) :: all
+
+    all = self%before
+    call add_statistics(self%integrator%statistics(), .true., all)
+    call add_statistics(self%aside%statistics(), .false., all)
+  end function statistics
+
+  !> Add the counts of an integrator.
+  pure subroutine add_statistics(own, goes_on, all)
+    type(integration_statistics_type), intent(in) :: own      !< of the integrator
+    logical, intent(in) :: goes_on                            !< its steps are those of the motion
+    type(integration_statistics_type), intent(inout) :: all   !< the sums
+
+    all%rate_evaluations = all%rate_evaluations + own%rate_evaluations
+    all%jacobian_evaluations = all%jacobian_evaluations + own%jacobian_evaluations
+    all%error_test_failures = all%error_test_failures + own%error_test_failures
+    all%convergence_failures = all%convergence_failures + own%convergence_failures
+    all%refusals = all%refusals + own%refusals
+    if (.not. goes_on) return
+    all%steps = all%steps + own%steps
+    all%last_order = own%last_order
+    all%last_step = own%last_step
+  end subroutine add_statistics
+
+  !> Work for the blocks of all systems of the motion, the present one included.
+  pure function work_done(self) result(all)
+    class(integrated_motion_type), intent(in) :: self   !< the motion
+    type(work_count_type) :: all
+
+    all = self%work_before
+    if (associated(self%system)) all = work_of(self%system%work%blocks, all)
+  end function work_done
+
+  !> Iterations of Newton's method, of all systems of the motion.
+  pure integer(long) function iterations(self)
+    class(integrated_motion_type), intent(in) :: self   !< the motion
+
+    iterations = 0
+    if (associated(self%system)) iterations = self%system%iterations
+  end function iterations
+
+  !> Keep the counts of the integrators and give back what they hold.
+  subroutine stop_integrators(self)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+
+    self%before = self%statistics()
+    call self%integrator%destroy()
+    call self%aside%close()
+  end subroutine stop_integrators
+
+  !> Give back what the integrators and the system hold.
+  subroutine close_motion(self)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+
+    call stop_integrators(self)
+    if (associated(self%system)) deallocate (self%system)
+    self%system => null()
+  end subroutine close_motion
+end module mech9_integrated_motion

@@ -1,0 +1,219 @@
+!> A motion in time, driven or free, behind one interface: it starts, advances from time to time, and shows its present position.
+module mech9_simulation
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_requested, only: requested_type
+  use mech9_closure_guard, only: check_closure
+  implicit none
+  private
+  public :: simulation_type, interruption_type, simulation_statistics_type, coordinate_change_type
+
+  !> Answers whether a motion shall stop. It is asked before each time and before each step of an integrator.
+  type, abstract :: interruption_type
+  contains
+    procedure(wanted_interface), deferred :: is_wanted
+  end type interruption_type
+
+  !> The work that a motion took since its start. Driven motions have no evaluations, free ones no halvings and crossings.
+  type :: simulation_statistics_type
+    integer(long) :: positions = 0           !< that were worked out, the start included
+    integer(long) :: steps = 0               !< of the integrator, or of branch stepping
+    integer(long) :: evaluations = 0         !< of the accelerations by an integrator
+    integer(long) :: newton_iterations = 0   !< of all blocks
+    integer(long) :: halvings = 0            !< steps of branch stepping that were too long
+    integer(long) :: crossings = 0           !< singular positions that were crossed
+  end type simulation_statistics_type
+
+  !> An event: a change of the independent coordinates.
+  type :: coordinate_change_type
+    real(wp) :: t = 0.0_wp                   !< time of the change [s]
+    integer, allocatable :: independent(:)   !< the independent coordinates from then on, ascending
+  end type coordinate_change_type
+
+  !> A motion. Times are given in order, from the mechanism's start in the direction of its end. It must not be copied.
+  type, abstract :: simulation_type
+    type(requested_type) :: requested              !< what is worked out of the motion
+    logical :: with_energies = .false.             !< the energies are worked out at each time
+    logical :: with_conditioning = .false.         !< the conditioning is worked out at each time
+    logical :: started = .false.                   !< the position at the start is worked out
+    real(wp) :: t = 0.0_wp                         !< time of the present position [s]
+    real(wp) :: closure = 0.0_wp                   !< largest closure error of the present position [m]
+    real(wp) :: worst_closure = 0.0_wp             !< largest closure error of all positions [m]
+    real(wp) :: least_conditioning = 1.0_wp        !< least singular value of the present position, with_conditioning
+    real(wp) :: kinetic_energy = 0.0_wp            !< of the present position, with_energies [J]
+    real(wp) :: potential_energy = 0.0_wp          !< of gravity and springs, with_energies [J]
+    real(wp) :: energy_at_start = 0.0_wp           !< sum of both energies, with_energies [J]
+    real(wp) :: largest_energy_change = 0.0_wp     !< of this sum, against the start, with_energies [J]
+    type(coordinate_change_type), allocatable :: events(:)   !< changes of the independent coordinates so far
+    integer(long), private :: positions = 0        !< that were worked out
+    real(wp), private :: direction = 1.0_wp        !< 1, or -1 where time runs backwards
+    class(interruption_type), allocatable, private :: interruption
+  contains
+    procedure :: start
+    procedure :: advance
+    procedure :: stop_if_interrupted
+    procedure :: statistics
+    procedure :: close => close_nothing
+    procedure(position_interface), deferred :: begin
+    procedure(position_interface), deferred :: go_to
+    procedure(present_interface), deferred :: present
+    procedure(closure_interface), deferred :: present_closure
+    procedure(look_interface), deferred :: watch_conditioning
+    procedure(energies_interface), deferred :: energies
+    procedure(count_interface), deferred :: count_work
+  end type simulation_type
+
+  abstract interface
+    logical function wanted_interface(self)
+      import :: interruption_type
+      class(interruption_type), intent(in) :: self   !< the interruption
+    end function wanted_interface
+
+    !> The position at time t, with its velocities and accelerations: the first one by `begin`, the others by `go_to`.
+    subroutine position_interface(self, t, err)
+      import :: simulation_type, error_type, wp
+      class(simulation_type), intent(inout) :: self       !< the simulation
+      real(wp), intent(in) :: t                           !< time of the position [s]
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    end subroutine position_interface
+
+    !> The present mechanism, plan and state. They change with the next time, and with a change of coordinates.
+    subroutine present_interface(self, mechanism, plan, state)
+      import :: simulation_type, mechanism_type, plan_type, state_type
+      class(simulation_type), intent(in), target :: self       !< the simulation
+      type(mechanism_type), pointer, intent(out) :: mechanism  !< with the present independent coordinates
+      type(plan_type), pointer, intent(out) :: plan            !< the plan that is executed
+      type(state_type), pointer, intent(out) :: state          !< the present position, velocities and accelerations
+    end subroutine present_interface
+
+    !> Largest closure error of the present position [m].
+    real(wp) function closure_interface(self)
+      import :: simulation_type, wp
+      class(simulation_type), intent(in) :: self   !< the simulation
+    end function closure_interface
+
+    !> Take the conditioning of the present position into account, where `always` is false only if it may be the worst.
+    subroutine look_interface(self, always)
+      import :: simulation_type
+      class(simulation_type), intent(inout) :: self   !< the simulation
+      logical, intent(in) :: always                   !< work it out in any case, into `least_conditioning`
+    end subroutine look_interface
+
+    !> Energies of the present position.
+    subroutine energies_interface(self, kinetic, potential)
+      import :: simulation_type, wp
+      class(simulation_type), intent(inout) :: self   !< the simulation
+      real(wp), intent(out) :: kinetic                !< of all bodies [J]
+      real(wp), intent(out) :: potential              !< of gravity and springs [J]
+    end subroutine energies_interface
+
+    !> Add the work that was done to the statistics.
+    subroutine count_interface(self, statistics)
+      import :: simulation_type, simulation_statistics_type
+      class(simulation_type), intent(inout) :: self                 !< the simulation
+      type(simulation_statistics_type), intent(inout) :: statistics !< its positions are counted already
+    end subroutine count_interface
+  end interface
+
+contains
+
+  !> The position at the mechanism's start. With `interruption` the motion can be stopped from outside, by an error with the
+  !> code exit_interrupted.
+  subroutine start(self, err, interruption)
+    class(simulation_type), intent(inout), target :: self            !< the simulation, as it was made
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
+    type(mechanism_type), pointer :: mechanism
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    if (present(interruption)) allocate (self%interruption, source=interruption)
+    call self%present(mechanism, plan, state)
+    self%direction = sign(1.0_wp, mechanism%time%end - mechanism%time%start)
+    self%t = mechanism%time%start
+    call self%stop_if_interrupted(self%t, err)
+    if (.not. allocated(err)) call self%begin(self%t, err)
+    if (.not. allocated(err)) call arrive(self, self%t, err)
+    if (.not. allocated(err)) self%started = .true.
+  end subroutine start
+
+  !> Go on to time t. Fails with exit_singular where the motion cannot go on or its chains come open, with exit_integrator where
+  !> the integration cannot, and with exit_usage for a time before the present one.
+  subroutine advance(self, t, err)
+    class(simulation_type), intent(inout) :: self       !< the simulation, started
+    real(wp), intent(in) :: t                           !< time to go to, not before the present one [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (.not. self%started) then
+      call raise(err, exit_usage, 'a motion must be started before it can advance')
+    else if (.not. (t - self%t)*self%direction >= 0.0_wp) then
+      call raise(err, exit_usage, 'the motion stands at t = '//to_text(self%t, 10)//' s and cannot go back to t = '// &
+                 to_text(t, 10)//' s; start it anew')
+    else
+      call self%stop_if_interrupted(t, err)
+    end if
+    if (.not. allocated(err)) call self%go_to(t, err)
+    if (.not. allocated(err)) call arrive(self, t, err)
+  end subroutine advance
+
+  !> Judge and count the position that was reached.
+  subroutine arrive(self, t, err)
+    class(simulation_type), intent(inout), target :: self   !< the simulation
+    real(wp), intent(in) :: t                           !< time of the position [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_type), pointer :: mechanism
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    self%t = t
+    self%closure = self%present_closure()
+    call self%present(mechanism, plan, state)
+    call check_closure(plan, t, self%closure, err)
+    if (allocated(err)) return
+    self%positions = self%positions + 1
+    self%worst_closure = max(self%worst_closure, self%closure)
+    call self%watch_conditioning(self%with_conditioning)
+    if (self%with_energies) call follow_energies(self)
+  end subroutine arrive
+
+  !> Keep the energies of the present position, and how far their sum goes from the start.
+  subroutine follow_energies(self)
+    class(simulation_type), intent(inout) :: self   !< the simulation
+    real(wp) :: total
+
+    call self%energies(self%kinetic_energy, self%potential_energy)
+    total = self%kinetic_energy + self%potential_energy
+    if (.not. self%started) self%energy_at_start = total
+    self%largest_energy_change = max(self%largest_energy_change, abs(total - self%energy_at_start))
+  end subroutine follow_energies
+
+  !> Fail with exit_interrupted where the motion shall stop.
+  subroutine stop_if_interrupted(self, t, err)
+    class(simulation_type), intent(in) :: self          !< the simulation
+    real(wp), intent(in) :: t                           !< time that comes next [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (.not. allocated(self%interruption)) return
+    if (self%interruption%is_wanted()) call raise(err, exit_interrupted, 'interrupted before t = '//to_text(t, 10)//' s')
+  end subroutine stop_if_interrupted
+
+  !> The work done so far.
+  function statistics(self)
+    class(simulation_type), intent(inout) :: self   !< the simulation
+    type(simulation_statistics_type) :: statistics
+
+    statistics%positions = self%positions
+    call self%count_work(statistics)
+  end function statistics
+
+  !> Give back what the simulation holds beside its own components: nothing.
+  subroutine close_nothing(self)
+    class(simulation_type), intent(inout) :: self   !< the simulation
+
+    self%started = .false.
+  end subroutine close_nothing
+end module mech9_simulation
