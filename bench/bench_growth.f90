@@ -67,8 +67,8 @@ contains
 
   !> Parallelograms side by side: N + 1 uprights of 1 m, N couplers, the first upright driven.
   subroutine write_ladder(path, n)
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: n
+    character(len=*), intent(in) :: path   !< of the data file
+    integer, intent(in) :: n               !< parallelograms
     integer :: unit, i, status
 
     open (newunit=unit, file=path, action='write', status='replace', iostat=status)
@@ -92,16 +92,21 @@ contains
   end subroutine write_ladder
 
   subroutine write_pair(unit, coordinate, reference, moving, x, y)
-    integer, intent(in) :: unit, coordinate, reference, moving, x, y
+    integer, intent(in) :: unit         !< of the open data file
+    integer, intent(in) :: coordinate   !< of the pair
+    integer, intent(in) :: reference    !< number of its reference link
+    integer, intent(in) :: moving       !< number of its moving link
+    integer, intent(in) :: x            !< of the pair along the first axis in the home position [m]
+    integer, intent(in) :: y            !< the same along the second axis [m]
 
     write (unit, '(a)') '&pair coordinate='//to_text(coordinate)//', links='//to_text(reference)//','//to_text(moving)// &
       ', kind=''revolute'', point='//to_text(x)//','//to_text(y)//',0, axis=0,0,1 /'
   end subroutine write_pair
 
-  !> Links of 1 m and 1 kg in a row, turning about x and y by turns.
+  !> Links of 1 m and 1 kg in a row, with axes x and y in alternation.
   subroutine write_chain(path, n)
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: n
+    character(len=*), intent(in) :: path   !< of the data file
+    integer, intent(in) :: n               !< moving links
     integer :: unit, i, status
     character(len=5) :: axis
 
@@ -122,10 +127,10 @@ contains
 
   !> Median time of a position with velocities and accelerations [us].
   subroutine time_positions(mechanism, plan, start, time)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: start
-    real(wp), intent(out) :: time
+    type(mechanism_type), intent(in) :: mechanism   !< a ladder
+    type(plan_type), intent(in) :: plan             !< its plan
+    type(state_type), intent(in) :: start           !< assembled position at the start
+    real(wp), intent(out) :: time                   !< of a position, median of the passes [us]
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: each(passes), begin
@@ -149,10 +154,10 @@ contains
 
   !> Median time of one evaluation of the motion [us].
   subroutine time_evaluations(mechanism, plan, start, time)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: start
-    real(wp), intent(out) :: time
+    type(mechanism_type), intent(in) :: mechanism   !< a ladder or an open chain
+    type(plan_type), intent(in) :: plan             !< its plan
+    type(state_type), intent(in) :: start           !< assembled position at the start, with the independent rates
+    real(wp), intent(out) :: time                   !< of an evaluation, median of the passes [us]
     type(motion_system_type), allocatable :: system
     type(error_type), allocatable :: err
     real(wp), allocatable :: y(:), rates(:)

@@ -40,8 +40,9 @@ contains
 
   !> Median times of the closed form [us]: position, and position, velocity and acceleration.
   subroutine time_closed_form(passes, positions, times)
-    integer, intent(in) :: passes, positions
-    real(wp), intent(out) :: times(2)
+    integer, intent(in) :: passes       !< repetitions for a median
+    integer, intent(in) :: positions    !< in a turn
+    real(wp), intent(out) :: times(2)   !< of a position; of position, velocity and acceleration [us]
     real(wp) :: each(2, passes), begin, angle, point(2), velocity(2), acceleration(2), total
     integer :: pass, i
 
@@ -68,9 +69,11 @@ contains
   end subroutine time_closed_form
 
   subroutine time_mechanism(name, path, passes, positions, closed)
-    character(len=*), intent(in) :: name, path
-    integer, intent(in) :: passes, positions
-    real(wp), intent(in) :: closed(2)   !< times of the closed form [us]
+    character(len=*), intent(in) :: name   !< of the mechanism in the printed row
+    character(len=*), intent(in) :: path   !< of its data file
+    integer, intent(in) :: passes          !< repetitions for a median
+    integer, intent(in) :: positions       !< in a cycle
+    real(wp), intent(in) :: closed(2)      !< times of the closed form: of a position; with derivatives [us]
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan, lean
     type(requested_type) :: requested
@@ -97,12 +100,12 @@ contains
       median(each(2, :))/closed(2), error
   end subroutine time_mechanism
 
-  !> Positions of all coordinates and of the last point, the branch watched.
+  !> Time for the positions of all coordinates and of the last point, with all checks of the branch.
   subroutine time_positions(mechanism, plan, start, time)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: start
-    real(wp), intent(out) :: time   !< [s]
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan             !< its plan, without the parts that positions do not need
+    type(state_type), intent(in) :: start           !< assembled position at the start
+    real(wp), intent(out) :: time                   !< of all positions together [s]
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: begin, positions(3, mechanism%time%intervals)
@@ -122,14 +125,14 @@ contains
     call stop_at(err, mechanism%title)
   end subroutine time_positions
 
-  !> Positions, velocities, accelerations of all coordinates and of the last point, the branch watched.
+  !> Time for positions, velocities and accelerations of all coordinates and of the last point, with all checks of the branch.
   subroutine time_motion(mechanism, plan, start, compare, time, error)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: start
-    logical, intent(in) :: compare         !< with the closed form, after the clock has stopped
-    real(wp), intent(out) :: time          !< [s]
-    real(wp), intent(out) :: error         !< of the accelerations against the largest one; 0 where not compared
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan             !< its plan
+    type(state_type), intent(in) :: start           !< assembled position at the start
+    logical, intent(in) :: compare                  !< with the closed form, after the clock has stopped
+    real(wp), intent(out) :: time                   !< of all positions together [s]
+    real(wp), intent(out) :: error   !< largest one of the accelerations over the largest acceleration; 0 where not compared
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: begin, motions(3, 3, 0:mechanism%time%intervals), exact(2, 3), largest

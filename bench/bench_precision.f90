@@ -21,7 +21,7 @@ program bench_precision
   use mech9_bench_support, only: read_data_file, stop_at, median, argument
   implicit none
 
-  !> A motion, and where its true end stands.
+  !> A motion, and the file that holds its true end.
   type :: problem_type
     character(len=14) :: name
     character(len=56) :: data_file
@@ -38,10 +38,10 @@ program bench_precision
     problem_type('bricard', 'examples/bricard/bricard.nml', 'a04_bricard.csv', 9.0_wp, 'P3.x P3.y P3.z'), &
     problem_type('slider_crank', 'tests/reference/dynamics_spatial_slider_crank.nml', '', 1.0_wp, 'q1 q5 q7')]
 
-  !> When the runs of a method have taken so long together, its list ends: tighter tolerances would take longer
+  !> The list of a method ends when its runs have taken this time together, since tighter tolerances would take longer
   !> still [s].
   real(wp), parameter :: patience = 6.0_wp
-  !> Runs are repeated for a median until they have taken so long together [s].
+  !> Runs are repeated for a median until they have taken this time together [s].
   real(wp), parameter :: long_enough = 0.05_wp
   integer, parameter :: most_repetitions = 9
 
@@ -84,10 +84,10 @@ contains
   end subroutine run
 
   subroutine tight_run(mechanism, problem, method, values)
-    type(mechanism_type), intent(inout) :: mechanism
-    type(problem_type), intent(in) :: problem
-    character(len=*), intent(in) :: method
-    real(wp), allocatable, intent(out) :: values(:)
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism, whose method and tolerances are set
+    type(problem_type), intent(in) :: problem          !< the motion
+    character(len=*), intent(in) :: method             !< name of the method
+    real(wp), allocatable, intent(out) :: values(:)    !< columns of the problem at the end [rad, m]
     type(error_type), allocatable :: err
     type(integration_statistics_type) :: counts
     real(wp) :: time
@@ -98,9 +98,9 @@ contains
   end subroutine tight_run
 
   subroutine set_method(mechanism, method, tolerance)
-    type(mechanism_type), intent(inout) :: mechanism
-    character(len=*), intent(in) :: method
-    real(wp), intent(in) :: tolerance
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism, whose method and tolerances are set
+    character(len=*), intent(in) :: method             !< name of the method
+    real(wp), intent(in) :: tolerance                  !< relative, and absolute [rad, m, per s]
 
     mechanism%solver%method = method
     mechanism%solver%relative_tolerance = tolerance
@@ -109,11 +109,11 @@ contains
 
   !> The rows of one method.
   subroutine time_method(mechanism, problem, method, exact, quick)
-    type(mechanism_type), intent(inout) :: mechanism
-    type(problem_type), intent(in) :: problem
-    character(len=*), intent(in) :: method
-    real(wp), intent(in) :: exact(:)
-    logical, intent(in) :: quick
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism, whose method and tolerances are set
+    type(problem_type), intent(in) :: problem          !< the motion
+    character(len=*), intent(in) :: method             !< name of the method
+    real(wp), intent(in) :: exact(:)                   !< columns of the problem at the end [rad, m]
+    logical, intent(in) :: quick                       !< a few tolerances, one run each
     type(error_type), allocatable :: err
     type(integration_statistics_type) :: counts
     real(wp), allocatable :: values(:)
@@ -143,12 +143,12 @@ contains
 
   !> One run from start to end: the values there, and the time it took besides reading and planning.
   subroutine integrate(mechanism, problem, values, counts, time, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(problem_type), intent(in) :: problem
-    real(wp), allocatable, intent(out) :: values(:)
-    type(integration_statistics_type), intent(out) :: counts
-    real(wp), intent(out) :: time   !< [s]
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism              !< the mechanism, with method and tolerances
+    type(problem_type), intent(in) :: problem                  !< the motion
+    real(wp), allocatable, intent(out) :: values(:)            !< columns of the problem at the end [rad, m]
+    type(integration_statistics_type), intent(out) :: counts   !< work of the integrator
+    real(wp), intent(out) :: time                              !< besides reading and planning [s]
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(plan_type) :: plan
     type(state_type) :: start
     type(free_simulation_type), target :: simulation
@@ -174,10 +174,10 @@ contains
 
   !> The columns of these names.
   subroutine pick(names, row, wanted, values)
-    type(string_type), intent(in) :: names(:)
-    real(wp), intent(in) :: row(:)
-    character(len=*), intent(in) :: wanted            !< names separated by blanks
-    real(wp), allocatable, intent(out) :: values(:)
+    type(string_type), intent(in) :: names(:)         !< of all columns
+    real(wp), intent(in) :: row(:)                    !< values of all columns
+    character(len=*), intent(in) :: wanted            !< names of columns, separated by blanks
+    real(wp), allocatable, intent(out) :: values(:)   !< values of these columns
     integer :: at, next, i
 
     allocate (values(0))
@@ -194,9 +194,9 @@ contains
   !> The numbers after the time in the row of a time, from lines separated by commas below a line of names. Rows at rounded times
   !> are found within a millionth.
   subroutine read_reference(path, time, values)
-    character(len=*), intent(in) :: path
-    real(wp), intent(in) :: time
-    real(wp), allocatable, intent(out) :: values(:)
+    character(len=*), intent(in) :: path              !< of the file
+    real(wp), intent(in) :: time                      !< of the row [s]
+    real(wp), allocatable, intent(out) :: values(:)   !< the numbers behind the time in that row
     character(len=2000) :: line
     integer :: unit, status, i
     real(wp) :: found
