@@ -8,10 +8,10 @@ submodule (mech9_user_force) air_drag
 contains
 
   module subroutine user_force(t, state, parameters, loads)
-    real(wp), intent(in) :: t
-    type(motion_view_type), intent(in) :: state
-    real(wp), intent(in) :: parameters(:)
-    type(force_sum_type), intent(inout) :: loads
+    real(wp), intent(in) :: t                      !< time [s]
+    type(motion_view_type), intent(in) :: state    !< motion of links and coordinates: see docs/user-procedures.md
+    real(wp), intent(in) :: parameters(:)          !< five numbers for each point
+    type(force_sum_type), intent(inout) :: loads   !< forces and torques are added to it
     real(wp) :: point(3), v(3)
     integer :: i, link
 

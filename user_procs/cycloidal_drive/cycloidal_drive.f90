@@ -8,10 +8,10 @@ submodule (mech9_user_drive) cycloidal_drive
 contains
 
   module subroutine user_drive(coordinate, t, parameters, q)
-    integer, intent(in) :: coordinate
-    type(taylor), intent(in) :: t
-    real(wp), intent(in) :: parameters(:)
-    type(taylor), intent(out) :: q
+    integer, intent(in) :: coordinate       !< number of the driven coordinate, which tells drives apart
+    type(taylor), intent(in) :: t           !< time [s]
+    real(wp), intent(in) :: parameters(:)   !< rise [rad or m], duration [s]
+    type(taylor), intent(out) :: q          !< value of the coordinate [rad or m]
     type(taylor) :: share
     real(wp) :: turn
 

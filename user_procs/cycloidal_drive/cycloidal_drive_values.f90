@@ -6,10 +6,10 @@ submodule (mech9_user_drive_values) cycloidal_drive_values
 contains
 
   module subroutine user_drive_values(coordinate, t, parameters, q)
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: parameters(:)
-    real(wp), intent(out) :: q
+    integer, intent(in) :: coordinate       !< number of the driven coordinate, which tells drives apart
+    real(wp), intent(in) :: t               !< time [s]
+    real(wp), intent(in) :: parameters(:)   !< rise [rad or m], duration [s]
+    real(wp), intent(out) :: q              !< value of the coordinate [rad or m]
     real(wp) :: share, turn
 
     turn = 8.0_wp*atan(1.0_wp)

@@ -5,10 +5,10 @@ submodule (mech9_user_drive) user_drive_template
 contains
 
   module subroutine user_drive(coordinate, t, parameters, q)
-    integer, intent(in) :: coordinate         ! which coordinate is asked for, if you drive several
-    type(taylor), intent(in) :: t             ! time [s]
-    real(wp), intent(in) :: parameters(:)     ! the numbers of &user parameters = ... /
-    type(taylor), intent(out) :: q            ! the coordinate [rad or m]
+    integer, intent(in) :: coordinate       !< number of the driven coordinate, which tells drives apart
+    type(taylor), intent(in) :: t           !< time [s]
+    real(wp), intent(in) :: parameters(:)   !< the numbers of &user parameters = ... /
+    type(taylor), intent(out) :: q          !< value of the coordinate [rad or m]
 
     q = 8.0_wp*atan(1.0_wp)*t/parameters(1)
   end subroutine user_drive

@@ -6,12 +6,12 @@ submodule (mech9_user_pair) user_pair_template
 contains
 
   module subroutine user_pair(coordinate, q, parameters, r1, r2, r3)
-    integer, intent(in) :: coordinate         ! which pair is asked for, if you have several
-    type(taylor), intent(in) :: q             ! its coordinate
-    real(wp), intent(in) :: parameters(:)     ! the numbers of &user parameters = ... /
-    type(taylor), intent(out) :: r1(3)        ! origin of the moving link, in the reference link [m]
-    type(taylor), intent(out) :: r2(3)        ! a point on its x axis
-    type(taylor), intent(out) :: r3(3)        ! y is along (r2 - r1) x (r3 - r1)
+    integer, intent(in) :: coordinate       !< number of the pair's coordinate, which tells pairs apart
+    type(taylor), intent(in) :: q           !< value of the coordinate [rad or m]
+    real(wp), intent(in) :: parameters(:)   !< the numbers of &user parameters = ... /
+    type(taylor), intent(out) :: r1(3)      !< origin of the moving link, in the reference link [m]
+    type(taylor), intent(out) :: r2(3)      !< a point on its x axis [m]
+    type(taylor), intent(out) :: r3(3)      !< a third point: y is along (r2 - r1) x (r3 - r1) [m]
 
     r1 = [q, constant(0.0_wp), constant(0.0_wp)]
     r2 = r1 + [1.0_wp, 0.0_wp, 0.0_wp]

@@ -9,10 +9,12 @@ submodule (mech9_user_pair) trammel
 contains
 
   module subroutine user_pair(coordinate, q, parameters, r1, r2, r3)
-    integer, intent(in) :: coordinate
-    type(taylor), intent(in) :: q
-    real(wp), intent(in) :: parameters(:)
-    type(taylor), intent(out) :: r1(3), r2(3), r3(3)
+    integer, intent(in) :: coordinate       !< number of the pair's coordinate, which tells pairs apart
+    type(taylor), intent(in) :: q           !< angle of AB [rad]
+    real(wp), intent(in) :: parameters(:)   !< length of AB [m]
+    type(taylor), intent(out) :: r1(3)      !< origin of the moving link, in the reference link [m]
+    type(taylor), intent(out) :: r2(3)      !< a point on its x axis [m]
+    type(taylor), intent(out) :: r3(3)      !< a third point: y is along (r2 - r1) x (r3 - r1) [m]
     type(taylor) :: nought
 
     nought = constant(0.0_wp)
