@@ -14,7 +14,8 @@ module mech9_body_reader
   private
   public :: read_bodies, read_gravity
 
-  !> Parts of a tensor, and angles of its axes, that count as none: data are often rounded to three digits.
+  !> Relative size below which a part of a tensor, or an angle of its axes [rad], counts as zero: data are often rounded to
+  !> three digits.
   real(wp), parameter :: slack = 1.0e-3_wp
 
 contains
@@ -24,7 +25,7 @@ contains
     type(document_type), intent(in) :: document   !< the data file as groups and items
     type(structure_type), intent(in) :: structure            !< without links where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)             !< (M); those in whose groups is an error are missing
-    type(body_type), allocatable, intent(out) :: bodies(:)
+    type(body_type), allocatable, intent(out) :: bodies(:)   !< one for each sound group, in their order
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(turning_search_type) :: search
     integer, allocatable :: numbers(:)
@@ -53,11 +54,11 @@ contains
     end do
   end subroutine read_bodies
 
-  !> A tensor must be that of a body. A link that can turn about one direction only needs no more than the moment
-  !> about that; the rest of its tensor may be zero.
+  !> Report a tensor that no body has. For a link that can turn about one direction only, the moment about that direction
+  !> is enough; the rest of its tensor may be zero.
   pure subroutine check_inertia(group, body, judged, search, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    type(body_type), intent(in) :: body
+    type(body_type), intent(in) :: body   !< the body that the group describes
     logical, intent(in) :: judged                            !< whether it is known how the link can turn
     type(turning_search_type), intent(inout) :: search       !< of use where that is known
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
@@ -85,7 +86,7 @@ contains
   pure subroutine only_direction(inertia, direction, has_one)
     real(wp), intent(in) :: inertia(3, 3)                    !< [kg m^2]
     real(wp), intent(out) :: direction(3)                    !< of length 1
-    logical, intent(out) :: has_one
+    logical, intent(out) :: has_one   !< whether the tensor is of this form
     real(wp) :: moment
     integer :: i, k
 
@@ -131,7 +132,7 @@ contains
   end subroutine judge_tensor
 
   pure function moment_name(i) result(name)
-    integer, intent(in) :: i
+    integer, intent(in) :: i   !< number of the axis: 1, 2 or 3
     character(len=2) :: name
     character(len=2), parameter :: names(3) = ['xx', 'yy', 'zz']
 
@@ -140,14 +141,15 @@ contains
 
   !> Determinant of two rows and columns.
   pure real(wp) function minor(a, i, j)
-    real(wp), intent(in) :: a(3, 3)
-    integer, intent(in) :: i, j
+    real(wp), intent(in) :: a(3, 3)   !< symmetric matrix
+    integer, intent(in) :: i   !< number of the first row and column
+    integer, intent(in) :: j   !< number of the second row and column
 
     minor = a(i, i)*a(j, j) - a(i, j)*a(j, i)
   end function minor
 
   pure real(wp) function determinant(a)
-    real(wp), intent(in) :: a(3, 3)
+    real(wp), intent(in) :: a(3, 3)   !< symmetric matrix
 
     determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
                   + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))

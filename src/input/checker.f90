@@ -1,6 +1,6 @@
-!> A document held against the grammar: groups, names, values, what is missing, what is there twice.
+!> Check of a document against the grammar: groups, names, values, missing names and repeated ones.
 !>
-!> What passes can be read by mech9_lookup without further questions.
+!> A document that passes can be read by mech9_lookup without further checks.
 module mech9_checker
   use mech9_text, only: to_text, lower, nearest_name
   use mech9_source, only: span_type
@@ -55,7 +55,7 @@ contains
     call diagnostics%add(group%span, 'unknown group '//diagnostics%text_of(group%span)//hint)
   end subroutine report_unknown_group
 
-  !> A value that was reported when it was read.
+  !> Whether the group holds a value that was reported when it was read.
   pure logical function has_bad_value(group)
     type(group_type), intent(in) :: group   !< the group of the data file
     integer :: i
@@ -110,12 +110,12 @@ contains
 
   pure logical function is_matrix(group, item)
     type(group_type), intent(in) :: group   !< the group of the data file
-    type(item_type), intent(in) :: item
+    type(item_type), intent(in) :: item   !< the item that may be the coincidence matrix
 
     is_matrix = group%name == 'structure' .and. item%name == 'c'
   end function is_matrix
 
-  !> The kind a group says it is; empty where it has none, or a wrong one.
+  !> The kind that a group gives; empty where it gives none, or an unknown one.
   pure function kind_of(group) result(kind)
     type(group_type), intent(in) :: group   !< the group of the data file
     character(len=kind_length) :: kind
@@ -134,7 +134,7 @@ contains
 
   pure subroutine check_items(group, kind, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: kind
+    character(len=*), intent(in) :: kind   !< the kind of the group; empty where it has none
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: rows(:)
     integer :: i, row
@@ -157,7 +157,7 @@ contains
 
   pure subroutine report_unknown_name(group, item, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    type(item_type), intent(in) :: item
+    type(item_type), intent(in) :: item   !< the item whose name is unknown
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: hint
     integer :: i
@@ -175,10 +175,10 @@ contains
     call diagnostics%add(item%span, 'unknown name '''//diagnostics%text_of(item%span)//''' in &'//trim(group%name)//hint)
   end subroutine report_unknown_name
 
-  !> Report the names that must be given and are not.
+  !> Report each missing name that must be given.
   pure subroutine check_missing(group, kind, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: kind
+    character(len=*), intent(in) :: kind   !< the kind of the group; empty where it has none
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: rows(:)
     integer :: i
@@ -194,7 +194,7 @@ contains
 
   pure logical function is_given(group, name)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item that is sought
     integer :: i
 
     is_given = .true.
@@ -204,10 +204,10 @@ contains
     is_given = .false.
   end function is_given
 
-  !> Report groups that may stand once and stand twice, or whose key stands twice.
+  !> Report groups that stand twice though they may stand only once, and groups whose key stands twice.
   pure subroutine check_repeated(document, row, diagnostics)
     type(document_type), intent(inout) :: document   !< the data file as groups and items
-    integer, intent(in) :: row
+    integer, intent(in) :: row   !< row of the groups in group_table
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: members(:), keys(:)
     integer :: i, j
@@ -238,7 +238,8 @@ contains
   pure integer function key_number(group, number, members, row, document)
     type(group_type), intent(in) :: group   !< the group of the data file
     integer, intent(in) :: number                 !< of the group among its fellows
-    integer, intent(in) :: members(:), row
+    integer, intent(in) :: members(:)   !< numbers of all groups of this kind in the document
+    integer, intent(in) :: row   !< row of these groups in group_table
     type(document_type), intent(in) :: document   !< the data file as groups and items
     type(value_type) :: value, other
     integer :: j
@@ -260,7 +261,7 @@ contains
 
   pure function key_value(group, key) result(value)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: key
+    character(len=*), intent(in) :: key   !< the name whose value is returned
     type(value_type) :: value
     integer :: i
 
@@ -270,8 +271,9 @@ contains
   end function key_value
 
   pure subroutine report_repeated(group, first, key, diagnostics)
-    type(group_type), intent(in) :: group, first
-    character(len=*), intent(in) :: key
+    type(group_type), intent(in) :: group   !< the group that stands there again
+    type(group_type), intent(in) :: first   !< the group that stands there first
+    character(len=*), intent(in) :: key   !< the name that tells the groups apart; empty where the group may stand only once
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: text
     type(value_type) :: value

@@ -1,4 +1,4 @@
-!> The table of names told to people: as plain text for the terminal and as Markdown for the documentation.
+!> The grammar as text for users: plain for the terminal, and Markdown for the documentation.
 module mech9_data_help
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text, nearest_name
@@ -15,7 +15,7 @@ contains
 
   !> Help on a group with all of its names, or on one name of it; a short list of the groups where none is meant.
   subroutine write_data_help(unit, subject, err)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     character(len=*), intent(in) :: subject         !< GROUP or GROUP.NAME, with or without &; empty: all groups
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: group, name
@@ -51,9 +51,11 @@ contains
     end do
   end subroutine write_data_help
 
-  !> What was probably meant; where nothing is near, what else helps.
+  !> A question for the known word nearest to a misspelled one; the other advice where none is near.
   pure function hint(word, known, otherwise) result(text)
-    character(len=*), intent(in) :: word, known(:), otherwise
+    character(len=*), intent(in) :: word   !< the unknown word of the user
+    character(len=*), intent(in) :: known(:)   !< the words that exist
+    character(len=*), intent(in) :: otherwise   !< the advice where no known word is near
     character(len=:), allocatable :: text
 
     text = nearest_name(word, known)
@@ -65,7 +67,7 @@ contains
   end function hint
 
   subroutine list_groups(unit)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     integer :: i
 
     write (unit, '(a)') 'The groups of a data file, in any order; --help-data GROUP tells of one, GROUP.NAME of a name in it:'
@@ -75,8 +77,8 @@ contains
   end subroutine list_groups
 
   subroutine describe_item(unit, row)
-    integer, intent(in) :: unit
-    type(item_row_type), intent(in) :: row
+    integer, intent(in) :: unit   !< Fortran unit to write to
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
 
     write (unit, '(a)')
     write (unit, '(2a)') indent(:2), trim(row%name)//' = '//trim(row%example)
@@ -86,7 +88,7 @@ contains
 
   !> The groups one after the other, each with a Markdown table of its names.
   subroutine write_data_tables(unit)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     integer, allocatable :: rows(:)
     integer :: i, j
 
@@ -103,24 +105,24 @@ contains
   end subroutine write_data_tables
 
   subroutine write_table_row(unit, row)
-    integer, intent(in) :: unit
-    type(item_row_type), intent(in) :: row
+    integer, intent(in) :: unit   !< Fortran unit to write to
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
 
     write (unit, '(*(a))') '| `', trim(row%name), '` | ', values_text(row), ' | ', unit_text(row), ' | ', &
       default_text(row), ' | ', meaning_text(row), ' | `', trim(row%example), '` |'
   end subroutine write_table_row
 
   pure function capital(text) result(raised)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< a text that is not empty
     character(len=len(text)) :: raised
 
     raised = text
     if (text(1:1) >= 'a' .and. text(1:1) <= 'z') raised(1:1) = achar(iachar(text(1:1)) - 32)
   end function capital
 
-  !> How often a group may stand, and who uses it.
+  !> How often a group may stand, and which program uses it.
   pure function use_text(row) result(text)
-    type(group_row_type), intent(in) :: row
+    type(group_row_type), intent(in) :: row   !< the group, as a row of group_table
     character(len=:), allocatable :: text
 
     text = 'stands at most once'
@@ -129,9 +131,9 @@ contains
     if (row%program /= 'both') text = text//'; used by '//trim(row%program)
   end function use_text
 
-  !> What a name takes: "2 whole numbers, >=1", "a text: fixed or link".
+  !> The values that a name takes: "2 whole numbers, >=1", "a text: fixed or link".
   pure function values_text(row) result(text)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     select case (row%type)
@@ -155,7 +157,7 @@ contains
 
   !> "a b c" as "a, b or c".
   pure function word_list(words) result(text)
-    character(len=*), intent(in) :: words
+    character(len=*), intent(in) :: words   !< the words, with one blank between two of them
     character(len=:), allocatable :: text
     integer :: i, last
 
@@ -172,9 +174,9 @@ contains
     end do
   end function word_list
 
-  !> The unit in words: `q` stands for that of the coordinate meant.
+  !> The unit in words; the grammar writes `q` for the unit of a coordinate.
   pure function unit_text(row) result(text)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     select case (row%unit)
@@ -191,9 +193,9 @@ contains
     end select
   end function unit_text
 
-  !> What a name takes, in which unit, and what holds without it.
+  !> The values that a name takes, their unit, and the default.
   pure function takes_text(row) result(text)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     text = values_text(row)
@@ -205,9 +207,9 @@ contains
     end if
   end function takes_text
 
-  !> What happens where the name is not given.
+  !> The value that holds where the name is not given.
   pure function default_text(row) result(text)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     if (row%needed) then
@@ -221,9 +223,9 @@ contains
     end if
   end function default_text
 
-  !> What it means, and for which kinds of the group it is.
+  !> The meaning of a name, after the kinds of the group that it belongs to.
   pure function meaning_text(row) result(text)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     text = trim(row%help)

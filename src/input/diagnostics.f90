@@ -1,4 +1,4 @@
-!> What is wrong with an input: every error with its place, sorted, shown with its line of the file.
+!> The errors of an input: each with its place, sorted, and shown with its line of the file.
 module mech9_diagnostics
   use mech9_error, only: error_type, place_type, exit_done, exit_data, exit_structure, exit_file
   use mech9_text, only: to_text
@@ -46,11 +46,11 @@ module mech9_diagnostics
 
 contains
 
-  !> Note an error. Without a span (source 0) it stands without a place.
+  !> Add an error. A span with source 0 means that it has no place.
   pure subroutine add(self, span, message, code)
     class(diagnostics_type), intent(inout) :: self   !< the diagnostics
-    type(span_type), intent(in) :: span
-    character(len=*), intent(in) :: message
+    type(span_type), intent(in) :: span   !< place of the error in its source; source 0: none
+    character(len=*), intent(in) :: message   !< the error in words
     integer, intent(in), optional :: code     !< exit_data unless given
 
     self%count = self%count + 1
@@ -65,7 +65,7 @@ contains
     end associate
   end subroutine add
 
-  !> Note a failure that came from elsewhere; its place is one in the data file.
+  !> Add a failure of another floor; its place is one in the data file.
   pure subroutine add_error(self, err)
     class(diagnostics_type), intent(inout) :: self   !< the diagnostics
     type(error_type), intent(in) :: err   !< the failure
@@ -81,7 +81,7 @@ contains
 
   !> Length of the word at the beginning of a text, for the carets under it; at least 1.
   pure integer function word_length(text) result(length)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the text from the first byte of the word to the end of the file
 
     length = scan(text(min(2, len(text)):), ' ,/=()'//achar(9)//achar(10)//achar(13))
     if (length == 0) length = len(text)
@@ -89,7 +89,7 @@ contains
   end function word_length
 
   pure subroutine grow(kept)
-    type(diagnostic_type), allocatable, intent(inout) :: kept(:)
+    type(diagnostic_type), allocatable, intent(inout) :: kept(:)   !< the errors; their number of places is doubled
     type(diagnostic_type), allocatable :: grown(:)
 
     allocate (grown(2*size(kept)))
@@ -97,10 +97,10 @@ contains
     call move_alloc(grown, kept)
   end subroutine grow
 
-  !> Make a text known that spans will point into.
+  !> Add a text that spans will point into.
   pure subroutine add_source(self, source, number)
     class(diagnostics_type), intent(inout) :: self   !< the diagnostics
-    type(source_type), intent(in) :: source
+    type(source_type), intent(in) :: source   !< the text that spans will point into
     integer, intent(out) :: number            !< for `source` of the spans
     type(source_type), allocatable :: grown(:)
 
@@ -118,7 +118,7 @@ contains
     failed = self%count > 0
   end function failed
 
-  !> The exit code that says it all: an unreadable file before wrong data before a wrong structure.
+  !> The exit code of the gravest error: an unreadable file before wrong data before a wrong structure.
   pure integer function code(self)
     class(diagnostics_type), intent(in) :: self   !< the diagnostics
     integer, parameter :: order(3) = [exit_file, exit_data, exit_structure]
@@ -136,14 +136,14 @@ contains
   !> Line and column of a span; line 0 for spans outside the data file.
   pure type(place_type) function place(self, span)
     class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    type(span_type), intent(in) :: span
+    type(span_type), intent(in) :: span   !< bytes of a source
 
     if (span%source == 1) place = self%sources(1)%place(span%first)
   end function place
 
   pure integer function cut_length(text, longest) result(length)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: longest
+    character(len=*), intent(in) :: text   !< the text that is shown
+    integer, intent(in) :: longest   !< most bytes that are shown
 
     length = len(text)
     if (length > longest) length = character_start(text, longest, 1) - 1 + len('...')
@@ -151,7 +151,7 @@ contains
 
   pure integer function length_of(self, span) result(length)
     type(diagnostics_type), intent(in) :: self   !< the diagnostics
-    type(span_type), intent(in) :: span
+    type(span_type), intent(in) :: span   !< the bytes that are quoted
 
     length = 0
     if (span%source == 0) return
@@ -161,14 +161,14 @@ contains
   !> A span as it is written, for messages: short and printable.
   pure function text_of(self, span) result(text)
     class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    type(span_type), intent(in) :: span
+    type(span_type), intent(in) :: span   !< the bytes that are quoted
     character(len=length_of(self, span)) :: text
 
     if (span%source == 0) return
     text = printable(self%sources(span%source)%text(span%first:span%last), longest_quote)
   end function text_of
 
-  !> How many errors can be asked for.
+  !> The number of errors that `get` and `render` can return.
   pure integer function known(self)
     class(diagnostics_type), intent(in) :: self   !< the diagnostics
 
@@ -179,7 +179,7 @@ contains
   pure subroutine get(self, i, message, span)
     class(diagnostics_type), intent(in) :: self   !< the diagnostics
     integer, intent(in) :: i                  !< 1 to known()
-    character(len=:), allocatable, intent(out) :: message
+    character(len=:), allocatable, intent(out) :: message   !< the error in words
     type(span_type), intent(out) :: span      !< source 0: no place
 
     message = self%kept(i)%message
@@ -189,8 +189,8 @@ contains
   !> Error number i in the order of the places, as it is shown: message, line, carets.
   pure subroutine render(self, i, text)
     class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    integer, intent(in) :: i
-    character(len=:), allocatable, intent(out) :: text
+    integer, intent(in) :: i   !< position of the error in the order of places, from 1
+    character(len=:), allocatable, intent(out) :: text   !< the lines to show, without a line end after the last
     type(diagnostic_type) :: this
     type(place_type) :: position
     integer, allocatable :: order(:)
@@ -216,7 +216,7 @@ contains
   !> Print the errors in the order of their places, at most twenty of them.
   subroutine report(self, unit)
     class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     character(len=:), allocatable :: text
     integer :: i
 
@@ -248,7 +248,8 @@ contains
   end function sorted
 
   pure logical function before(a, b)
-    type(span_type), intent(in) :: a, b
+    type(span_type), intent(in) :: a   !< the place that may come first
+    type(span_type), intent(in) :: b   !< the place that it is compared with
 
     if (a%source == b%source) then
       before = a%first < b%first
@@ -259,9 +260,9 @@ contains
 
   !> Append the line of a span with carets under the span; of a long line, a window around it.
   pure subroutine append_excerpt(source, span, text)
-    type(source_type), intent(in) :: source
-    type(span_type), intent(in) :: span
-    character(len=:), allocatable, intent(inout) :: text
+    type(source_type), intent(in) :: source   !< the text that the span points into
+    type(span_type), intent(in) :: span   !< the place that gets carets
+    character(len=:), allocatable, intent(inout) :: text   !< the message, to which two lines are appended
     character(len=:), allocatable :: line, carets
     type(place_type) :: position
     integer :: first, last, from, to, i
@@ -292,8 +293,9 @@ contains
 
   !> The first byte of the character that byte `at` belongs to.
   pure integer function character_start(text, at, least) result(start)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: at, least
+    character(len=*), intent(in) :: text   !< a text in UTF-8
+    integer, intent(in) :: at   !< number of a byte; it may be one beyond the end
+    integer, intent(in) :: least   !< lowest result allowed
 
     start = at
     if (at > len(text)) return
@@ -304,7 +306,7 @@ contains
   end function character_start
 
   pure integer function count_characters(text) result(n)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< a text in UTF-8
     integer :: i
 
     n = 0
@@ -315,7 +317,7 @@ contains
 
   !> A text that may come from anywhere, safe to print: control bytes become question marks (tabs stay).
   pure function printable_text(text) result(shown)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< any bytes
     character(len=len(text)) :: shown
     integer :: i
 
@@ -327,8 +329,8 @@ contains
 
   !> The same, cut where it is longer than `longest` bytes.
   pure function printable_beginning(text, longest) result(shown)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: longest
+    character(len=*), intent(in) :: text   !< any bytes
+    integer, intent(in) :: longest   !< most bytes of the result
     character(len=cut_length(text, longest)) :: shown
 
     shown = printable_text(text)

@@ -1,6 +1,6 @@
 !> A data file as it is written: groups of items with values, each with its place.
 !>
-!> Nothing here knows which groups and names there are; mech9_checker holds them against the grammar.
+!> This module does not know the names of groups and items; mech9_checker checks them against the grammar.
 module mech9_document
   use mech9_kinds, only: wp, long
   use mech9_source, only: source_type, span_type
@@ -10,7 +10,7 @@ module mech9_document
   public :: value_null, value_integer, value_real, value_logical, value_text, value_word, value_bad
   public :: add_group, add_item, add_value, trim_document
 
-  !> What a value looks like. A word is neither a number nor in quotes; a bad one was reported already.
+  !> Kinds of values by their form. A word is neither a number nor in quotes; a bad value was reported already.
   integer, parameter :: value_null = 0, value_integer = 1, value_real = 2, value_logical = 3
   integer, parameter :: value_text = 4, value_word = 5, value_bad = 6
 
@@ -59,8 +59,8 @@ contains
 
   !> Append; `count` of the array's elements are in use, and the array grows by doubling.
   pure subroutine add_group(groups, count, group)
-    type(group_type), allocatable, intent(inout) :: groups(:)
-    integer, intent(inout) :: count
+    type(group_type), allocatable, intent(inout) :: groups(:)   !< the groups; the first `count` are in use
+    integer, intent(inout) :: count   !< how many elements are in use
     type(group_type), intent(inout) :: group       !< its items are moved, not copied
     type(group_type), allocatable :: grown(:)
     integer :: i
@@ -78,7 +78,8 @@ contains
   end subroutine add_group
 
   pure subroutine move_group(from, to)
-    type(group_type), intent(inout) :: from, to
+    type(group_type), intent(inout) :: from   !< the group that is emptied
+    type(group_type), intent(inout) :: to   !< the group that gets its content
 
     call move_alloc(from%name, to%name)
     call move_alloc(from%items, to%items)
@@ -89,8 +90,8 @@ contains
 
   !> Append an item; see add_group.
   pure subroutine add_item(items, count, item)
-    type(item_type), allocatable, intent(inout) :: items(:)
-    integer, intent(inout) :: count
+    type(item_type), allocatable, intent(inout) :: items(:)   !< the items; the first `count` are in use
+    integer, intent(inout) :: count   !< how many elements are in use
     type(item_type), intent(inout) :: item         !< its values are moved, not copied
     type(item_type), allocatable :: grown(:)
     integer :: i
@@ -108,7 +109,8 @@ contains
   end subroutine add_item
 
   pure subroutine move_item(from, to)
-    type(item_type), intent(inout) :: from, to
+    type(item_type), intent(inout) :: from   !< the item that is emptied
+    type(item_type), intent(inout) :: to   !< the item that gets its content
 
     call move_alloc(from%name, to%name)
     call move_alloc(from%subscripts, to%subscripts)
@@ -119,9 +121,9 @@ contains
 
   !> Append a value; see add_group.
   pure subroutine add_value(values, count, value)
-    type(value_type), allocatable, intent(inout) :: values(:)
-    integer, intent(inout) :: count
-    type(value_type), intent(in) :: value
+    type(value_type), allocatable, intent(inout) :: values(:)   !< the values; the first `count` are in use
+    integer, intent(inout) :: count   !< how many elements are in use
+    type(value_type), intent(in) :: value   !< the value to append
     type(value_type), allocatable :: grown(:)
 
     if (.not. allocated(values)) allocate (values(4))
@@ -136,8 +138,8 @@ contains
 
   !> Cut the arrays of a finished document to what is in use.
   pure subroutine trim_document(groups, count)
-    type(group_type), allocatable, intent(inout) :: groups(:)
-    integer, intent(in) :: count
+    type(group_type), allocatable, intent(inout) :: groups(:)   !< the groups, cut to their first `count`
+    integer, intent(in) :: count   !< how many elements are in use
     type(group_type), allocatable :: cut(:)
     integer :: i
 

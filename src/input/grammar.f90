@@ -240,7 +240,7 @@ contains
 
   !> Row of a group in group_table; 0 where there is no such group.
   pure integer function find_group_row(name) result(row)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of a group, in any case
 
     do row = size(group_table), 1, -1
       if (group_table(row)%name == lower(name)) return
@@ -249,7 +249,7 @@ contains
 
   !> Rows of a group's names in item_table.
   pure function rows_of_group(group) result(rows)
-    character(len=*), intent(in) :: group
+    character(len=*), intent(in) :: group   !< name of a group, in any case
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -265,7 +265,7 @@ contains
 
   !> The names that a group has; one that several kinds share stands more than once.
   pure function names_in_group(group) result(names)
-    character(len=*), intent(in) :: group
+    character(len=*), intent(in) :: group   !< name of a group, in any case
     character(len=len(item_table%name)), allocatable :: names(:)
 
     names = pack(item_table%name, item_table%group == lower(group))
@@ -273,7 +273,8 @@ contains
 
   !> Rows of one name of a group: none where it is unknown, several where its kinds differ.
   pure function find_item_rows(group, name) result(rows)
-    character(len=*), intent(in) :: group, name
+    character(len=*), intent(in) :: group   !< name of a group, in any case
+    character(len=*), intent(in) :: name   !< name of an item, in any case
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -282,7 +283,9 @@ contains
 
   !> Row of a name of a group of this kind; 0 where the name does not belong to the kind.
   pure integer function item_row_for_kind(group, name, kind) result(row)
-    character(len=*), intent(in) :: group, name, kind
+    character(len=*), intent(in) :: group   !< name of a group, in any case
+    character(len=*), intent(in) :: name   !< name of an item, in any case
+    character(len=*), intent(in) :: kind   !< kind of the group; empty: unknown
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -295,8 +298,8 @@ contains
 
   !> Whether a name belongs to groups of this kind; where no kind is known, to groups of any kind.
   pure logical function takes_kind(row, kind)
-    type(item_row_type), intent(in) :: row
-    character(len=*), intent(in) :: kind
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    character(len=*), intent(in) :: kind   !< kind of the group; empty: unknown
 
     takes_kind = row%kinds == ''
     if (kind /= '' .and. .not. takes_kind) takes_kind = index(' '//row%kinds//' ', ' '//trim(kind)//' ') > 0
@@ -304,7 +307,7 @@ contains
 
   !> The words of a list with blanks between.
   pure function words_of(list) result(words)
-    character(len=*), intent(in) :: list
+    character(len=*), intent(in) :: list   !< words with blanks between them
     character(len=len(list)), allocatable :: words(:)
     integer :: first, last
 

@@ -1,4 +1,4 @@
-!> One plain list of values from all that a group says under one name: repeats written out, subscripts put in their places.
+!> One plain list of all values that a group gives under one name: repeats are written out, and subscripts determine positions.
 module mech9_item_merge
   use mech9_text, only: to_text
   use mech9_source, only: span_type
@@ -8,17 +8,17 @@ module mech9_item_merge
   private
   public :: merge_items, expand_repeats
 
-  !> More values than this under one name is no data of a mechanism.
+  !> Most values allowed under one name; no mechanism has more.
   integer, parameter :: most_values = 10000000
 
 contains
 
-  !> Merge the items of a name, in the order they are written. What does not fit together is reported;
-  !> the merged item then holds what was understood.
+  !> Merge the items of a name, in the order in which they are written. Contradictions are reported;
+  !> the merged item then holds the values that were understood.
   pure subroutine merge_items(items, name, merged, diagnostics)
     type(item_type), intent(in) :: items(:)          !< of a group; at least one has the name
-    character(len=*), intent(in) :: name
-    type(item_type), intent(out) :: merged
+    character(len=*), intent(in) :: name   !< name of the items that are merged
+    type(item_type), intent(out) :: merged   !< one item with all values of the name and no subscripts
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(value_type), allocatable :: values(:)
     logical, allocatable :: filled(:)
@@ -47,10 +47,10 @@ contains
       call diagnostics%add(merged%span, ''''//name//'('//to_text(findloc(filled, .false., dim=1))//')'' is missing')
   end subroutine merge_items
 
-  !> No other item has the name of this one.
+  !> Whether no other item has the name of this one.
   pure logical function is_alone(items, number)
-    type(item_type), intent(in) :: items(:)
-    integer, intent(in) :: number
+    type(item_type), intent(in) :: items(:)   !< all items of a group
+    integer, intent(in) :: number   !< position of the item in the list
     integer :: i
 
     is_alone = .false.
@@ -60,12 +60,12 @@ contains
     is_alone = .true.
   end function is_alone
 
-  !> The position of an item's first value; 0, with a report, where its subscripts do not serve.
+  !> The position of an item's first value; 0, with a report, where its subscripts are wrong.
   pure subroutine check_subscripts(item, before, number, first, diagnostics)
-    type(item_type), intent(in) :: item
+    type(item_type), intent(in) :: item   !< the item whose subscripts are read
     type(span_type), intent(in) :: before            !< of the name where it stands before this
     integer, intent(in) :: number                    !< of the item among those of its name
-    integer, intent(out) :: first
+    integer, intent(out) :: first   !< position of the item's first value; 0 where the subscripts are wrong
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
 
     first = 0
@@ -86,7 +86,7 @@ contains
   end subroutine check_subscripts
 
   pure function line_of(span, diagnostics) result(text)
-    type(span_type), intent(in) :: span
+    type(span_type), intent(in) :: span   !< place of the earlier item
     type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
     character(len=60) :: text
 
@@ -135,8 +135,8 @@ contains
 
   !> Make room for more values.
   pure subroutine lengthen(values, filled, count, length)
-    type(value_type), allocatable, intent(inout) :: values(:)
-    logical, allocatable, intent(inout) :: filled(:)
+    type(value_type), allocatable, intent(inout) :: values(:)   !< the values; the first `count` are in use
+    logical, allocatable, intent(inout) :: filled(:)   !< whether each position has its value
     integer, intent(in) :: count      !< elements that are in use
     integer, intent(in) :: length     !< of the arrays afterwards
     type(value_type), allocatable :: more(:)
@@ -152,8 +152,8 @@ contains
 
   !> Write out r*value. Too long a list is reported and left empty.
   pure subroutine expand_repeats(item, values, diagnostics)
-    type(item_type), intent(in) :: item
-    type(value_type), allocatable, intent(out) :: values(:)
+    type(item_type), intent(in) :: item   !< the item as it is written
+    type(value_type), allocatable, intent(out) :: values(:)   !< its values, each repeated one written out
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i, n, times
 

@@ -18,14 +18,14 @@ module mech9_load_reader
 
 contains
 
-  !> All loads, in the order of the file. Links and coordinates that they name must be there.
+  !> All loads, in the order of the file. A link or coordinate that does not exist is reported.
   subroutine read_loads(document, n_links, pairs, angle_unit, parameters, loads, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
     integer, intent(in) :: n_links                           !< 0 where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)             !< size 0 where they are not known
     real(wp), intent(in) :: angle_unit                       !< rad
     real(wp), intent(in) :: parameters(:)                    !< for a user's procedure
-    type(load_slot_type), allocatable, intent(out) :: loads(:)
+    type(load_slot_type), allocatable, intent(out) :: loads(:)   !< one for each sound group, in their order
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i
@@ -81,8 +81,8 @@ contains
   !> Only the position of rest is an angle in the unit of the file; stiffness and damping are per rad.
   pure function coordinate_load(group, pairs, angle_unit) result(load)
     type(group_type), intent(in) :: group   !< the group of the data file
-    type(pair_slot_type), intent(in) :: pairs(:)
-    real(wp), intent(in) :: angle_unit
+    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate; a slot is empty where its group has an error
+    real(wp), intent(in) :: angle_unit   !< unit of angles in the file [rad]
     type(coordinate_load_type) :: load
 
     load%coordinate = get_integer(group, 'coordinate')
@@ -97,7 +97,7 @@ contains
 
   pure subroutine check_coordinate(group, n_coordinates, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    integer, intent(in) :: n_coordinates
+    integer, intent(in) :: n_coordinates   !< how many coordinates there are; 0: unknown
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
 
     if (n_coordinates > 0 .and. get_integer(group, 'coordinate') > n_coordinates) &
@@ -107,7 +107,7 @@ contains
 
   pure subroutine check_spring(group, n_links, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    integer, intent(in) :: n_links
+    integer, intent(in) :: n_links   !< how many links there are; 0: unknown
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: links(2)
 

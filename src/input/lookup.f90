@@ -1,4 +1,4 @@
-!> What a checked document says: values by group and name, with the defaults of the grammar.
+!> The values of a checked document by group and name, with the defaults of the grammar.
 !>
 !> Only for sound groups: mechanisms are read after mech9_checker has passed them.
 module mech9_lookup
@@ -15,10 +15,10 @@ module mech9_lookup
 
 contains
 
-  !> Numbers of the sound groups of a name, in the order of the file.
+  !> Positions in the document of the sound groups of a name, in the order of the file.
   pure function groups_named(document, name) result(numbers)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the groups, in lower case
     integer, allocatable :: numbers(:)
     integer :: i, n, pass
 
@@ -33,10 +33,10 @@ contains
     end do
   end function groups_named
 
-  !> The first sound group of a name, or one that leaves everything to the defaults.
+  !> The first sound group of a name, or an empty one, which has the defaults.
   pure function group_or_empty(document, name) result(group)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the group, in lower case
     type(group_type) :: group
     integer, allocatable :: numbers(:)
 
@@ -52,7 +52,7 @@ contains
   !> Whether the file has a group of this name, sound or not.
   pure logical function has_group(document, name)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the groups, in lower case
     integer :: i
 
     has_group = .true.
@@ -62,10 +62,10 @@ contains
     has_group = .false.
   end function has_group
 
-  !> Whether something was wrong with a group of this name, so that what it means is unknown.
+  !> Whether an error was found in a group of this name, so that its meaning is unknown.
   pure logical function has_unsound(document, name)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the groups, in lower case
     integer :: i
 
     has_unsound = .true.
@@ -78,7 +78,7 @@ contains
   !> Number of an item in its group; 0 where the name is not given.
   pure integer function find_item(group, name) result(number)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
 
     do number = size(group%items), 1, -1
       if (group%items(number)%name == name) return
@@ -88,16 +88,16 @@ contains
   !> Whether the group gives this name.
   pure logical function has_name(group, name)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
 
     has_name = find_item(group, name) > 0
   end function has_name
 
-  !> Place of a value; of the name where no value is asked for; of the group where it is not given.
+  !> Place of a value; that of the name if no value is meant; that of the group if the name is not given.
   pure type(span_type) function span_of(group, name, value_number) result(span)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
-    integer, intent(in), optional :: value_number
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
+    integer, intent(in), optional :: value_number   !< position of the value in its list; absent: the name is meant
     integer :: i
 
     span = group%span
@@ -112,7 +112,7 @@ contains
   !> The numbers given under a name, or those of its default.
   pure function get_reals(group, name) result(numbers)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
     real(wp), allocatable :: numbers(:)
     integer :: i
 
@@ -124,10 +124,10 @@ contains
     end if
   end function get_reals
 
-  !> The first of them; for names that take one number.
+  !> The number given under a name that takes one, or its default.
   pure real(wp) function get_real(group, name)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
     real(wp), allocatable :: numbers(:)
 
     numbers = get_reals(group, name)
@@ -137,16 +137,16 @@ contains
   !> Whole numbers given under a name, or those of its default.
   pure function get_integers(group, name) result(numbers)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
     integer, allocatable :: numbers(:)
 
     numbers = nint(get_reals(group, name))
   end function get_integers
 
-  !> The first of them.
+  !> The whole number given under a name that takes one, or its default.
   pure integer function get_integer(group, name)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
 
     get_integer = nint(get_real(group, name))
   end function get_integer
@@ -154,7 +154,7 @@ contains
   !> Whether a switch is on.
   pure logical function get_logical(group, name)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
     integer :: i
 
     i = find_item(group, name)
@@ -168,7 +168,7 @@ contains
   !> Length of a text that is given, or of its default, which stands in quotes.
   pure integer function text_length(group, name) result(length)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
     integer :: i, row
 
     i = find_item(group, name)
@@ -186,7 +186,7 @@ contains
   !> A text without blanks at its end; words of a list in lower case.
   pure function get_text(group, name) result(text)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
     character(len=text_length(group, name)) :: text
     integer :: i, row
 
@@ -203,7 +203,7 @@ contains
   !> The numbers of the grammar's default; none where the default is a rule in parentheses.
   pure function default_numbers(group, name) result(numbers)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
     real(wp), allocatable :: numbers(:)
     type(numeral_type) :: numeral
     character(len=:), allocatable :: rest
@@ -223,7 +223,7 @@ contains
   !> Row of a name, for the kind of its group where it has one.
   pure integer function row_of(group, name) result(row)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
     character(len=:), allocatable :: kind
     integer :: i
 

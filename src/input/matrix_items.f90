@@ -14,7 +14,7 @@ module mech9_matrix_items
     type(span_type), allocatable :: spans(:, :)    !< where each element is written; source 0: nowhere
   end type matrix_type
 
-  !> Beyond this, links of pairs describe a structure in far less text.
+  !> Most links of a matrix; for more, the links of the pairs describe a structure in far less text.
   integer, parameter :: most_links = 3000
 
 contains
@@ -24,8 +24,8 @@ contains
   pure subroutine read_matrix(group, n_links, matrix, ok, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
     integer, intent(in) :: n_links                 !< as given elsewhere; 0: taken from the matrix
-    type(matrix_type), intent(out) :: matrix
-    logical, intent(out) :: ok
+    type(matrix_type), intent(out) :: matrix   !< the coincidence matrix with the places of its elements
+    logical, intent(out) :: ok   !< whether no error was reported
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical :: in_rows
     integer :: i, n, found
@@ -59,7 +59,7 @@ contains
     end do
   end function first_span
 
-  !> The number of links that rows, columns and elements speak of.
+  !> The number of links that the subscripts of rows, columns and elements imply.
   pure integer function size_of_items(group) result(n)
     type(group_type), intent(in) :: group   !< the group of the data file
     integer :: i, k
@@ -81,8 +81,8 @@ contains
 
   !> Put the values of one item at their places.
   pure subroutine place_item(item, matrix, diagnostics)
-    type(item_type), intent(in) :: item
-    type(matrix_type), intent(inout) :: matrix
+    type(item_type), intent(in) :: item   !< a row, column or element of the matrix
+    type(matrix_type), intent(inout) :: matrix   !< the coincidence matrix with the places of its elements
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: rows(2), columns(2), i, j, n, expected
 
@@ -122,8 +122,8 @@ contains
 
   !> First and last index that a subscript means.
   pure function bounds(subscript, n)
-    type(subscript_type), intent(in) :: subscript
-    integer, intent(in) :: n
+    type(subscript_type), intent(in) :: subscript   !< one subscript of an item
+    integer, intent(in) :: n   !< number of links, which a section without an end runs to
     integer :: bounds(2)
 
     bounds = max(subscript%first, 1)
@@ -134,7 +134,7 @@ contains
 
   !> "row 2 of c", "column 3 of c", or the item as it is called.
   pure function label(item) result(text)
-    type(item_type), intent(in) :: item
+    type(item_type), intent(in) :: item   !< a row, column or element of the matrix
     character(len=32) :: text
 
     text = 'c'
@@ -150,7 +150,7 @@ contains
 
   pure subroutine check_complete(group, matrix, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    type(matrix_type), intent(in) :: matrix
+    type(matrix_type), intent(in) :: matrix   !< the coincidence matrix with the places of its elements
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i, j
 

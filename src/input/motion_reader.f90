@@ -1,4 +1,4 @@
-!> What is known at the start, and which points are recorded: the groups &initial and &point of a checked document.
+!> Initial coordinates and recorded points: the groups &initial and &point of a checked document.
 module mech9_motion_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -28,9 +28,9 @@ contains
   pure subroutine read_initial(document, structure, pairs, angle_unit, initial, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
     type(structure_type), intent(in) :: structure            !< without coordinates where it is not known
-    type(pair_slot_type), intent(in) :: pairs(:)
+    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate; a slot is empty where its group has an error
     real(wp), intent(in) :: angle_unit                       !< radians in one unit of angle of the file
-    type(initial_type), intent(out) :: initial
+    type(initial_type), intent(out) :: initial   !< positions and velocities at the start; zero where not given
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
     real(wp) :: unit
@@ -65,7 +65,7 @@ contains
   pure subroutine read_points(document, n_links, points, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
     integer, intent(in) :: n_links                           !< 0 where it is not known
-    type(point_type), allocatable, intent(out) :: points(:)
+    type(point_type), allocatable, intent(out) :: points(:)   !< one for each sound group, in their order
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i
@@ -87,7 +87,7 @@ contains
   !> Names of points become names of columns, such as P.x.
   pure subroutine check_name(group, name, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the point
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
 
     if (len(name) > 0 .and. len(name) <= longest_name .and. verify(name, name_letters) == 0) return
@@ -98,7 +98,7 @@ contains
   !> Report the number of a link that is not there.
   pure subroutine check_link(group, name, position, n_links, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the item that holds the number of the link
     integer, intent(in) :: position                          !< of the number in the list
     integer, intent(in) :: n_links                           !< 0 where it is not known
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong

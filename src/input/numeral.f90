@@ -19,7 +19,7 @@ contains
   !> Read an integer or a real: 12, -3., .5, 1e-3, 1.0d0.
   pure subroutine read_numeral(text, numeral)
     character(len=*), intent(in) :: text         !< without blanks around it
-    type(numeral_type), intent(out) :: numeral
+    type(numeral_type), intent(out) :: numeral   !< the value, or the reason why there is none
     character(len=:), allocatable :: plain       ! of any length: the stack may be too small for it
     integer :: point_free, mantissa_end, exponent, magnitude
 
@@ -55,9 +55,9 @@ contains
     if (numeral%is_integer .and. magnitude >= 18) numeral%whole = merge(-1, 1, text(1:1) == '-')*huge(1_long)
   end subroutine read_numeral
 
-  !> NaN and the infinities in their usual spellings, with or without a sign.
+  !> Whether a text is NaN or an infinity in a usual spelling, with or without a sign.
   pure logical function is_not_finite(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< a value as it is written, without quotes
     character(len=3) :: head
     integer :: i, first
 
@@ -75,7 +75,7 @@ contains
 
   !> [sign] digits with at most one point among them.
   pure logical function is_mantissa(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the numeral up to its exponent letter
     integer :: first, point
 
     is_mantissa = .false.
@@ -87,7 +87,7 @@ contains
   end function is_mantissa
 
   pure logical function is_exponent(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the numeral after its exponent letter
     integer :: first
 
     is_exponent = .false.
@@ -98,7 +98,7 @@ contains
 
   !> An exponent beyond any number is cut to one that is beyond too.
   pure integer function exponent_value(text) result(exponent)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the numeral after its exponent letter, already checked
     integer :: i
 
     exponent = 0
@@ -110,8 +110,8 @@ contains
 
   !> Power of ten of the first digit that is not zero; -huge where there is none.
   pure subroutine first_digit_weight(mantissa, weight)
-    character(len=*), intent(in) :: mantissa
-    integer, intent(out) :: weight
+    character(len=*), intent(in) :: mantissa   !< the numeral up to its exponent letter, already checked
+    integer, intent(out) :: weight   !< power of ten of the first digit that is not zero
     integer :: point, lead
 
     weight = -huge(1)
@@ -123,9 +123,9 @@ contains
     if (weight > 0) weight = weight - 1
   end subroutine first_digit_weight
 
-  !> Tell overflow beforehand: the library's own conversion would raise a floating-point trap.
+  !> Whether a numeral overflows, told before the conversion: that of the Fortran library would raise a floating-point trap.
   pure logical function exceeds_range(mantissa, magnitude)
-    character(len=*), intent(in) :: mantissa
+    character(len=*), intent(in) :: mantissa   !< the numeral up to its exponent letter, already checked
     integer, intent(in) :: magnitude       !< power of ten of the first digit
     character(len=17), parameter :: largest = '17976931348623157'
     character(len=17) :: lead

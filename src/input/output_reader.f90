@@ -1,4 +1,4 @@
-!> What a run writes: &output, with everything checked.
+!> Settings of the group &output, checked.
 module mech9_output_reader
   use mech9_text, only: to_text
   use mech9_settings, only: output_settings_type
@@ -11,11 +11,11 @@ module mech9_output_reader
 
 contains
 
-  !> What is to be recorded and where; defaults where it is not said.
+  !> Read which quantities are recorded and in which files; names not given have their defaults.
   pure subroutine read_output(document, n_coordinates, output, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
     integer, intent(in) :: n_coordinates           !< 0 where the structure is not known
-    type(output_settings_type), intent(out) :: output
+    type(output_settings_type), intent(out) :: output   !< the settings, with defaults for those not given
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(group_type) :: group
 
@@ -41,8 +41,8 @@ contains
   !> Each coordinate that is recorded exists, and is named once.
   pure subroutine check_coordinates(group, n_coordinates, coordinates, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    integer, intent(in) :: n_coordinates
-    integer, intent(in) :: coordinates(:)
+    integer, intent(in) :: n_coordinates   !< how many coordinates there are
+    integer, intent(in) :: coordinates(:)   !< numbers of the recorded coordinates
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i
 

@@ -24,7 +24,7 @@ contains
     integer, intent(in) :: n_coordinates               !< 0 where it is not known
     real(wp), intent(in) :: angle_unit                 !< radians in one unit of angle of the file
     real(wp), intent(in) :: parameters(:)              !< for the user's procedures
-    type(pair_slot_type), allocatable, intent(out) :: pairs(:)
+    type(pair_slot_type), allocatable, intent(out) :: pairs(:)   !< (M) pairs by coordinate; empty where its group is missing or wrong
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(pair_slot_type) :: slot
     integer, allocatable :: numbers(:)
@@ -44,8 +44,9 @@ contains
   !> One pair; the slot stays empty where something was reported.
   subroutine read_pair(group, angle_unit, parameters, slot, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    real(wp), intent(in) :: angle_unit, parameters(:)
-    type(pair_slot_type), intent(out) :: slot
+    real(wp), intent(in) :: angle_unit   !< unit of angles in the file [rad]
+    real(wp), intent(in) :: parameters(:)   !< numbers of the group &user, for the user's procedures
+    type(pair_slot_type), intent(out) :: slot   !< gets the pair; stays empty where an error was reported
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(screw_pair_type) :: screw
     type(procedure_pair_type) :: procedure_pair
@@ -79,8 +80,8 @@ contains
   !> A pair in Denavit-Hartenberg form.
   pure subroutine read_dh(group, angle_unit, pair, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    real(wp), intent(in) :: angle_unit
-    type(screw_pair_type), intent(out) :: pair
+    real(wp), intent(in) :: angle_unit   !< unit of angles in the file [rad]
+    type(screw_pair_type), intent(out) :: pair   !< the pair of screw motion
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     character(len=12), parameter :: others(6) = [character(len=12) :: 'point', 'axis', 'zero', 'moving_point', &
                                                  'moving_axis', 'moving_zero']
@@ -108,7 +109,7 @@ contains
   !> A pair between a frame in its reference link and one in its moving link.
   pure subroutine read_frames(group, pair, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    type(screw_pair_type), intent(out) :: pair
+    type(screw_pair_type), intent(out) :: pair   !< the pair of screw motion
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(pose_type) :: reference, moving
     real(wp) :: axis(3), zero(3)
@@ -124,7 +125,7 @@ contains
     if (has_name(group, 'zero')) zero = get_reals(group, 'zero')
     call make_frame(group, '', real_or(group, 'point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, reference, diagnostics)
 
-    ! each is equal to its counterpart, but a new axis comes with its own zero
+    ! by default each equals its counterpart in the reference link, but a new axis has its own default of zero
     if (has_name(group, 'moving_axis')) zero = default_zero(get_reals(group, 'moving_axis'))
     axis = real_or(group, 'moving_axis', axis)
     zero = real_or(group, 'moving_zero', zero)
@@ -141,23 +142,25 @@ contains
     end select
   end subroutine read_frames
 
-  !> Three numbers that are given, or others in their place.
+  !> The three numbers of a name, or a default.
   pure function real_or(group, name, otherwise) result(vector)
     type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name
-    real(wp), intent(in) :: otherwise(3)
+    character(len=*), intent(in) :: name   !< name of the item
+    real(wp), intent(in) :: otherwise(3)   !< the numbers where the item is not given
     real(wp) :: vector(3)
 
     vector = otherwise
     if (has_name(group, name)) vector = get_reals(group, name)
   end function real_or
 
-  !> The frame of an axis, with a report where its vectors do not serve.
+  !> The frame of an axis; vectors that are zero or parallel are reported.
   pure subroutine make_frame(group, prefix, point, axis, zero, frame, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
     character(len=*), intent(in) :: prefix            !< of the names: '' or 'moving_'
-    real(wp), intent(in) :: point(3), axis(3), zero(3)
-    type(pose_type), intent(out) :: frame
+    real(wp), intent(in) :: point(3)   !< origin of the frame, in the link [m]
+    real(wp), intent(in) :: axis(3)   !< direction of its z axis, in the link; of any length
+    real(wp), intent(in) :: zero(3)   !< direction near its x axis, in the link; of any length
+    type(pose_type), intent(out) :: frame   !< pose of the frame in the link
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical :: ok
 

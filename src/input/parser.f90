@@ -13,9 +13,9 @@ module mech9_parser
 
 contains
 
-  !> Read a data file. What is wrong with it stands in the diagnostics.
+  !> Read a data file. The diagnostics get its errors.
   subroutine read_document(path, document, diagnostics)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< path of the data file
     type(document_type), intent(out) :: document   !< the data file as groups and items
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_type) :: source
@@ -27,7 +27,7 @@ contains
 
   !> The groups of a text. The first source made known to the diagnostics must be the data file.
   pure subroutine parse_document(source, document, diagnostics, failure)
-    type(source_type), intent(in) :: source
+    type(source_type), intent(in) :: source   !< the text of the data file
     type(document_type), intent(out) :: document   !< the data file as groups and items
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable, intent(in), optional :: failure   !< of reading the source
@@ -58,11 +58,11 @@ contains
       call diagnostics%add(span_type(), 'there is no group in this file, only blanks and comments')
   end subroutine parse_document
 
-  !> Go on to the & of the next group. Text outside the groups is an error, told once for each stretch.
+  !> Go on to the & of the next group. Text outside the groups is an error, reported once for each piece of such text.
   pure subroutine find_group(text, at, source, diagnostics)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: at
-    integer, intent(in) :: source
+    character(len=*), intent(in) :: text   !< the whole text of the source
+    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source   !< number of the source, for spans
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: first, line_end
     logical :: told
@@ -90,8 +90,8 @@ contains
 
   !> "1/2" is no quotient in a data file: the slash ends the group.
   pure function slash_advice(text, at) result(advice)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: at
+    character(len=*), intent(in) :: text   !< the whole text of the source
+    integer, intent(in) :: at   !< number of the byte after the slash
     character(len=96) :: advice
 
     advice = ''
@@ -102,9 +102,9 @@ contains
 
   !> A group from its & to its slash.
   pure subroutine parse_group(text, at, source, group, diagnostics)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: at
-    integer, intent(in) :: source
+    character(len=*), intent(in) :: text   !< the whole text of the source
+    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source   !< number of the source, for spans
     type(group_type), intent(out) :: group   !< the group of the data file
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: first, count
@@ -132,14 +132,14 @@ contains
     group%items = group%items(:count)
   end subroutine parse_group
 
-  !> Whether the group ends here, as it should (/ or &end) or for want of a slash.
+  !> Whether the group ends here, either properly (/ or &end) or because its slash is missing.
   pure subroutine end_of_group(text, at, source, group, diagnostics, ended)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: at
-    integer, intent(in) :: source
+    character(len=*), intent(in) :: text   !< the whole text of the source
+    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source   !< number of the source, for spans
     type(group_type), intent(in) :: group   !< the group of the data file
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
-    logical, intent(out) :: ended
+    logical, intent(out) :: ended   !< whether the group ends here
     integer :: first
 
     ended = .true.
@@ -161,11 +161,11 @@ contains
     end if
   end subroutine end_of_group
 
-  !> Report what stands where a name should, and go on after it.
+  !> Report text that stands in the place of a name, and go on after it.
   pure subroutine refuse_nameless(text, at, source, diagnostics)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: at
-    integer, intent(in) :: source
+    character(len=*), intent(in) :: text   !< the whole text of the source
+    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source   !< number of the source, for spans
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(span_type) :: span
     type(value_type) :: value
@@ -196,10 +196,10 @@ contains
 
   !> name = values, or name(subscripts) = values.
   pure subroutine parse_item(text, at, source, item, diagnostics)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the whole text of the source
     integer, intent(inout) :: at                     !< on a name (see next_is_name)
-    integer, intent(in) :: source
-    type(item_type), intent(out) :: item
+    integer, intent(in) :: source   !< number of the source, for spans
+    type(item_type), intent(out) :: item   !< the name with its subscripts and values
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: first
     logical :: ok
@@ -227,10 +227,10 @@ contains
 
   !> Values up to the next name or the end of the group. An empty place between commas is a null value.
   pure subroutine parse_values(text, at, source, values, diagnostics)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: at
-    integer, intent(in) :: source
-    type(value_type), allocatable, intent(out) :: values(:)
+    character(len=*), intent(in) :: text   !< the whole text of the source
+    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source   !< number of the source, for spans
+    type(value_type), allocatable, intent(out) :: values(:)   !< the values, repeats not yet written out
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(value_type) :: value
     logical :: after_comma

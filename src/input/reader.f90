@@ -20,7 +20,7 @@ module mech9_reader
   private
   public :: read_structure_only, read_mechanism
 
-  !> Closed chains that stay open by more are not closed [rad, parts of the mechanism's size].
+  !> Largest data_tolerance [rad, parts of the mechanism's size]; a chain that stays open by more is not closed.
   real(wp), parameter :: largest_data_tolerance = 1.0e-3_wp
 
 contains
@@ -29,8 +29,8 @@ contains
   !> against the grammar. Of use only where the diagnostics are without errors afterwards.
   pure subroutine read_structure_only(document, structure, vectors, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(structure_type), intent(out) :: structure
-    type(structural_vectors_type), intent(out) :: vectors
+    type(structure_type), intent(out) :: structure   !< links and coordinates; of use only without errors
+    type(structural_vectors_type), intent(out) :: vectors   !< structural vectors; of use only without errors
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(document_type) :: checked
     logical :: known
@@ -60,17 +60,17 @@ contains
     call read_parts(checked, needs_drives, mechanism, diagnostics)
   end subroutine read_mechanism
 
-  !> A structure that is not known has no links and no coordinates.
+  !> Set a structure to the form that means unknown: no links and no coordinates.
   pure subroutine forget(structure)
-    type(structure_type), intent(out) :: structure
+    type(structure_type), intent(out) :: structure   !< gets no links and no coordinates
 
     allocate (structure%links(2, 0), structure%independent(0))
   end subroutine forget
 
-  !> Everything whose numbers refer to the structure.
+  !> Read the groups whose numbers refer to the structure.
   subroutine read_parts(document, needs_drives, mechanism, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    logical, intent(in) :: needs_drives
+    logical, intent(in) :: needs_drives   !< whether independent coordinates must have drives (mech9k)
     type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(initial_type) :: initial
@@ -93,7 +93,7 @@ contains
     end associate
   end subroutine read_parts
 
-  !> A structure may be known without pairs, but a mechanism is more than that.
+  !> Report a mechanism without pairs: its structure may be known, but its geometry is not.
   pure subroutine check_pairs_given(document, mechanism, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
@@ -106,7 +106,7 @@ contains
                          '(--structure shows the structure alone)')
   end subroutine check_pairs_given
 
-  !> What does not refer to the structure: title, units, time, how to compute.
+  !> Read the settings that do not refer to the structure: title, units, time, tolerances and methods.
   pure subroutine read_settings(document, mechanism, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
     type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
@@ -132,7 +132,7 @@ contains
 
   pure subroutine read_time(group, time, diagnostics)
     type(group_type), intent(in) :: group   !< the group of the data file
-    type(time_grid_type), intent(out) :: time
+    type(time_grid_type), intent(out) :: time   !< the times of the results [s]
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
 
     time%start = get_real(group, 'start')

@@ -35,8 +35,8 @@ contains
   !> Read a whole file, or a pipe. Fails with exit_file where it cannot be read, and with exit_data
   !> where it is empty or no text.
   subroutine read_source(path, source, err)
-    character(len=*), intent(in) :: path
-    type(source_type), intent(out) :: source
+    character(len=*), intent(in) :: path   !< path of the file or pipe
+    type(source_type), intent(out) :: source   !< its text with the places of the lines
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: text
 
@@ -54,7 +54,8 @@ contains
 
   !> A source whose text is at hand.
   pure function source_from_text(name, text, is_file) result(source)
-    character(len=*), intent(in) :: name, text
+    character(len=*), intent(in) :: name   !< path of the file, or '--set'
+    character(len=*), intent(in) :: text   !< the whole text
     logical, intent(in), optional :: is_file   !< true unless given
     type(source_type) :: source
 
@@ -65,9 +66,9 @@ contains
     call find_lines(source)
   end function source_from_text
 
-  !> Say so where the bytes are not a text that could be a data file.
+  !> Fail where the bytes are not a text that could be a data file.
   pure subroutine refuse_no_text(text, err)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the whole text
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: at
 
@@ -103,8 +104,8 @@ contains
   end subroutine find_lines
 
   pure logical function ends_line(text, i)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: i
+    character(len=*), intent(in) :: text   !< the whole text
+    integer, intent(in) :: i   !< number of a byte
 
     ends_line = text(i:i) == line_feed
     if (text(i:i) == carriage_return) then
@@ -116,7 +117,7 @@ contains
   !> Line of a byte, and its column counted in characters (a UTF-8 character counts once).
   pure type(place_type) function place(self, byte)
     class(source_type), intent(in) :: self   !< the source
-    integer, intent(in) :: byte
+    integer, intent(in) :: byte   !< number of a byte; it may be one beyond the end
     integer :: low, high, middle, i
 
     low = 1
@@ -144,8 +145,9 @@ contains
   !> First and last byte of a line, without its end; first > last where it is empty.
   pure subroutine line_bounds(self, line, first, last)
     class(source_type), intent(in) :: self   !< the source
-    integer, intent(in) :: line
-    integer, intent(out) :: first, last
+    integer, intent(in) :: line   !< number of the line, from 1
+    integer, intent(out) :: first   !< number of its first byte
+    integer, intent(out) :: last   !< number of its last byte before the line end
 
     first = self%line_start(line)
     last = len(self%text)
@@ -159,7 +161,7 @@ contains
   !> The byte of a place; 0 where the text has no such place.
   pure integer function byte_at(self, position) result(byte)
     class(source_type), intent(in) :: self   !< the source
-    type(place_type), intent(in) :: position
+    type(place_type), intent(in) :: position   !< line and column, both from 1; columns count characters
     integer :: first, last, column
 
     byte = 0
@@ -173,7 +175,7 @@ contains
   end function byte_at
 
   pure logical function all_ascii(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the whole text
     integer :: i
 
     all_ascii = .false.
@@ -183,9 +185,9 @@ contains
     all_ascii = .true.
   end function all_ascii
 
-  !> Not the first byte of a UTF-8 character.
+  !> Whether a byte is not the first of a UTF-8 character.
   pure logical function continues_character(byte)
-    character, intent(in) :: byte
+    character, intent(in) :: byte   !< one byte of a text in UTF-8
 
     continues_character = iachar(byte) >= 128 .and. iachar(byte) < 192
   end function continues_character

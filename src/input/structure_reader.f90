@@ -1,5 +1,5 @@
-!> The structure of a mechanism from a checked document: first set, second set, or the links of the pairs; what is wrong with it
-!> is shown at the very number.
+!> The structure of a mechanism from a checked document: first set, second set, or the links of the pairs. Each error is
+!> reported at the number that causes it.
 module mech9_structure_reader
   use mech9_error, only: exit_structure
   use mech9_text, only: to_text, some_of
@@ -16,7 +16,7 @@ module mech9_structure_reader
   private
   public :: read_structure
 
-  !> What the groups say, gathered.
+  !> The data on the structure, gathered from all groups.
   type :: source_data_type
     type(group_type) :: structure              !< the group &structure, empty where there is none
     integer :: n_links = 0                     !< as &mechanism says; 0: it does not
@@ -35,9 +35,9 @@ contains
   !> `known` is false where something was reported that leaves the structure unknown.
   pure subroutine read_structure(document, structure, vectors, known, diagnostics)
     type(document_type), intent(in) :: document              !< checked
-    type(structure_type), intent(out) :: structure
-    type(structural_vectors_type), intent(out) :: vectors
-    logical, intent(out) :: known
+    type(structure_type), intent(out) :: structure   !< links of each coordinate, and which are independent
+    type(structural_vectors_type), intent(out) :: vectors   !< structural vectors: links in the order of computation, and so on
+    logical, intent(out) :: known   !< whether no error leaves the structure unknown
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_data_type) :: data
     integer :: found
@@ -68,7 +68,7 @@ contains
 
   pure subroutine gather(document, data)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(out) :: data
+    type(source_data_type), intent(out) :: data   !< what the groups say, gathered
     integer, allocatable :: numbers(:)
 
     data%structure%name = 'structure'
@@ -90,8 +90,8 @@ contains
 
   pure subroutine from_matrix(document, data, structure, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(inout) :: data
-    type(structure_type), intent(inout) :: structure
+    type(source_data_type), intent(inout) :: data   !< what the groups say, gathered
+    type(structure_type), intent(inout) :: structure   !< links of each coordinate, and which are independent
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: m, n
@@ -113,9 +113,9 @@ contains
 
   pure subroutine from_pairs(document, data, structure, known, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(inout) :: data
-    type(structure_type), intent(inout) :: structure
-    logical, intent(out) :: known
+    type(source_data_type), intent(inout) :: data   !< what the groups say, gathered
+    type(structure_type), intent(inout) :: structure   !< links of each coordinate, and which are independent
+    logical, intent(out) :: known   !< whether no error leaves the structure unknown
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: n
@@ -139,9 +139,9 @@ contains
 
   pure subroutine from_vectors(document, data, structure, vectors, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(in) :: data
+    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
     type(structure_type), intent(inout) :: structure       !< of the first set, where there is one
-    type(structural_vectors_type), intent(inout) :: vectors
+    type(structural_vectors_type), intent(inout) :: vectors   !< structural vectors: links in the order of computation, and so on
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(structure_type) :: second
     type(finding_type), allocatable :: findings(:)
@@ -168,7 +168,7 @@ contains
 
   !> The independent coordinates; none where cq is not given.
   pure function cq_of(data) result(cq)
-    type(source_data_type), intent(in) :: data
+    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
     integer, allocatable :: cq(:)
 
     cq = get_integers(data%structure, 'cq')
@@ -176,8 +176,9 @@ contains
 
   !> First and second set must describe the same structure.
   pure subroutine compare_sets(data, first, second, diagnostics)
-    type(source_data_type), intent(in) :: data
-    type(structure_type), intent(in) :: first, second
+    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
+    type(structure_type), intent(in) :: first   !< the structure by the matrix c or the pairs
+    type(structure_type), intent(in) :: second   !< the structure by nrg and nws
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: i
@@ -198,16 +199,16 @@ contains
 
   !> Position of a coordinate in nws.
   pure integer function findloc_value(data, coordinate) result(position)
-    type(source_data_type), intent(in) :: data
-    integer, intent(in) :: coordinate
+    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
+    integer, intent(in) :: coordinate   !< number of the coordinate
 
     position = findloc(get_integers(data%structure, 'nws'), coordinate, dim=1)
   end function findloc_value
 
   pure subroutine compare_independent(data, cq, second, diagnostics)
-    type(source_data_type), intent(in) :: data
-    integer, intent(in) :: cq(:)
-    type(structure_type), intent(in) :: second
+    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
+    integer, intent(in) :: cq(:)   !< numbers of the independent coordinates
+    type(structure_type), intent(in) :: second   !< the structure by nrg and nws
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: k
     logical :: in_cq
@@ -228,17 +229,17 @@ contains
   end subroutine compare_independent
 
 
-  !> Where the structure comes from elsewhere, the pairs must agree with it, one for each coordinate.
+  !> Where the structure does not come from the pairs, they must agree with it, one for each coordinate.
   pure subroutine compare_with_pairs(document, data, structure, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(inout) :: data
-    type(structure_type), intent(in) :: structure
+    type(source_data_type), intent(inout) :: data   !< what the groups say, gathered
+    type(structure_type), intent(in) :: structure   !< links of each coordinate, and which are independent
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer, allocatable :: links(:, :)
     integer :: k
 
-    if (allocated(data%links)) return                   ! they are where it comes from
+    if (allocated(data%links)) return                   ! the structure was made from the pairs themselves
     if (size(data%pairs) == 0) return
     call take_pairs(document, structure%n_coordinates, data, diagnostics)
     links = data%links
@@ -252,8 +253,8 @@ contains
   !> Links of the pairs by coordinate, with a report where a coordinate has no pair or is none.
   pure subroutine take_pairs(document, n_coordinates, data, diagnostics)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    integer, intent(in) :: n_coordinates
-    type(source_data_type), intent(inout) :: data
+    integer, intent(in) :: n_coordinates   !< how many coordinates the pairs should have
+    type(source_data_type), intent(inout) :: data   !< what the groups say, gathered
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, allocatable :: missing(:)
     integer :: i, k, m
@@ -286,17 +287,17 @@ contains
   end subroutine take_pairs
 
   pure function kind_word(independent) result(word)
-    logical, intent(in) :: independent
+    logical, intent(in) :: independent   !< whether the coordinate is independent
     character(len=11) :: word
 
     word = merge('independent', 'dependent  ', independent)
   end function kind_word
 
-  !> Report findings of the structure floor where the numbers stand.
+  !> Report findings of the structure floor at the numbers that cause them.
   pure subroutine report(findings, document, data, diagnostics)
-    type(finding_type), intent(in) :: findings(:)
+    type(finding_type), intent(in) :: findings(:)   !< errors that the structure floor found
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(in) :: data
+    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer :: i
 
@@ -306,9 +307,9 @@ contains
   end subroutine report
 
   pure type(span_type) function span_of_finding(finding, document, data) result(span)
-    type(finding_type), intent(in) :: finding
+    type(finding_type), intent(in) :: finding   !< an error that the structure floor found
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(in) :: data
+    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
 
     span = data%structure%span
     associate (i => finding%index(1), j => finding%index(2))

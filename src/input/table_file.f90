@@ -21,10 +21,11 @@ contains
 
   !> Read the points of a table. What is wrong is reported with its place in that file; `ok` tells.
   subroutine read_table_file(path, asked_at, t, q, ok, diagnostics)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< path of the table
     type(span_type), intent(in) :: asked_at               !< where the data file asks for it
-    real(wp), allocatable, intent(out) :: t(:), q(:)      !< [s], [as in the file]
-    logical, intent(out) :: ok
+    real(wp), allocatable, intent(out) :: t(:)   !< times [s]
+    real(wp), allocatable, intent(out) :: q(:)   !< values of the coordinate, in the unit of the file
+    logical, intent(out) :: ok   !< whether no error was reported
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_type) :: source
     type(error_type), allocatable :: err
@@ -57,10 +58,12 @@ contains
 
   !> Take the point of a line, if there is one.
   pure subroutine read_point(source, number, line, may_be_names, t, q, n, diagnostics)
-    type(source_type), intent(in) :: source
-    integer, intent(in) :: number, line
+    type(source_type), intent(in) :: source   !< the text of the table
+    integer, intent(in) :: number   !< number of the table as a source, for spans
+    integer, intent(in) :: line   !< number of the line, from 1
     logical, intent(inout) :: may_be_names                 !< no line before it held anything
-    real(wp), intent(inout) :: t(:), q(:)
+    real(wp), intent(inout) :: t(:)   !< times [s]; the first n are in use
+    real(wp), intent(inout) :: q(:)   !< values, in the unit of the file; the first n are in use
     integer, intent(inout) :: n                            !< points so far
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(span_type) :: fields(2)
@@ -102,7 +105,7 @@ contains
 
   !> Whether a line holds names of columns: none of its words begins as a number does, or means one that is not finite.
   pure logical function are_names(line)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line   !< a line of the table
     character(len=:), allocatable :: rest
     integer :: at
 
@@ -123,10 +126,12 @@ contains
 
   !> The words of a line up to its comment; of more than two only the number is told.
   pure subroutine split(text, first, last, source, fields, count)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: first, last, source
-    type(span_type), intent(out) :: fields(2)
-    integer, intent(out) :: count
+    character(len=*), intent(in) :: text   !< the whole text of the table
+    integer, intent(in) :: first   !< number of the line's first byte
+    integer, intent(in) :: last   !< number of the line's last byte
+    integer, intent(in) :: source   !< number of the table as a source, for spans
+    type(span_type), intent(out) :: fields(2)   !< places of the first two words
+    integer, intent(out) :: count   !< how many words the line has
     integer :: at, start
 
     count = 0
