@@ -19,11 +19,11 @@ module mech9_columns
     type(string_type), allocatable :: units(:)
     type(string_type), allocatable :: long_names(:)   !< a few words; the name where none were given
     integer :: count = 0
-    integer, allocatable :: coordinates(:)  !< that are recorded, ascending
+    integer, allocatable :: coordinates(:) !< numbers of the recorded ones, ascending
     real(wp), allocatable :: factors(:)     !< (coordinates) from the program's units to those of the results
-    integer :: derivatives = 2              !< that are recorded
+    integer :: derivatives = 2       !< highest derivative that is recorded
     integer :: motion = 0                   !< columns of the time, the coordinates and the points: the first ones
-    type(poses_type) :: poses               !< columns behind the others, where they are asked for
+    type(poses_type) :: poses        !< columns after the others, if they were requested
   contains
     procedure :: append
     procedure :: width
@@ -70,11 +70,12 @@ contains
     end do
   end function kinematic_columns
 
-  !> One more column at the end.
+  !> Append a column.
   pure subroutine append(self, name, unit, long_name)
     class(columns_type), intent(inout) :: self   !< the columns
-    character(len=*), intent(in) :: name, unit
-    character(len=*), intent(in), optional :: long_name
+    character(len=*), intent(in) :: name   !< heading of the column
+    character(len=*), intent(in) :: unit   !< unit of its numbers
+    character(len=*), intent(in), optional :: long_name   !< a few words that describe it; absent: the heading
 
     if (self%count == size(self%names)) then
       call grow(self%names)
@@ -88,9 +89,9 @@ contains
     if (present(long_name)) self%long_names(self%count)%text = long_name
   end subroutine append
 
-  !> Room for a few more.
+  !> Make room for a few more texts.
   pure subroutine grow(texts)
-    type(string_type), allocatable, intent(inout) :: texts(:)
+    type(string_type), allocatable, intent(inout) :: texts(:)   !< texts, with eight more places afterwards
     type(string_type), allocatable :: grown(:)
 
     allocate (grown(size(texts) + 8))
@@ -98,30 +99,30 @@ contains
     call move_alloc(grown, texts)
   end subroutine grow
 
-  !> Numbers in a row, poses included.
+  !> The number of columns, poses included.
   pure integer function width(self)
     class(columns_type), intent(in) :: self   !< the columns
 
     width = self%count + self%poses%width()
   end function width
 
-  !> The columns of the poses in a row, if there are any.
+  !> Fill the columns of the poses in a row, if there are any.
   pure subroutine fill_poses(self, plan, state, row)
     class(columns_type), intent(in) :: self   !< the columns
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(inout) :: row(:)
+    real(wp), intent(inout) :: row(:)   !< numbers of one row, one for each column
 
     if (self%poses%n_links > 0) call self%poses%fill(plan, state, row(self%count + 1:))
   end subroutine fill_poses
 
-  !> The columns of the motion in the row of a state.
+  !> Fill the columns of the motion in a row with those of a state.
   pure subroutine fill(self, mechanism, plan, state, row)
     class(columns_type), intent(in) :: self   !< the columns
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(inout) :: row(:)
+    real(wp), intent(inout) :: row(:)   !< numbers of one row, one for each column
     integer :: i, n, used
 
     n = size(self%coordinates)
@@ -148,11 +149,11 @@ contains
 
   !> The recorded coordinates out of all, in the units of the results.
   pure subroutine take(n, coordinates, factors, values, columns)
-    integer, intent(in) :: n
-    integer, intent(in) :: coordinates(n)
-    real(wp), intent(in) :: factors(n)
+    integer, intent(in) :: n   !< how many coordinates are recorded
+    integer, intent(in) :: coordinates(n)   !< their numbers
+    real(wp), intent(in) :: factors(n)   !< from the program's units to those of the results
     real(wp), intent(in) :: values(*)        !< of all coordinates
-    real(wp), intent(inout) :: columns(n)
+    real(wp), intent(inout) :: columns(n)   !< gets the recorded values, in the units of the results
     integer :: i
 
     do i = 1, n

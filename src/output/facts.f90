@@ -1,4 +1,4 @@
-!> What is to be told of a run besides its rows: named numbers and texts, told once and written to every report.
+!> Facts about a run besides its rows: named numbers and texts, collected once and written to every report.
 module mech9_facts
   use mech9_kinds, only: wp, long
   use mech9_json, only: json_type
@@ -36,9 +36,10 @@ contains
 
   subroutine add_number(self, name, value, long_name, unit)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name, long_name
-    real(wp), intent(in) :: value
-    character(len=*), intent(in) :: unit
+    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    real(wp), intent(in) :: value   !< the number, in the unit
+    character(len=*), intent(in) :: unit   !< unit of the number; empty where it has none
 
     call self%next_item(name, long_name, unit, a_number)
     self%items(self%count)%number = value
@@ -46,16 +47,18 @@ contains
 
   subroutine add_count(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name, long_name
-    integer, intent(in) :: value
+    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    integer, intent(in) :: value   !< the number
 
     call self%add_whole(name, int(value, long), long_name)
   end subroutine add_count
 
   subroutine add_whole(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name, long_name
-    integer(long), intent(in) :: value
+    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    integer(long), intent(in) :: value   !< the number
 
     call self%next_item(name, long_name, '', a_count)
     self%items(self%count)%whole = value
@@ -63,17 +66,21 @@ contains
 
   subroutine add_text(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name, value, long_name
+    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: value   !< the text
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
 
     call self%next_item(name, long_name, '', a_text)
     self%items(self%count)%text = value
   end subroutine add_text
 
-  !> Room for one more. By hand: an array constructor of them would leak (gfortran 12).
+  !> Append an item without a value. The array grows in a loop: an array constructor of such items would leak (gfortran 12).
   subroutine next_item(self, name, long_name, unit, kind)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name, long_name, unit
-    integer, intent(in) :: kind
+    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    character(len=*), intent(in) :: unit   !< unit of the number; empty where it has none
+    integer, intent(in) :: kind   !< a_number, a_count or a_text
     type(fact_type), allocatable :: grown(:)
     integer :: i
 
@@ -92,10 +99,10 @@ contains
     self%items(self%count)%kind = kind
   end subroutine next_item
 
-  !> Into the object that is being composed, each under its name.
+  !> Add the facts to the object that is being composed, each under its name.
   subroutine to_json(self, json)
     class(facts_type), intent(in) :: self   !< the facts
-    type(json_type), intent(inout) :: json
+    type(json_type), intent(inout) :: json   !< the report, inside an open object
     integer :: i
 
     do i = 1, self%count
@@ -112,12 +119,12 @@ contains
     end do
   end subroutine to_json
 
-  !> Into a group, each as a data set. Done before a run and again after it, only numbers in their places change:
-  !> whenever the run is killed, the file is whole. Texts stay as they were.
+  !> Write each fact as a data set of a group. The call before a run makes the data sets; the call after the run changes only
+  !> numbers in their places, so that the file is whole whenever the run is killed. Texts stay as they were.
   subroutine to_hdf5(self, file, group, again)
     class(facts_type), intent(in) :: self   !< the facts
-    type(hdf5_file_type), intent(inout) :: file
-    character(len=*), intent(in) :: group
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    character(len=*), intent(in) :: group   !< path of the group in the file
     logical, intent(in) :: again           !< the facts stand there already, with other values
     integer :: i
 

@@ -1,7 +1,7 @@
-!> An HDF5 file being written: data sets that stand at once, attributes, dimension scales.
+!> An HDF5 file being written: data sets written as a whole, attributes, dimension scales.
 !>
-!> The first failure is kept and everything after it does nothing, so that many calls can follow each
-!> other before someone asks for it. Names are paths; the groups on the way are made.
+!> The first failure is kept and later calls do nothing, so that a caller can make many calls before it looks
+!> at the failure. Names are paths; missing groups of a path are made.
 module mech9_hdf5_file
   use, intrinsic :: iso_c_binding, only: c_ptr, c_loc, c_null_char, c_char
   use hdf5, only: hid_t, hsize_t, h5open_f, h5dont_atexit_f, h5eset_auto_f, h5get_libversion_f, &
@@ -23,8 +23,8 @@ module mech9_hdf5_file
   private
   public :: hdf5_file_type, hdf5_version
 
-  !> Metadata stands in one piece at the beginning of the file, so that a flush hands it over in one write and
-  !> a run that is killed leaves the old state or the new one, nothing between [bytes].
+  !> Size of the block for metadata at the beginning of the file [bytes]. A flush writes the block at once, so that
+  !> a run that is killed leaves either the old state or the new one.
   integer(hsize_t), parameter :: metadata_block = 131072
 
   type :: hdf5_file_type
@@ -41,7 +41,7 @@ module mech9_hdf5_file
     procedure :: is_open
     procedure :: link_properties
     procedure :: check
-    !> A data set that stands at once: put(name, values, long_name [, unit]). What is there already gets other values.
+    !> A data set with its values: put(name, values, long_name [, unit]). One that exists already gets the new values.
     generic :: put => put_text, put_texts, put_real, put_reals, put_matrix, put_integer, put_integers, &
       put_integer_matrix, put_long
     procedure :: add_attribute
@@ -67,7 +67,7 @@ contains
   !> and an older file of that name stays.
   subroutine create_file(self, path, err)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< path of the file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer(hid_t) :: access
     integer :: status
@@ -79,7 +79,7 @@ contains
     end if
     call begin_replacement(path, self%replacement, err)
     if (allocated(err)) return
-    ! everything is closed in order; what HDF5 would do at the end of the program can only fail aloud
+    ! we close everything ourselves; failures of HDF5's own closing at the end of the program would print its messages
     call h5dont_atexit_f(status)
     call h5open_f(status)
     call h5eset_auto_f(0, status)
@@ -112,16 +112,16 @@ contains
     link_properties = self%make_groups
   end function link_properties
 
-  !> Keep the first failure: a call answered with a negative status.
+  !> Keep the first failure, which a negative status of a call tells.
   subroutine check(self, status)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    integer, intent(in) :: status
+    integer, intent(in) :: status   !< answer of a call of HDF5; negative: it failed
 
     if (status >= 0 .or. allocated(self%failure)) return
     call raise(self%failure, exit_file, "cannot write to '"//self%path//"': "//last_reason())
   end subroutine check
 
-  !> Hand everything to the system: a run that is killed from now on leaves at least this.
+  !> Write everything to the file: a run that is killed later leaves at least the present state.
   subroutine flush_file(self)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
     integer :: status
@@ -132,7 +132,7 @@ contains
     if (.not. allocated(self%failure)) call self%replacement%finish(self%failure)
   end subroutine flush_file
 
-  !> Close the file, and with it all that is open in it; one that was never handed over is removed. Does nothing to one that
+  !> Close the file and all objects open in it; a file that was never flushed is removed. Does nothing to a file that
   !> is not open.
   subroutine close_file(self)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
@@ -149,7 +149,9 @@ contains
 
   subroutine put_text(self, name, text, long_name)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, text, long_name
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: text   !< the text
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
     type(string_type) :: texts(1)
 
     texts(1)%text = text
@@ -158,17 +160,19 @@ contains
 
   subroutine put_texts(self, name, texts, long_name)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    type(string_type), intent(in) :: texts(:)
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    type(string_type), intent(in) :: texts(:)   !< the texts, in their order
 
     call put_text_values(self, name, texts, [size(texts, kind=hsize_t)], long_name)
   end subroutine put_texts
 
   subroutine put_text_values(self, name, texts, extents, long_name)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    type(string_type), intent(in) :: texts(:)
-    integer(hsize_t), intent(in) :: extents(:)
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    type(string_type), intent(in) :: texts(:)   !< the texts, in their order
+    integer(hsize_t), intent(in) :: extents(:)   !< extents of the data set, in Fortran order; empty for a single value
     character(kind=c_char), allocatable, target :: letters(:)
     type(c_ptr), allocatable, target :: starts(:)
 
@@ -178,18 +182,20 @@ contains
 
   subroutine put_real(self, name, value, long_name, unit)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    real(wp), intent(in), target :: value
-    character(len=*), intent(in), optional :: unit
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    real(wp), intent(in), target :: value   !< the number
+    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
 
     call self%put_values(name, h5t_ieee_f64le, h5t_native_double, [integer(hsize_t) ::], c_loc(value), long_name, unit)
   end subroutine put_real
 
   subroutine put_reals(self, name, values, long_name, unit)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    real(wp), intent(in), contiguous, target :: values(:)
-    character(len=*), intent(in), optional :: unit
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    real(wp), intent(in), contiguous, target :: values(:)   !< the numbers
+    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
 
     call self%put_values(name, h5t_ieee_f64le, h5t_native_double, [size(values, kind=hsize_t)], c_loc(values), &
                          long_name, unit)
@@ -197,9 +203,10 @@ contains
 
   subroutine put_matrix(self, name, values, long_name, unit)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    real(wp), intent(in), contiguous, target :: values(:, :)
-    character(len=*), intent(in), optional :: unit
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    real(wp), intent(in), contiguous, target :: values(:, :)   !< the numbers; their dimensions are those of the data set in reverse
+    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
 
     call self%put_values(name, h5t_ieee_f64le, h5t_native_double, shape(values, kind=hsize_t), c_loc(values), &
                          long_name, unit)
@@ -207,8 +214,9 @@ contains
 
   subroutine put_integer(self, name, value, long_name)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    integer, intent(in), target :: value
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    integer, intent(in), target :: value   !< the number
 
     call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(value), h5_integer_kind), [integer(hsize_t) ::], &
                          c_loc(value), long_name)
@@ -216,8 +224,9 @@ contains
 
   subroutine put_integers(self, name, values, long_name)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    integer, intent(in), contiguous, target :: values(:)
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    integer, intent(in), contiguous, target :: values(:)   !< the numbers
 
     call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind), &
                          [size(values, kind=hsize_t)], c_loc(values), long_name)
@@ -225,8 +234,9 @@ contains
 
   subroutine put_integer_matrix(self, name, values, long_name)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    integer, intent(in), contiguous, target :: values(:, :)
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    integer, intent(in), contiguous, target :: values(:, :)   !< the numbers; their dimensions are those of the data set in reverse
 
     call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind), &
                          shape(values, kind=hsize_t), c_loc(values), long_name)
@@ -234,8 +244,9 @@ contains
 
   subroutine put_long(self, name, value, long_name)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    integer(long), intent(in), target :: value
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    integer(long), intent(in), target :: value   !< the number
 
     call self%put_values(name, h5t_std_i64le, h5kind_to_type(kind(value), h5_integer_kind), [integer(hsize_t) ::], &
                          c_loc(value), long_name)
@@ -244,17 +255,19 @@ contains
   !> A data set of any type with its attributes.
   subroutine put_values(self, name, file_type, memory_type, extents, values, long_name, unit)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    integer(hid_t), intent(in) :: file_type, memory_type
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    integer(hid_t), intent(in) :: file_type   !< type of the numbers in the file
+    integer(hid_t), intent(in) :: memory_type   !< type of the numbers in memory
     integer(hsize_t), intent(in) :: extents(:)     !< empty: a single value; else the Fortran order
-    type(c_ptr), intent(in) :: values
-    character(len=*), intent(in), optional :: unit
+    type(c_ptr), intent(in) :: values   !< address of the first value
+    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
     integer(hid_t) :: space, data_set
     integer :: status
     logical :: exists
 
     if (allocated(self%failure)) return
-    ! fails where even its group is not there
+    ! this call fails if the group of the data set does not exist either
     call h5lexists_f(self%id, name, exists, status)
     if (exists .and. status >= 0) then
       call h5dopen_f(self%id, name, data_set, status)
@@ -278,20 +291,23 @@ contains
     call self%describe(name, long_name, unit)
   end subroutine put_values
 
-  !> What a data set is, and its unit.
+  !> Set the description of a data set, and its unit.
   subroutine describe(self, name, long_name, unit)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, long_name
-    character(len=*), intent(in), optional :: unit
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
 
     call self%add_attribute(name, 'long_name', long_name)
     if (present(unit)) call self%add_attribute(name, 'units', unit)
   end subroutine describe
 
-  !> An attribute, a text, of a data set or group; `/` is the file itself.
+  !> Add an attribute that is a text to a data set or group; `/` is the file itself.
   subroutine add_attribute(self, name, attribute, text)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name, attribute, text
+    character(len=*), intent(in) :: name   !< path of the data set or group
+    character(len=*), intent(in) :: attribute   !< name of the attribute
+    character(len=*), intent(in) :: text   !< value of the attribute
     character(kind=c_char), allocatable, target :: letters(:)
     type(c_ptr), allocatable, target :: starts(:)
     type(string_type) :: texts(1)
@@ -311,11 +327,11 @@ contains
     call h5aclose_f(id, status)
   end subroutine add_attribute
 
-  !> Texts as C has them: letters with zeros between, and where each begins.
+  !> Convert texts to the form of C: characters with a zero after each text, and the address of each text.
   subroutine lay_out(texts, letters, starts)
-    type(string_type), intent(in) :: texts(:)
-    character(kind=c_char), allocatable, target, intent(out) :: letters(:)
-    type(c_ptr), allocatable, target, intent(out) :: starts(:)
+    type(string_type), intent(in) :: texts(:)   !< the texts, in their order
+    character(kind=c_char), allocatable, target, intent(out) :: letters(:)   !< characters of all texts, each ended by a zero
+    type(c_ptr), allocatable, target, intent(out) :: starts(:)   !< address of the first letter of each text, in `letters`
     integer :: i, k, at
 
     allocate (letters(sum([(len(texts(i)%text) + 1, i=1, size(texts))])))
@@ -331,10 +347,10 @@ contains
     end do
   end subroutine lay_out
 
-  !> Make a data set of one dimension a dimension scale, named as it is.
+  !> Make a data set of one dimension a dimension scale of the same name.
   subroutine make_scale(self, name)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< path of the data set
     integer(hid_t) :: data_set
     integer :: status
 
@@ -350,7 +366,7 @@ contains
   !> Attach a scale to each dimension of a data set. A scale is not attached to others.
   subroutine attach_scales(self, name, scales)
     class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< path of the data set
     character(len=*), intent(in) :: scales(:)    !< paths, the slowest dimension first
     integer(hid_t) :: data_set, scale
     integer :: status, i

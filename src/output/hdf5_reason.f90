@@ -1,4 +1,4 @@
-!> Why a call of HDF5 failed, in few words.
+!> The reason why a call of HDF5 failed, in a few words.
 module mech9_hdf5_reason
   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_ptr, c_funptr, c_char, c_loc, c_funloc, c_f_pointer, c_null_char, &
                                          c_associated
@@ -19,17 +19,17 @@ module mech9_hdf5_reason
     character(kind=c_char) :: letters(longest)
   end type words_type
 
-  !> Of the stack of the present call, from the innermost failure outwards.
+  !> Number of the stack of errors of the present call, and its order from the innermost failure outwards.
   integer(c_int64_t), parameter :: present_stack = 0
   integer(c_int), parameter :: inner_first = 0
 
   interface
     integer(c_int) function c_walk(stack, direction, visitor, context) bind(c, name='H5Ewalk2')
       import :: c_int64_t, c_int, c_funptr, c_ptr
-      integer(c_int64_t), value :: stack
-      integer(c_int), value :: direction
-      type(c_funptr), value :: visitor
-      type(c_ptr), value :: context
+      integer(c_int64_t), value :: stack   !< number of the stack of errors
+      integer(c_int), value :: direction   !< inner_first
+      type(c_funptr), value :: visitor   !< the procedure called for each error
+      type(c_ptr), value :: context   !< address handed to the visitor
     end function c_walk
   end interface
 
@@ -58,9 +58,9 @@ contains
 
   !> Called by HDF5 for each failure on the stack; the first one is kept.
   function take_innermost(number, record, context) bind(c) result(status)
-    integer(c_int), value :: number
-    type(error_record_type), intent(in) :: record
-    type(c_ptr), value :: context
+    integer(c_int), value :: number   !< position of the error on the stack, from 0
+    type(error_record_type), intent(in) :: record   !< the error
+    type(c_ptr), value :: context   !< address of the words that get the reason
     integer(c_int) :: status
     type(words_type), pointer :: words
     character(kind=c_char), pointer :: letters(:)

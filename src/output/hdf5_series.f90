@@ -1,9 +1,9 @@
 !> Quantities over time in an HDF5 file: data sets that grow by blocks of rows.
 !>
-!> The data sets grow together. Rows gather in memory, each quantity by itself, and go to the file in
-!> blocks; there they count only when a flush makes the new lengths known. A run may be killed in the middle
-!> of a flush: hence the lengths of all data sets stand side by side, in one piece of metadata that goes to the file
-!> in one write, and chunks are so large that their index seldom changes, for most runs never.
+!> The data sets grow together. Rows are gathered in memory, each quantity by itself, and written to the file in
+!> blocks; readers see them only after a flush has written the new lengths. A run may be killed in the middle
+!> of a flush: hence the lengths of all data sets stand side by side, in one piece of metadata that is written
+!> at once, and chunks are so large that their index seldom changes, for most runs never.
 module mech9_hdf5_series
   use, intrinsic :: iso_c_binding, only: c_loc
   use hdf5, only: hid_t, hsize_t, size_t, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5pset_fill_time_f, h5pset_deflate_f, &
@@ -17,10 +17,10 @@ module mech9_hdf5_series
   private
   public :: hdf5_series_type
 
-  !> Chunks of a compressed run that goes to its end; they are written whole.
+  !> Number of chunks of a complete compressed run; each is written as a whole.
   integer, parameter :: compressed_chunks = 60
   integer, parameter :: least_chunk_rows = 1024
-  !> Of the chunks of all quantities together, and of the rows that gather before they are written [bytes].
+  !> Size of the chunks of all quantities together, and of the rows gathered before they are written [bytes].
   integer(long), parameter :: largest_chunk = 67108864, buffer_size = 8388608
   integer, parameter :: most_buffered = 4096
 
@@ -57,38 +57,41 @@ module mech9_hdf5_series
 
 contains
 
-  !> Before the first quantity.
+  !> Set sizes of chunks and buffers, before the first quantity is added.
   subroutine start(self, n_quantities, n_columns, expected_rows, compression)
     class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    integer, intent(in) :: n_quantities, n_columns   !< at most
+    integer, intent(in) :: n_quantities   !< most quantities
+    integer, intent(in) :: n_columns   !< most columns of the rows
     integer, intent(in) :: expected_rows             !< there may be more, or fewer
     integer, intent(in) :: compression               !< 0 none to 9 most
     integer :: chunks
 
     allocate (self%quantities(n_quantities))
     self%compression = compression
-    ! as many in each chunk, so that the last one is filled
+    ! equal chunks, so that the last one is nearly full
     chunks = 1 + (max(expected_rows, 1) - 1)/rows_within(largest_chunk, n_columns)
     self%chunk_rows = 1 + (max(expected_rows, 1) - 1)/chunks
     if (compression > 0) self%chunk_rows = min(self%chunk_rows, &
                                                max(least_chunk_rows, 1 + (expected_rows - 1)/compressed_chunks))
     self%capacity = min(most_buffered, rows_within(buffer_size, n_columns))
-    ! what is compressed is written once only, in whole chunks
+    ! compressed rows are written only once, in whole chunks
     if (compression > 0) self%capacity = self%chunk_rows
   end subroutine start
 
   !> How many rows fit into so many bytes; one at least.
   pure integer function rows_within(bytes, n_columns) result(rows)
-    integer(long), intent(in) :: bytes
-    integer, intent(in) :: n_columns
+    integer(long), intent(in) :: bytes   !< size of the memory [bytes]
+    integer, intent(in) :: n_columns   !< numbers in each row, 8 bytes each
 
     rows = int(max(1_long, bytes/(8_long*n_columns)))
   end function rows_within
 
-  !> One more quantity.
+  !> Add a quantity.
   subroutine add(self, name, columns, extents, long_name, unit, scales, whole)
     class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    character(len=*), intent(in) :: name, long_name, unit
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    character(len=*), intent(in) :: unit   !< unit of its numbers
     integer, intent(in) :: columns(:)           !< of the rows that it consists of
     integer, intent(in) :: extents(:)           !< of one row of it, Fortran order; empty: one number
     character(len=*), intent(in) :: scales(:)   !< paths of the dimension scales, time first; none: it is one itself
@@ -107,11 +110,11 @@ contains
     end associate
   end subroutine add
 
-  !> Make the data sets, one after the other without anything between, and name them then. To be called before
-  !> anything else is put into the file: a page of memory then holds all their lengths.
+  !> Make all data sets first and name them afterwards. This is called before anything else is written to
+  !> the file, so that one page of memory holds the lengths of all of them.
   subroutine create(self, file)
     class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
     integer :: i, status
 
     do i = 1, self%count
@@ -128,11 +131,11 @@ contains
     end do
   end subroutine create
 
-  !> An empty data set, still without a name.
+  !> Make an empty data set without a name.
   subroutine create_data_set(self, quantity, file)
     class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
-    type(quantity_type), intent(inout) :: quantity
-    type(hdf5_file_type), intent(inout) :: file
+    type(quantity_type), intent(inout) :: quantity   !< the quantity, which gets its data set
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
     integer(hid_t) :: creation, access, space
     integer(hsize_t), dimension(size(quantity%extents) + 1) :: none, most, chunk
     integer :: status, rank
@@ -149,7 +152,7 @@ contains
     if (self%compression > 0) call h5pset_shuffle_f(creation, status)
     if (self%compression > 0) call h5pset_deflate_f(creation, self%compression, status)
     call file%check(status)
-    ! no cache: blocks go to the file when they are written, not when HDF5 likes
+    ! no cache: blocks go to the file when they are written, not later
     call h5pcreate_f(h5p_dataset_access_f, access, status)
     call h5pset_chunk_cache_f(access, 0_size_t, 0_size_t, 0.0, status)
     call h5screate_simple_f(rank, none, space, status, most)
@@ -161,10 +164,10 @@ contains
     call h5pclose_f(creation, status)
   end subroutine create_data_set
 
-  !> Attach the scales, which stand in the file now.
+  !> Attach the scales, which are in the file by now.
   subroutine attach(self, file)
     class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
     integer :: i
 
     do i = 1, self%count
@@ -173,10 +176,10 @@ contains
     end do
   end subroutine attach
 
-  !> Rows more. They go to the file when the buffers are full.
+  !> Append rows. They are written to the file when the buffers are full.
   subroutine append_rows(self, file, rows)
     class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
     real(wp), intent(in) :: rows(:, :)     !< (columns, rows)
     integer :: next, together
 
@@ -192,7 +195,7 @@ contains
   !> Keep rows, each quantity's numbers side by side.
   pure subroutine take(self, rows)
     class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    real(wp), intent(in) :: rows(:, :)
+    real(wp), intent(in) :: rows(:, :)   !< (columns, rows) the rows to keep
     integer :: i, j, k
 
     do i = 1, self%count
@@ -207,11 +210,11 @@ contains
     self%waiting = self%waiting + size(rows, 2)
   end subroutine take
 
-  !> Write what waits. What is compressed waits for whole chunks, but at the end.
+  !> Write the rows in the buffers. Compressed rows are written only as whole chunks, except at the end.
   subroutine hand_over(self, file, at_end)
     class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file
-    logical, intent(in), optional :: at_end
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    logical, intent(in), optional :: at_end   !< present: write rows that do not fill a chunk, too
     integer :: i
 
     if (self%waiting == 0) return
@@ -225,8 +228,8 @@ contains
 
   subroutine write_block(self, quantity, file)
     class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
-    type(quantity_type), intent(in), target :: quantity
-    type(hdf5_file_type), intent(inout) :: file
+    type(quantity_type), intent(in), target :: quantity   !< the quantity whose buffer is written
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
     integer(hsize_t), dimension(size(quantity%extents) + 1) :: whole, first, block
     integer(hid_t) :: in_file, in_memory
     integer :: status, rank
@@ -249,10 +252,10 @@ contains
     call h5sclose_f(in_file, status)
   end subroutine write_block
 
-  !> Write what waits and close the data sets.
+  !> Write the rows in the buffers and close the data sets.
   subroutine close_series(self, file)
     class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
     integer :: i, status
 
     call self%hand_over(file, at_end=.true.)

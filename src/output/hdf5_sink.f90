@@ -1,4 +1,4 @@
-!> Results as an HDF5 file: what stands in it is described in docs/results.md.
+!> Results as an HDF5 file; docs/results.md describes its content.
 module mech9_hdf5_sink
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -14,9 +14,9 @@ module mech9_hdf5_sink
   private
   public :: hdf5_sink_type
 
-  !> How long rows may be unknown to the file [s].
+  !> Longest time after which readers of the file see new rows [s].
   real(wp), parameter :: longest_wait = 1.0_wp
-  !> Time, coordinates, points, and their derivatives; poses.
+  !> Number of quantities: time, coordinates and points with their derivatives; poses.
   integer, parameter :: quantities_of_motion = 7 + 3
   !> Events that one chunk of their data sets holds.
   integer, parameter :: most_events = 64
@@ -45,7 +45,7 @@ contains
   !> Create the file with all its quantities, still without rows.
   subroutine open_sink(self, path, mechanism, columns, err)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< path of the file
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(columns_type), intent(in) :: columns        !< of the rows to come
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -72,7 +72,7 @@ contains
   subroutine add_quantities(self, mechanism, columns, scalars)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(columns_type), intent(in) :: columns
+    type(columns_type), intent(in) :: columns   !< columns of the rows to come
     integer, intent(in) :: scalars           !< columns that belong neither to a coordinate nor to a point
     character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
     character(len=13), parameter :: words(0:2) = ['coordinates  ', 'rates        ', 'accelerations']
@@ -96,11 +96,12 @@ contains
     end do
   end subroutine add_quantities
 
-  !> A quantity that each coordinate has.
+  !> Add a quantity of all coordinates.
   subroutine add_of_coordinates(self, columns, name, long_name, order)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(columns_type), intent(in) :: columns
-    character(len=*), intent(in) :: name, long_name
+    type(columns_type), intent(in) :: columns   !< columns of the rows to come
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
     integer, intent(in) :: order             !< 0, 1 or 2 derivatives
     integer :: before, n, i
 
@@ -110,12 +111,13 @@ contains
                          common_unit(columns%units(before + 1:before + n)), ['/time      ', '/coordinate'])
   end subroutine add_of_coordinates
 
-  !> A quantity that each point has, with three components.
+  !> Add a quantity of all points, with three components.
   subroutine add_of_points(self, mechanism, columns, name, unit, order)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(columns_type), intent(in) :: columns
-    character(len=*), intent(in) :: name, unit
+    type(columns_type), intent(in) :: columns   !< columns of the rows to come
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: unit   !< unit of its numbers
     integer, intent(in) :: order             !< 0, 1 or 2 derivatives
     character(len=:), allocatable :: plural
     integer :: before, each, i, k
@@ -129,10 +131,10 @@ contains
                          ['/time ', '/point', '/axis '])
   end subroutine add_of_points
 
-  !> Poses of links, and the vertices of their drawing.
+  !> Add poses of links, and the vertices of their drawing.
   subroutine add_poses(self, columns)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(columns_type), intent(in) :: columns
+    type(columns_type), intent(in) :: columns   !< columns of the rows to come
     integer :: n, vertices, i
 
     n = columns%poses%n_links
@@ -147,11 +149,11 @@ contains
                          ['/time         ', '/vertex_number', '/axis         '])
   end subroutine add_poses
 
-  !> Scales of the poses, and how vertices and lines belong to links. A scale stands in the group of what it scales,
-  !> or above: readers that follow the rules of netCDF look for it nowhere else.
+  !> Write scales of the poses, and to which links vertices and lines belong. A scale stands in the group of the data set
+  !> that it scales, or above: readers that follow the rules of netCDF look for it nowhere else.
   subroutine add_pose_scales(file, poses, has_axes)
-    type(hdf5_file_type), intent(inout) :: file
-    type(poses_type), intent(in) :: poses
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    type(poses_type), intent(in) :: poses   !< links, vertices and lines that are written
     logical, intent(in) :: has_axes             !< the axes of the fixed frame are in the file
     integer :: line_link(size(poses%lines, 2)), i
 
@@ -175,8 +177,9 @@ contains
   end subroutine add_pose_scales
 
   subroutine put_axes(file, name, long_name)
-    type(hdf5_file_type), intent(inout) :: file
-    character(len=*), intent(in) :: name, long_name
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    character(len=*), intent(in) :: name   !< path of the data set
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
     type(string_type) :: axes(3)
     integer :: i
 
@@ -188,9 +191,9 @@ contains
   end subroutine put_axes
 
   subroutine add_coordinate_scales(file, mechanism, columns)
-    type(hdf5_file_type), intent(inout) :: file
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(columns_type), intent(in) :: columns
+    type(columns_type), intent(in) :: columns   !< columns of the rows to come
     type(string_type) :: kinds(size(columns%coordinates))
     integer :: i
 
@@ -206,7 +209,7 @@ contains
   end subroutine add_coordinate_scales
 
   subroutine add_point_scales(file, mechanism)
-    type(hdf5_file_type), intent(inout) :: file
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(string_type) :: names(size(mechanism%points))
     integer :: i
@@ -221,9 +224,9 @@ contains
     call file%attach_scales('point_link', ['/point'])
   end subroutine add_point_scales
 
-  !> The unit where all have the same; else the different ones, `coordinate_unit` tells which is whose.
+  !> The unit if it is the same for all; otherwise the list of units, and `coordinate_unit` tells that of each.
   pure function common_unit(units) result(text)
-    type(string_type), intent(in) :: units(:)
+    type(string_type), intent(in) :: units(:)   !< units of the coordinates
     character(len=:), allocatable :: text
     integer :: i
 
@@ -235,9 +238,9 @@ contains
     end do
   end function common_unit
 
-  !> The name of a column as programs take it for a name: E_kinetic for E.kinetic.
+  !> The name of a column as an identifier that programs accept: E_kinetic for E.kinetic.
   pure function identifier(name) result(text)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< heading of a column
     character(len=len(name)) :: text
     integer :: i
 
@@ -247,10 +250,10 @@ contains
     end do
   end function identifier
 
-  !> Room for the events of a run: when other coordinates became the independent ones, and which.
+  !> Make data sets for the events of a run: the times at which other coordinates became independent, and their numbers.
   subroutine begin_events(self, n_independent)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    integer, intent(in) :: n_independent
+    integer, intent(in) :: n_independent   !< how many coordinates are independent
     integer :: i
 
     call self%events%start(2, 1 + n_independent, most_events, 0)
@@ -264,7 +267,7 @@ contains
     call self%events%attach(self%file)
   end subroutine begin_events
 
-  !> The events of the run.
+  !> Write the events of the run.
   subroutine write_events(self, times, independent)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     real(wp), intent(in) :: times(:)           !< [s]
@@ -276,11 +279,11 @@ contains
     call self%events%append_rows(self%file, rows)
   end subroutine write_events
 
-  !> Rows more; about once a second they are made known to the file, and the first ones at once: with them the
-  !> places of what follows are settled.
+  !> Append rows. They are flushed about once a second, and the first ones at once, because the first flush
+  !> determines where the later data stand in the file.
   subroutine write_rows(self, rows, err)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    real(wp), intent(in) :: rows(:, :)
+    real(wp), intent(in) :: rows(:, :)   !< (columns, rows)
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call self%series%append_rows(self%file, rows)
@@ -292,7 +295,7 @@ contains
     call self%tell(err)
   end subroutine write_rows
 
-  !> All rows into the file.
+  !> Write all rows to the file.
   subroutine flush_sink(self, err)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -320,7 +323,7 @@ contains
     words = 'HDF5 file: '//self%file%path
   end function words
 
-  !> The first failure of the file, once.
+  !> Return the first failure of the file, only once.
   subroutine tell(self, err)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed

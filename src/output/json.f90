@@ -21,8 +21,8 @@ module mech9_json
   integer, parameter :: deepest = 32
   character, parameter :: line_end = achar(10)
 
-  !> A document being composed in memory. What is added in an object comes with a name, what is
-  !> added in an array without; a document that breaks this is refused by `save`.
+  !> A document being composed in memory. Values in an object have names, values in an array have none;
+  !> `save` refuses a document that breaks this rule.
   type :: json_type
     private
     type(page_type) :: page
@@ -48,7 +48,7 @@ contains
 
   subroutine begin_object(self, name)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in), optional :: name
+    character(len=*), intent(in), optional :: name   !< name in the object around it; absent in an array and for the whole document
 
     call self%begin('{', '}', name)
   end subroutine begin_object
@@ -61,7 +61,7 @@ contains
 
   subroutine begin_array(self, name)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in), optional :: name
+    character(len=*), intent(in), optional :: name   !< name in the object around it; absent in an array and for the whole document
 
     call self%begin('[', ']', name)
   end subroutine begin_array
@@ -74,48 +74,48 @@ contains
 
   subroutine add_real(self, name, value)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name
-    real(wp), intent(in) :: value
+    character(len=*), intent(in) :: name   !< name in the object
+    real(wp), intent(in) :: value   !< the value to add
 
     call self%put_item(number_text(value), name)
   end subroutine add_real
 
   subroutine add_integer(self, name, value)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: value
+    character(len=*), intent(in) :: name   !< name in the object
+    integer, intent(in) :: value   !< the value to add
 
     call self%put_item(to_text(value), name)
   end subroutine add_integer
 
   subroutine add_long(self, name, value)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name
-    integer(long), intent(in) :: value
+    character(len=*), intent(in) :: name   !< name in the object
+    integer(long), intent(in) :: value   !< the value to add
 
     call self%put_item(to_text(value), name)
   end subroutine add_long
 
   subroutine add_logical(self, name, value)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name
-    logical, intent(in) :: value
+    character(len=*), intent(in) :: name   !< name in the object
+    logical, intent(in) :: value   !< the value to add
 
     call self%put_item(trim(merge('true ', 'false', value)), name)
   end subroutine add_logical
 
   subroutine add_text(self, name, value)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name
-    character(len=*), intent(in) :: value
+    character(len=*), intent(in) :: name   !< name in the object
+    character(len=*), intent(in) :: value   !< the value to add
 
     call self%put_item(quoted(value), name)
   end subroutine add_text
 
   subroutine add_reals(self, name, values)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name
-    real(wp), intent(in) :: values(:)
+    character(len=*), intent(in) :: name   !< name in the object
+    real(wp), intent(in) :: values(:)   !< the numbers
     integer :: i
 
     call self%begin_array(name)
@@ -127,35 +127,35 @@ contains
 
   subroutine item_real(self, value)
     class(json_type), intent(inout) :: self   !< the json
-    real(wp), intent(in) :: value
+    real(wp), intent(in) :: value   !< the value to add
 
     call self%put_item(number_text(value))
   end subroutine item_real
 
   subroutine item_integer(self, value)
     class(json_type), intent(inout) :: self   !< the json
-    integer, intent(in) :: value
+    integer, intent(in) :: value   !< the value to add
 
     call self%put_item(to_text(value))
   end subroutine item_integer
 
   subroutine item_long(self, value)
     class(json_type), intent(inout) :: self   !< the json
-    integer(long), intent(in) :: value
+    integer(long), intent(in) :: value   !< the value to add
 
     call self%put_item(to_text(value))
   end subroutine item_long
 
   subroutine item_logical(self, value)
     class(json_type), intent(inout) :: self   !< the json
-    logical, intent(in) :: value
+    logical, intent(in) :: value   !< the value to add
 
     call self%put_item(trim(merge('true ', 'false', value)))
   end subroutine item_logical
 
   subroutine item_text(self, value)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: value
+    character(len=*), intent(in) :: value   !< the value to add
 
     call self%put_item(quoted(value))
   end subroutine item_text
@@ -175,8 +175,9 @@ contains
 
   subroutine begin(self, opening, closing, name)
     class(json_type), intent(inout) :: self   !< the json
-    character, intent(in) :: opening, closing
-    character(len=*), intent(in), optional :: name
+    character, intent(in) :: opening   !< the bracket that opens it
+    character, intent(in) :: closing   !< the bracket that will close it
+    character(len=*), intent(in), optional :: name   !< name in the object around it; absent in an array and for the whole document
 
     call self%put_item(opening, name)
     if (self%depth == deepest) self%wrong = .true.
@@ -188,7 +189,7 @@ contains
 
   subroutine finish(self, closing)
     class(json_type), intent(inout) :: self   !< the json
-    character, intent(in) :: closing
+    character, intent(in) :: closing   !< the bracket that closes it
 
     if (self%depth == 0) self%wrong = .true.
     if (self%wrong) return
@@ -205,8 +206,8 @@ contains
   !> Write a value that is JSON already, with its name, comma and indentation.
   subroutine put_item(self, value, name)
     class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: value
-    character(len=*), intent(in), optional :: name
+    character(len=*), intent(in) :: value   !< the value as JSON
+    character(len=*), intent(in), optional :: name   !< name in the object; absent in an array
     logical :: in_object
 
     in_object = .false.
@@ -221,10 +222,10 @@ contains
     self%empty = .false.
   end subroutine put_item
 
-  !> The shortest of 15 to 17 digits that reads back as the same number; JSON has no NaN and no
-  !> infinity, they become null.
+  !> The number with the fewest digits, from 15 to 17, that reads back as the same number. JSON has no NaN and no
+  !> infinity; they become null.
   pure function number_text(value) result(text)
-    real(wp), intent(in) :: value
+    real(wp), intent(in) :: value   !< any number, also one that is not finite
     character(len=:), allocatable :: text
     real(wp) :: read_back
     integer :: digits, status
@@ -239,16 +240,16 @@ contains
     end do
   end function number_text
 
-  !> By the bits: a comparison with NaN would stop a program that traps invalid operations.
+  !> Whether a number is finite, by its bits: a comparison with NaN would stop a program that traps invalid operations.
   pure logical function is_finite(value)
-    real(wp), intent(in) :: value
+    real(wp), intent(in) :: value   !< any number, also one that is not finite
 
     is_finite = ibits(transfer(value, 0_long), 52, 11) /= 2047
   end function is_finite
 
   !> A text as a JSON string; bytes that are not UTF-8 become the replacement character.
   pure function quoted(text) result(json)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< any bytes
     character(len=:), allocatable :: json
     integer :: i, length
 
@@ -266,9 +267,9 @@ contains
     json = json//'"'
   end function quoted
 
-  !> One character, escaped where JSON wants it.
+  !> One character, escaped where JSON requires it.
   pure function escaped(letter) result(json)
-    character(len=*), intent(in) :: letter
+    character(len=*), intent(in) :: letter   !< the bytes of one character
     character(len=:), allocatable :: json
     character(len=2) :: code
 

@@ -1,4 +1,4 @@
-!> The results of a run kept in memory, to be looked at when it is over.
+!> The results of a run kept in memory, to be examined after the run.
 module mech9_kept_rows
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, nearest_name
@@ -6,7 +6,7 @@ module mech9_kept_rows
   private
   public :: kept_rows_type
 
-  !> Numbers that are kept at most (128 MiB); of longer runs only every so-manieth row is.
+  !> Most numbers kept (128 MiB); of a longer run only each row number 1, 1 + stride, 1 + 2 stride, ... is kept.
   integer(long), parameter :: most_numbers = 2_long**24
 
   type :: kept_rows_type
@@ -14,7 +14,7 @@ module mech9_kept_rows
     type(string_type), allocatable :: names(:), units(:)   !< of the columns, time first
     real(wp), allocatable :: rows(:, :)                    !< rows(:, i): row i; `count` of them are filled
     integer :: count = 0                                   !< rows kept
-    integer :: stride = 1                                  !< every so-manieth row is kept
+    integer :: stride = 1                 !< one row of so many is kept
     integer :: seen = 0                                    !< rows taken
   contains
     procedure :: begin
@@ -24,11 +24,12 @@ module mech9_kept_rows
 
 contains
 
-  !> Begin anew with nothing.
+  !> Begin without rows; earlier ones are removed.
   pure subroutine begin(self, title, names, units, expected)
     class(kept_rows_type), intent(inout) :: self   !< the kept rows
-    character(len=*), intent(in) :: title
-    type(string_type), intent(in) :: names(:), units(:)    !< of the columns, time first
+    character(len=*), intent(in) :: title   !< title of the mechanism
+    type(string_type), intent(in) :: names(:)   !< headings of the columns, time first
+    type(string_type), intent(in) :: units(:)   !< units of the columns
     integer, intent(in) :: expected                        !< how many rows will come at most
 
     self%title = title
@@ -41,7 +42,7 @@ contains
     allocate (self%rows(size(names), 1 + (max(expected, 1) - 1)/self%stride))
   end subroutine begin
 
-  !> Keep rows, which follow those before.
+  !> Keep rows, which follow the earlier ones.
   pure subroutine take(self, rows)
     class(kept_rows_type), intent(inout) :: self   !< the kept rows
     real(wp), intent(in) :: rows(:, :)                     !< (columns, rows)
@@ -56,11 +57,11 @@ contains
     end do
   end subroutine take
 
-  !> Number of the column with a name; 0 where there is none, and then what was probably meant.
+  !> Number of the column with a name; if there is none, 0 and the nearest name.
   pure subroutine column(self, name, number, meant)
     class(kept_rows_type), intent(in) :: self   !< the kept rows
-    character(len=*), intent(in) :: name
-    integer, intent(out) :: number
+    character(len=*), intent(in) :: name   !< heading of the column
+    integer, intent(out) :: number   !< number of the column; 0: there is none
     character(len=:), allocatable, intent(out) :: meant    !< empty where no name is near
     character(len=len(name) + 8) :: known(size(self%names))
 

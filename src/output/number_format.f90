@@ -1,9 +1,9 @@
-!> Real numbers as text of 17 significant digits, correctly rounded, in columns of one width.
+!> Real numbers as text of 17 significant digits, correctly rounded, in columns of equal width.
 !>
 !> A number is m 2^e with an integer m < 2^53. Its 17 digits are the integer nearest to m 2^e 10^p
 !> for the right power p, and that product is taken in integers: 10^p stands in a table as a
-!> 120-bit integer g times a power of two, and m g has so many bits behind the 17 digits that the
-!> rounding is plain, but for a handful of numbers in all; those take the slow way, a formatted write.
+!> 120-bit integer g times a power of two, and m g has so many bits after the 17 digits that they decide the
+!> rounding, except for very few numbers; those are converted by a formatted write, which is slower.
 module mech9_number_format
   use mech9_kinds, only: wp, long
   implicit none
@@ -66,7 +66,7 @@ contains
   end function new_number_format
 
   pure subroutine multiply_by_5(number)
-    integer(long), intent(inout) :: number(limbs)
+    integer(long), intent(inout) :: number(limbs)   !< long integer, least limb first
     integer(long) :: carry
     integer :: i
 
@@ -79,7 +79,7 @@ contains
   end subroutine multiply_by_5
 
   pure subroutine divide_by_5(number)
-    integer(long), intent(inout) :: number(limbs)
+    integer(long), intent(inout) :: number(limbs)   !< long integer, least limb first
     integer(long) :: rest
     integer :: i
 
@@ -94,7 +94,8 @@ contains
   !> The first 120 bits of a long integer (which has more than that), in two halves.
   pure subroutine leading_bits(number, high, low)
     integer(long), intent(in) :: number(limbs)   !< least limb first
-    integer(long), intent(out) :: high, low
+    integer(long), intent(out) :: high   !< the first 60 bits
+    integer(long), intent(out) :: low   !< the next 60 bits
     integer(long) :: aligned(4)
     integer :: top, bits, i
 
@@ -111,12 +112,12 @@ contains
     low = ior(shiftl(aligned(3), limb_bits), aligned(4))
   end subroutine leading_bits
 
-  !> Write a number into a field, at its right end: `-1.2345678901234567E+00`. What is not finite
+  !> Write a number into a field, at its right end: `-1.2345678901234567E+00`. A number that is not finite
   !> becomes `NaN`, `Infinity` or `-Infinity`.
   pure subroutine put(self, number, field)
     class(number_format_type), intent(in) :: self   !< the number format
-    real(wp), intent(in) :: number
-    character(len=number_width), intent(out) :: field
+    real(wp), intent(in) :: number   !< any number, also one that is not finite
+    character(len=number_width), intent(out) :: field   !< the number as text, at the right end
     integer(long) :: bits, mantissa, digits
     integer :: binary_exponent, exponent, shift
     logical :: decided
@@ -144,7 +145,8 @@ contains
   end subroutine put
 
   pure function not_finite(is_nan, negative) result(field)
-    logical, intent(in) :: is_nan, negative
+    logical, intent(in) :: is_nan   !< whether it is not a number
+    logical, intent(in) :: negative   !< whether its sign bit is set
     character(len=number_width) :: field
 
     if (is_nan) then
@@ -161,9 +163,9 @@ contains
   pure subroutine find_digits(self, mantissa, binary_exponent, digits, exponent, decided)
     type(number_format_type), intent(in) :: self   !< the number format
     integer(long), intent(in) :: mantissa   !< 2^52 <= mantissa < 2^53
-    integer, intent(in) :: binary_exponent
+    integer, intent(in) :: binary_exponent   !< power of 2 that multiplies the mantissa
     integer(long), intent(out) :: digits    !< 10^16 <= digits < 10^17
-    integer, intent(out) :: exponent
+    integer, intent(out) :: exponent   !< power of ten of the first digit
     logical, intent(out) :: decided         !< false: 120 bits do not tell which way to round
     integer(wide) :: product
     integer(long) :: fraction, half
@@ -201,9 +203,9 @@ contains
 
   !> The digits by the compiler's formatted write: exact for every number, but slow.
   pure subroutine read_digits(number, digits, exponent)
-    real(wp), intent(in) :: number
-    integer(long), intent(out) :: digits
-    integer, intent(out) :: exponent
+    real(wp), intent(in) :: number   !< a finite number other than zero
+    integer(long), intent(out) :: digits   !< the 17 digits as an integer
+    integer, intent(out) :: exponent   !< power of ten of the first digit
     character(len=24) :: text
     character(len=17) :: digits_text
 
@@ -215,10 +217,10 @@ contains
 
   !> Lay the digits out; two digits of exponent where they are enough, else three.
   pure subroutine put_digits(digits, exponent, negative, field)
-    integer(long), intent(in) :: digits
-    integer, intent(in) :: exponent
-    logical, intent(in) :: negative
-    character(len=number_width), intent(out) :: field
+    integer(long), intent(in) :: digits   !< the 17 digits as an integer
+    integer, intent(in) :: exponent   !< power of ten of the first digit
+    logical, intent(in) :: negative   !< whether the number has a minus sign
+    character(len=number_width), intent(out) :: field   !< the number as text, at the right end
     integer(long) :: first, upper, rest
     integer :: at, size
 
@@ -243,8 +245,8 @@ contains
   end subroutine put_digits
 
   pure subroutine put_8_digits(number, text)
-    integer, intent(in) :: number
-    character(len=8), intent(out) :: text
+    integer, intent(in) :: number   !< from 0 to 99999999
+    character(len=8), intent(out) :: text   !< its digits, with leading zeros
     integer :: upper, lower, a, c
 
     upper = number/10000

@@ -1,4 +1,4 @@
-!> A page: text that is put together in memory and saved as a file.
+!> A page: text that is composed in memory and saved as a file.
 module mech9_page
   use mech9_error, only: error_type
   use mech9_text_file, only: save_text
@@ -26,7 +26,7 @@ contains
   !> Append text.
   pure subroutine put(self, text)
     class(page_type), intent(inout) :: self   !< the page
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the text to append
     character(len=:), allocatable :: grown
 
     if (.not. allocated(self%buffer)) allocate (character(len=65536) :: self%buffer)
@@ -42,13 +42,13 @@ contains
   !> Append text and end the line.
   pure subroutine line(self, text)
     class(page_type), intent(inout) :: self   !< the page
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the text to append
 
     call self%put(text)
     call self%put(line_end)
   end subroutine line
 
-  !> All of it.
+  !> The whole text.
   pure function text_of_page(self) result(text)
     class(page_type), intent(in) :: self   !< the page
     character(len=:), allocatable :: text
@@ -57,7 +57,7 @@ contains
     if (self%used > 0) text = self%buffer(:self%used)
   end function text_of_page
 
-  !> Whether nothing was put yet.
+  !> Whether the page has no text yet.
   pure logical function is_empty(self)
     class(page_type), intent(in) :: self   !< the page
 
@@ -67,7 +67,7 @@ contains
   !> Write the page into a file; '-' is standard output. Errors are exit_file.
   subroutine save_page(self, path, err)
     class(page_type), intent(in) :: self   !< the page
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< path of the file; '-' is standard output
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call save_text(path, self%text(), err)

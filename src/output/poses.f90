@@ -1,4 +1,4 @@
-!> Poses of all links as columns behind those of a table, with vertices and lines that show the links: each link is drawn
+!> Poses of all links as columns after those of a table, with vertices and lines that show the links: each link is drawn
 !> through its pairs and points.
 module mech9_poses
   use mech9_kinds, only: wp
@@ -56,7 +56,7 @@ contains
         poses%local(:, 2*k - 1) = factors%before%p
         poses%local(:, 2*k) = in_moving%p
       else
-        ! of any motion: where the moving link's origin is, for both of them
+        ! a pair of any motion has no axis: the origin of the moving link is its vertex for both links
         poses%carrier(2*k - 1) = poses%carrier(2*k)
       end if
     end do
@@ -65,8 +65,8 @@ contains
 
   !> The vertices of each link joined in their order, and the last one with the first where there are three or more.
   pure function lines_through(n_links, vertex_link) result(lines)
-    integer, intent(in) :: n_links
-    integer, intent(in) :: vertex_link(:)
+    integer, intent(in) :: n_links   !< number of links
+    integer, intent(in) :: vertex_link(:)   !< (V) link that each vertex belongs to
     integer, allocatable :: lines(:, :)
     integer, dimension(n_links) :: first, latest, number
     integer :: joined(2, 2*size(vertex_link)), n, i, link
@@ -93,7 +93,7 @@ contains
     lines = joined(:, :n)
   end function lines_through
 
-  !> Number of the columns.
+  !> Number of columns.
   pure integer function width(self)
     class(poses_type), intent(in) :: self   !< the poses
 
@@ -106,7 +106,7 @@ contains
     class(poses_type), intent(in) :: self   !< the poses
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(inout) :: columns(:)
+    real(wp), intent(inout) :: columns(:)   !< gets origins [m], rotations by rows, and vertices [m], all in the fixed frame
     real(wp) :: r(3, 3, self%n_links), p(3, self%n_links), omega(3), v(3)
     integer :: i, at
 

@@ -1,4 +1,4 @@
-!> Text of any origin made fit for a file that other programs read.
+!> Text of any origin, cleaned for files that other programs read.
 module mech9_printable
   implicit none
   private
@@ -6,10 +6,10 @@ module mech9_printable
 
 contains
 
-  !> The text without anything that could end or break a line or stop a reader: control characters
+  !> The text without bytes that could end or break a line or stop a reader: control characters
   !> become blanks, bytes that are not UTF-8 become question marks. The length stays.
   pure function printable(text) result(clean)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< any bytes
     character(len=len(text)) :: clean
     integer :: i, length
 
@@ -26,10 +26,10 @@ contains
     end do
   end function printable
 
-  !> The text as the name of a column: besides, blanks, quotes and `#`, which split names or end
-  !> a line for readers of tables, become underscores.
+  !> The text as the name of a column: printable, and with underscores for blanks, quotes and `#`, which split
+  !> names or end a line for readers of tables.
   pure function column_name(text) result(name)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< any bytes
     character(len=:), allocatable :: name
     integer :: i
 
@@ -40,9 +40,11 @@ contains
     if (name == '') name = '_'
   end function column_name
 
-  !> Letters of the text when some stand as escapes.
+  !> Length of the text after some letters are replaced by escapes.
   pure integer function escaped_length(text, letters, escapes) result(length)
-    character(len=*), intent(in) :: text, letters, escapes(:)
+    character(len=*), intent(in) :: text   !< any bytes
+    character(len=*), intent(in) :: letters   !< the letters that are replaced
+    character(len=*), intent(in) :: escapes(:)   !< what replaces each of them, without trailing blanks
     integer :: i, k
 
     length = len(text)
@@ -52,9 +54,9 @@ contains
     end do
   end function escaped_length
 
-  !> The text with escapes for the letters that mean something of their own where it is going to stand.
+  !> The text with escapes for the letters that have a special meaning in the file.
   pure function with_escapes(text, letters, escapes) result(safe)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< any bytes
     character(len=*), intent(in) :: letters      !< those
     character(len=*), intent(in) :: escapes(:)   !< for each of them, padded with blanks
     character(len=:), allocatable :: safe
@@ -76,7 +78,7 @@ contains
   end function with_escapes
 
   pure logical function is_control(letter)
-    character, intent(in) :: letter
+    character, intent(in) :: letter   !< one byte
 
     is_control = iachar(letter) < 32 .or. iachar(letter) == 127
   end function is_control
@@ -84,12 +86,12 @@ contains
   !> Bytes of the UTF-8 character that begins at a place; 0 where none does (a stray or missing
   !> continuation, an overlong form, a surrogate, or a number beyond the last one).
   pure integer function utf8_length(text, place) result(length)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: place
+    character(len=*), intent(in) :: text   !< any bytes
+    integer, intent(in) :: place   !< number of the byte where the character may begin
     integer :: first, second, low, high, i
 
     first = ichar(text(place:place))
-    ! the second byte tells most of the wrong ones
+    ! the second byte reveals most of the wrong characters
     low = 128
     high = 191
     length = 0

@@ -1,4 +1,4 @@
-!> What takes the rows of a run, as the recording sees it: a table, a file of another kind, a picture.
+!> The interface of everything that takes the rows of a run: a table, a file of another kind, a picture.
 module mech9_result_sink
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -8,8 +8,8 @@ module mech9_result_sink
 
   !> A sink is open when it is handed to a recording.
   type, abstract :: result_sink_type
-    logical :: takes_poses = .false.    !< its rows go on with the columns of the poses
-    logical :: is_lacking = .false.     !< its words tell of what could not be made: who wants quiet hears them, too
+    logical :: takes_poses = .false.  !< its rows contain the columns of the poses after the others
+    logical :: is_lacking = .false.   !< its words tell of a file that could not be made, and are printed even with --quiet
   contains
     procedure(rows_interface), deferred :: write_rows
     procedure :: flush => flush_nothing
@@ -23,7 +23,7 @@ module mech9_result_sink
   end type sink_slot_type
 
   abstract interface
-    !> Take rows, which follow those before; they may wait for a moment. Errors name the file.
+    !> Take rows, which follow the earlier ones; they may be held back for a moment. Errors name the file.
     subroutine rows_interface(self, rows, err)
       import :: result_sink_type, error_type, wp
       class(result_sink_type), intent(inout) :: self   !< the result sink
@@ -31,8 +31,7 @@ module mech9_result_sink
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine rows_interface
 
-    !> To finish: nothing waits any more, and files are closed even when writing fails. Does nothing to a
-    !> sink that is closed.
+    !> Write all rows and close the files, even when writing fails. Does nothing to a sink that is closed.
     subroutine close_interface(self, err)
       import :: result_sink_type, error_type
       class(result_sink_type), intent(inout) :: self   !< the result sink
@@ -42,13 +41,13 @@ module mech9_result_sink
 
 contains
 
-  !> Let no row wait any longer; a sink that holds none back has nothing to do.
+  !> Write the rows that are held back; by default there are none.
   subroutine flush_nothing(self, err)
     class(result_sink_type), intent(inout) :: self   !< the result sink
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
   end subroutine flush_nothing
 
-  !> A line for the user about what was written, once it is closed; a sink with nothing to say has none.
+  !> A line for the user about the files written, after the sink is closed; by default there is none.
   function no_words(self) result(words)
     class(result_sink_type), intent(in) :: self   !< the result sink
     character(len=:), allocatable :: words
@@ -56,10 +55,10 @@ contains
     words = ''
   end function no_words
 
-  !> One sink more; `sink` is handed over.
+  !> Append a sink.
   subroutine append_sink(slots, sink)
-    type(sink_slot_type), allocatable, intent(inout) :: slots(:)
-    class(result_sink_type), allocatable, intent(inout) :: sink
+    type(sink_slot_type), allocatable, intent(inout) :: slots(:)   !< the open sinks of a run
+    class(result_sink_type), allocatable, intent(inout) :: sink   !< the sink to append; not allocated afterwards
     type(sink_slot_type), allocatable :: grown(:)
     integer :: i
 

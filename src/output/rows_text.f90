@@ -12,9 +12,9 @@ module mech9_rows_text
 
 contains
 
-  !> Names, units and the last rows, of whole lines.
+  !> Names, units and the last rows, as whole lines.
   pure function rows_text(kept, columns, last) result(text)
-    type(kept_rows_type), intent(in) :: kept
+    type(kept_rows_type), intent(in) :: kept   !< the kept rows of a run
     integer, intent(in) :: columns(:)         !< numbers of the columns to show
     integer, intent(in) :: last               !< how many rows
     character(len=:), allocatable :: text
@@ -43,7 +43,7 @@ contains
 
   !> A text in its column, with a blank before it even where it is too long.
   pure function at_right(text) result(padded)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the text of one column
     character(len=:), allocatable :: padded
 
     padded = repeat(' ', max(1, column_width - len(text)))//text

@@ -1,4 +1,4 @@
-!> Two runs held against each other: the largest difference in each column.
+!> Comparison of two runs: the largest difference in each column.
 module mech9_run_comparison
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -24,13 +24,13 @@ module mech9_run_comparison
     type(difference_type), allocatable :: columns(:)   !< that differ by more, the greatest share first
   end type comparison_type
 
-  !> Output times that differ by less than this share are one: they are computed from start, end and number.
+  !> Output times that differ by less than this share are equal: they are computed from start, end and number, with round-off.
   real(wp), parameter :: same_time = 1.0e-12_wp
-  !> A share that round-off along different ways can come to, as when a tolerance is changed.
+  !> Largest share that counts as round-off of computations in another order.
   real(wp), parameter :: round_off = 1.0e-12_wp
-  !> Residuals and what else is to be zero stay below this, in any unit; nothing that moves does.
+  !> Quantities below this in any unit count as zero, such as residuals; no moving quantity is so small.
   real(wp), parameter :: as_good_as_zero = 1.0e-10_wp
-  !> Lines of a comparison, so that it stays on the screen.
+  !> Most lines of a comparison, so that it fits on a screen.
   integer, parameter :: most_lines = 15
   character, parameter :: eol = achar(10)
 
@@ -38,8 +38,9 @@ contains
 
   !> Compare the columns that two runs have in common by name.
   pure subroutine compare_runs(earlier, later, comparison)
-    type(kept_rows_type), intent(in) :: earlier, later
-    type(comparison_type), intent(out) :: comparison
+    type(kept_rows_type), intent(in) :: earlier   !< rows of the earlier run
+    type(kept_rows_type), intent(in) :: later   !< rows of the later run
+    type(comparison_type), intent(out) :: comparison   !< the differences
     integer :: pairs(2, min(earlier%count, later%count))
     type(difference_type) :: difference
     character(len=:), allocatable :: meant
@@ -69,11 +70,12 @@ contains
     end do
   end subroutine compare_runs
 
-  !> Rows of the two runs that belong to one time.
+  !> The rows of the two runs at each common time.
   pure subroutine pair_times(earlier, later, pairs, n)
-    type(kept_rows_type), intent(in) :: earlier, later
-    integer, intent(inout) :: pairs(:, :)
-    integer, intent(out) :: n
+    type(kept_rows_type), intent(in) :: earlier   !< rows of the earlier run
+    type(kept_rows_type), intent(in) :: later   !< rows of the later run
+    integer, intent(inout) :: pairs(:, :)   !< (2,:) row of the earlier run and row of the later one
+    integer, intent(out) :: n   !< how many pairs there are
     real(wp) :: one, other
     integer :: i, j
 
@@ -97,7 +99,9 @@ contains
   end subroutine pair_times
 
   pure type(difference_type) function difference_in(before, after, times) result(difference)
-    real(wp), intent(in) :: before(:), after(:), times(:)
+    real(wp), intent(in) :: before(:)   !< the column in the earlier run, at the common times
+    real(wp), intent(in) :: after(:)   !< the column in the later run, at the common times
+    real(wp), intent(in) :: times(:)   !< the common times [s]
     integer :: i
 
     i = maxloc(abs(after - before), dim=1)
@@ -107,10 +111,10 @@ contains
     difference%after = after(i)
   end function difference_in
 
-  !> For each column the largest absolute value in all columns of its unit. What is zero but for round-off, such
-  !> as the height of a planar motion, is small against it.
+  !> For each column the largest absolute value in all columns of its unit. A quantity that is zero except for round-off,
+  !> such as the height of a planar motion, is small compared with it.
   pure function greatest_of_unit(kept) result(greatest)
-    type(kept_rows_type), intent(in) :: kept
+    type(kept_rows_type), intent(in) :: kept   !< rows of a run
     real(wp) :: greatest(size(kept%names))
     real(wp) :: own(size(kept%names))
     integer :: i, k
@@ -127,20 +131,20 @@ contains
     end do
   end function greatest_of_unit
 
-  !> Into the list at its place.
+  !> Insert a difference into the sorted list.
   pure subroutine insert(list, difference)
-    type(difference_type), allocatable, intent(inout) :: list(:)
-    type(difference_type), intent(in) :: difference
+    type(difference_type), allocatable, intent(inout) :: list(:)   !< differences, the greatest share first
+    type(difference_type), intent(in) :: difference   !< the difference to insert
     integer :: place
 
     place = count(list%share >= difference%share)
     list = [list(:place), difference, list(place + 1:)]
   end subroutine insert
 
-  !> A comparison in words, of whole lines of 79 letters at most.
+  !> A comparison in words, as whole lines of at most 79 letters.
   pure function comparison_text(comparison, later) result(text)
-    type(comparison_type), intent(in) :: comparison
-    type(kept_rows_type), intent(in) :: later
+    type(comparison_type), intent(in) :: comparison   !< the differences
+    type(kept_rows_type), intent(in) :: later   !< rows of the later run
     character(len=:), allocatable :: text
     character(len=79) :: line
     integer :: i

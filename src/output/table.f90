@@ -8,9 +8,9 @@
 !>
 !> A file whose name ends in .csv gets the names, in the first line, and the rows only, with commas between.
 !>
-!> Rows gather in a buffer and leave it as whole rows, when it is full and about once a second, so
-!> that a run that is killed leaves a table that can be read. (Linux ends even a write in hand when a
-!> process is killed outright; then, and only then, the last line may be a part of a row.)
+!> Rows are gathered in a buffer and written as whole rows, when it is full and about once a second, so
+!> that a run that is killed leaves a table that can be read. (Linux interrupts even a write in progress when a
+!> process is killed by signal 9; only then may the last line be a part of a row.)
 module mech9_table
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal
@@ -25,7 +25,7 @@ module mech9_table
   public :: table_type
 
   integer, parameter :: buffer_size = 1048576
-  !> How long rows may wait in the buffer [s], at the next row at least.
+  !> Age of the rows in the buffer [s] after which the next row makes them be written.
   real(wp), parameter :: longest_wait = 1.0_wp
   character, parameter :: line_end = achar(10)
 
@@ -50,7 +50,7 @@ module mech9_table
 
 contains
 
-  !> Create the file and write what stands above the rows.
+  !> Create the file and write the lines above the rows.
   subroutine open_table(self, path, title, program, names, units, err)
     class(table_type), intent(inout) :: self   !< the table
     character(len=*), intent(in) :: path          !< '-' is standard output
@@ -82,10 +82,10 @@ contains
     end if
   end subroutine open_table
 
-  !> Write one row, a value for each column. It may wait in the buffer for a moment.
+  !> Write one row, a value for each column. It may stay in the buffer for a moment.
   subroutine write_row(self, values, err)
     class(table_type), intent(inout) :: self   !< the table
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)   !< one number for each column
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: at
 
@@ -108,12 +108,12 @@ contains
     if (self%pacer%due()) call self%flush(err)
   end subroutine write_row
 
-  !> Numbers in columns of one width, from behind `at` on.
+  !> Append numbers in columns of equal width to the first `at` bytes of the buffer.
   pure subroutine put_in_fields(format, values, buffer, at)
-    type(number_format_type), intent(in) :: format
-    real(wp), intent(in) :: values(:)
-    character(len=*), intent(inout) :: buffer
-    integer, intent(inout) :: at
+    type(number_format_type), intent(in) :: format   !< the number format
+    real(wp), intent(in) :: values(:)   !< the numbers of one row
+    character(len=*), intent(inout) :: buffer   !< the text, which gets the row
+    integer, intent(inout) :: at   !< number of bytes used in the buffer
     integer :: i
 
     do i = 1, size(values)
@@ -122,12 +122,12 @@ contains
     end do
   end subroutine put_in_fields
 
-  !> Numbers without blanks, commas between them, from behind `at` on.
+  !> Append numbers without blanks and with commas between them to the first `at` bytes of the buffer.
   pure subroutine put_with_commas(format, values, buffer, at)
-    type(number_format_type), intent(in) :: format
-    real(wp), intent(in) :: values(:)
-    character(len=*), intent(inout) :: buffer
-    integer, intent(inout) :: at
+    type(number_format_type), intent(in) :: format   !< the number format
+    real(wp), intent(in) :: values(:)   !< the numbers of one row
+    character(len=*), intent(inout) :: buffer   !< the text, which gets the row
+    integer, intent(inout) :: at   !< number of bytes used in the buffer
     character(len=number_width) :: field
     integer :: i, first
 
@@ -146,7 +146,7 @@ contains
   !> Write rows, one after the other.
   subroutine write_rows(self, rows, err)
     class(table_type), intent(inout) :: self   !< the table
-    real(wp), intent(in) :: rows(:, :)
+    real(wp), intent(in) :: rows(:, :)   !< (columns, rows)
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
@@ -182,9 +182,9 @@ contains
     if (used > 0) call self%file%write(self%buffer(:used), err)
   end subroutine hand_over
 
-  !> Text as comment lines; line ends of all kinds separate, and none is left in a line.
+  !> Text as comment lines; it is split at line ends of all kinds.
   pure function comment_lines(text) result(lines)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< any text, of several lines
     character(len=:), allocatable :: lines
     integer :: first, length
 
@@ -201,7 +201,7 @@ contains
 
   !> The units, each above its column.
   pure function unit_line(units) result(line)
-    type(string_type), intent(in) :: units(:)
+    type(string_type), intent(in) :: units(:)   !< units of the columns
     character(len=:), allocatable :: line
     character(len=*), parameter :: beginning = '# units:'
     integer :: i
@@ -214,7 +214,7 @@ contains
   end function unit_line
 
   pure function unit_name(unit) result(name)
-    character(len=*), intent(in) :: unit
+    character(len=*), intent(in) :: unit   !< unit of a column; empty where it has none
     character(len=:), allocatable :: name
 
     if (unit == '') then
@@ -225,7 +225,7 @@ contains
   end function unit_name
 
   pure function name_line(names) result(line)
-    type(string_type), intent(in) :: names(:)
+    type(string_type), intent(in) :: names(:)   !< headings of the columns
     character(len=:), allocatable :: line
     integer :: i
 
@@ -238,7 +238,7 @@ contains
 
   !> The names with commas between, in quotes where they hold a comma or a quote.
   pure function comma_line(names) result(line)
-    type(string_type), intent(in) :: names(:)
+    type(string_type), intent(in) :: names(:)   !< headings of the columns
     character(len=:), allocatable :: line
     character(len=:), allocatable :: name
     integer :: i, k
@@ -263,8 +263,8 @@ contains
 
   !> A word at the right end of a field; a word that fills the field keeps a blank before it.
   pure function right_aligned(word, width) result(field)
-    character(len=*), intent(in) :: word
-    integer, intent(in) :: width
+    character(len=*), intent(in) :: word   !< the text to set
+    integer, intent(in) :: width   !< width of the field
     character(len=max(width, len(word) + 1)) :: field
 
     field = repeat(' ', len(field) - len(word))//word

@@ -1,7 +1,7 @@
 !> A file or standard output that takes whole lines and reports every failure.
 !>
 !> It calls the system's own `creat`, `write` and `close`: gfortran's runtime library loses the failure of
-!> a write that it held back (up to 8 KiB on a full disk vanish with a status of zero), and ends
+!> a buffered write (up to 8 KiB on a full disk are lost with a status of zero), and ends
 !> lines on standard output by its own rules.
 module mech9_text_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t, c_char, c_null_char
@@ -13,7 +13,7 @@ module mech9_text_file
   public :: text_file_type, save_text, replace_text
 
   integer(c_int), parameter :: standard_output = 1
-  integer(c_int), parameter :: permissions = int(o'666', c_int)   !< less what the user masks
+  integer(c_int), parameter :: permissions = int(o'666', c_int)  !< of a new file; the user's mask removes some
 
   !> One file open for writing.
   type :: text_file_type
@@ -30,20 +30,20 @@ module mech9_text_file
   interface
     integer(c_int) function c_creat(path, mode) bind(c, name='creat')
       import :: c_int, c_char
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: mode   ! mode_t, an unsigned of the same size
+      character(kind=c_char), intent(in) :: path(*)   !< path of the file, ended by a zero
+      integer(c_int), value :: mode   !< permissions, mode_t: an unsigned integer of the same size
     end function c_creat
 
     integer(c_long) function c_write(descriptor, bytes, count) bind(c, name='write')
       import :: c_int, c_long, c_size_t, c_char
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(in) :: bytes(*)
-      integer(c_size_t), value :: count
+      integer(c_int), value :: descriptor   !< number of the open file
+      character(kind=c_char), intent(in) :: bytes(*)   !< the bytes to write
+      integer(c_size_t), value :: count   !< how many bytes
     end function c_write
 
     integer(c_int) function c_close(descriptor) bind(c, name='close')
       import :: c_int
-      integer(c_int), value :: descriptor
+      integer(c_int), value :: descriptor   !< number of the open file
     end function c_close
   end interface
 
@@ -79,10 +79,10 @@ contains
     is_open = self%descriptor >= 0
   end function is_open
 
-  !> Hand bytes to the system, all of them.
+  !> Write all bytes to the file.
   subroutine write_text(self, text, err)
     class(text_file_type), intent(inout) :: self   !< the text file
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the bytes to write
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: done
     integer(c_long) :: written
@@ -99,7 +99,7 @@ contains
     end do
   end subroutine write_text
 
-  !> Close the file; does nothing to one that is not open. Some disks tell only now that they are full.
+  !> Close the file; does nothing to one that is not open. Some disks report only at this moment that they are full.
   subroutine close_file(self, err)
     class(text_file_type), intent(inout) :: self   !< the text file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -127,10 +127,10 @@ contains
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine save_text
 
-  !> Write a file of this text in the place of another one: that stays as it is until this one is whole. Errors are
+  !> Replace a file by one with this text; the old file stays unchanged until the new one is complete. Errors are
   !> exit_file.
   subroutine replace_text(path, text, err)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< path of the file
     character(len=*), intent(in) :: text   !< of whole lines
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: at_close
