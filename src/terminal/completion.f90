@@ -1,11 +1,11 @@
-!> Completion of what is being typed: which of the words offered begin so, and what they have in common.
+!> Completion of a typed word: which words begin with it, and the longest beginning that they have in common.
 module mech9_completion
   use mech9_text, only: string_type, starts_with
   implicit none
   private
   public :: beginning_of_word, completions, common_beginning, in_columns
 
-  !> What stands between words at a prompt.
+  !> The characters between words at a prompt.
   character(len=*), parameter :: separators = ' ,='//achar(9)//achar(39)//achar(34)
 
 contains
@@ -18,11 +18,11 @@ contains
     beginning = text(scan(text, separators, back=.true.) + 1:)
   end function beginning_of_word
 
-  !> The words that begin so, in their order.
+  !> The words with the same beginning, in their order.
   pure subroutine completions(words, beginning, found)
-    type(string_type), intent(in) :: words(:)
-    character(len=*), intent(in) :: beginning
-    type(string_type), allocatable, intent(out) :: found(:)
+    type(string_type), intent(in) :: words(:)   !< the words offered
+    character(len=*), intent(in) :: beginning   !< the beginning of the word that is typed
+    type(string_type), allocatable, intent(out) :: found(:)   !< those that begin with it, in their order
     integer :: i, n
 
     n = 0
@@ -40,7 +40,7 @@ contains
 
   !> The longest text with which all of the words begin; empty where there are none.
   pure function common_beginning(words) result(text)
-    type(string_type), intent(in) :: words(:)
+    type(string_type), intent(in) :: words(:)   !< the words offered
     character(len=:), allocatable :: text
     integer :: i, n
 
@@ -59,7 +59,7 @@ contains
 
   !> The words side by side in columns, as whole lines.
   pure function in_columns(words, width) result(text)
-    type(string_type), intent(in) :: words(:)
+    type(string_type), intent(in) :: words(:)   !< the words offered
     integer, intent(in) :: width   !< letters in a line
     character(len=:), allocatable :: text
     integer :: i, column, columns

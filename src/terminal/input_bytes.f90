@@ -1,7 +1,7 @@
-!> Standard input byte by byte, as long as nobody interrupts.
+!> Standard input byte by byte, until an interrupt.
 !>
-!> It calls the system's own `poll` and `read`: gfortran's runtime library waits on through signals, reads
-!> lines of a fixed length, and takes bytes that others (a line editor) would have.
+!> It calls the system's own `poll` and `read`: gfortran's runtime library goes on waiting after a signal, reads
+!> lines of a fixed length, and buffers bytes that a line editor would need.
 module mech9_input_bytes
   use, intrinsic :: iso_c_binding, only: c_int, c_short, c_long, c_size_t, c_char
   use mech9_system, only: interrupted, hung_up, standard_input
@@ -9,16 +9,16 @@ module mech9_input_bytes
   private
   public :: input_bytes_type, input_read, input_ended, input_interrupted
 
-  !> What came of asking for input: something; its end (end of file, Ctrl-D, a terminal that went away);
-  !> an interrupt (Ctrl-C, a request to terminate).
+  !> Results of a request for input: a byte or line was read; the input ended (end of file, Ctrl-D, a terminal that was
+  !> closed); the user interrupted (Ctrl-C, a request to terminate).
   integer, parameter :: input_read = 0, input_ended = 1, input_interrupted = 2
 
-  !> How long to wait before looking again whether someone interrupts [ms]: a signal that comes just before
-  !> the wait begins does not break it off.
+  !> Longest wait before the next check for an interrupt [ms]: a signal that arrives just before the wait begins
+  !> does not end it.
   integer(c_int), parameter :: patience = 200
   integer, parameter :: buffer_size = 4096
 
-  !> Standard input, and what was taken from it and not yet asked for.
+  !> Standard input, and the bytes that were read and not yet requested.
   type :: input_bytes_type
     private
     character(len=buffer_size) :: buffer
@@ -30,7 +30,7 @@ module mech9_input_bytes
     procedure, private :: refill
   end type input_bytes_type
 
-  !> What `poll` is asked (struct pollfd).
+  !> The request to `poll` (struct pollfd).
   type, bind(c) :: poll_type
     integer(c_int) :: descriptor = standard_input
     integer(c_short) :: events = 1    !< POLLIN
@@ -40,28 +40,28 @@ module mech9_input_bytes
   interface
     integer(c_int) function c_poll(asked, count, timeout) bind(c, name='poll')
       import :: c_int, c_long, poll_type
-      type(poll_type), intent(inout) :: asked
-      integer(c_long), value :: count
-      integer(c_int), value :: timeout
+      type(poll_type), intent(inout) :: asked   !< the file to wait for, and the answer
+      integer(c_long), value :: count   !< how many files: 1
+      integer(c_int), value :: timeout   !< longest time to wait [ms]
     end function c_poll
 
     integer(c_long) function c_read(descriptor, bytes, count) bind(c, name='read')
       import :: c_int, c_long, c_size_t, c_char
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(out) :: bytes(*)
-      integer(c_size_t), value :: count
+      integer(c_int), value :: descriptor   !< number of the open file
+      character(kind=c_char), intent(out) :: bytes(*)   !< gets the bytes
+      integer(c_size_t), value :: count   !< most bytes to read
     end function c_read
   end interface
 
 contains
 
-  !> The next byte; waits for it. Who asks whether it was disturbed is told so at once instead, without a byte,
-  !> when a signal came that ends nothing: the program was stopped and goes on, the window has another size.
+  !> Wait for the next byte. With `disturbed`, the procedure also returns, without a byte, after a signal that does not
+  !> interrupt: the program was stopped and continued, or the size of the window changed.
   subroutine next_byte(self, byte, status, disturbed)
     class(input_bytes_type), intent(inout) :: self   !< the input bytes
-    character, intent(out) :: byte
+    character, intent(out) :: byte   !< the byte; zero where there is none
     integer, intent(out) :: status   !< input_read, or why there is none
-    logical, intent(out), optional :: disturbed
+    logical, intent(out), optional :: disturbed   !< a signal ended the wait, and there is no byte
     logical :: by_signal
 
     byte = achar(0)
@@ -79,18 +79,18 @@ contains
     byte = self%buffer(self%place:self%place)
   end subroutine next_byte
 
-  !> Give the byte taken last once more.
+  !> Return the last byte again at the next request.
   subroutine step_back(self)
     class(input_bytes_type), intent(inout) :: self   !< the input bytes
 
     if (self%place > 0) self%place = self%place - 1
   end subroutine step_back
 
-  !> Wait for input and take it; `disturbed` is true where a signal broke the waiting off.
+  !> Wait for input and read it; `disturbed` is true where a signal ended the wait.
   subroutine refill(self, status, disturbed)
     class(input_bytes_type), intent(inout) :: self   !< the input bytes
-    integer, intent(out) :: status
-    logical, intent(out) :: disturbed
+    integer, intent(out) :: status   !< input_read, input_ended or input_interrupted
+    logical, intent(out) :: disturbed   !< whether a signal ended the wait
     type(poll_type) :: asked
     integer :: ready, got
 

@@ -1,8 +1,8 @@
-!> The functions of libedit that are needed, as they stand in histedit.h.
+!> Interfaces of the functions of libedit that this program calls, as declared in histedit.h.
 !>
-!> Some of them take a variable list of arguments, which Fortran has no word for. They are declared with as
-!> many machine words as any call of ours needs: on the processors for which CMake lets libedit in, whole numbers
-!> and addresses are handed to such a function as to any other, and those that it does not look at do no harm.
+!> Some of them take a variable list of arguments, which Fortran cannot declare. They are declared with the largest number
+!> of machine words that a call here needs: on the processors for which CMake allows libedit, integers and addresses
+!> are passed to such a function as to any other, and arguments that it does not read do no harm.
 module mech9_libedit
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_ptr, c_char
   implicit none
@@ -17,21 +17,21 @@ module mech9_libedit
   !> A wide character (wchar_t of Linux): a code point.
   integer, parameter :: wide = c_int
 
-  ! What el_wset, history_w and setlocale are asked for.
+  ! Codes of operations of el_wset, history_w and setlocale.
   integer(c_int), parameter :: el_prompt = 0, el_editor = 2, el_signal = 3, el_bind = 4, el_setty = 8, &
                                el_addfn = 9, el_hist = 10, el_getcfn = 13, el_clientdata = 14, el_prep_term = 16, el_refresh = 20
   integer(c_int), parameter :: h_setsize = 1, h_enter = 10, h_setunique = 20
   integer(c_int), parameter :: lc_ctype = 0
-  ! What a function bound to a key answers.
+  ! Answers of a function bound to a key.
   integer, parameter :: cc_refresh = 4, cc_error = 6, cc_redisplay = 8
 
-  !> HistEventW: where the history puts its answers.
+  !> HistEventW: the answer of a call about the history.
   type, bind(c) :: history_event_type
     integer(c_int) :: number = 0
     integer(c_intptr_t) :: text = 0
   end type history_event_type
 
-  !> LineInfoW: addresses of the line's first character, of that at the cursor, and behind the last.
+  !> LineInfoW: addresses of the line's first character, of the one at the cursor, and of the first one after the line.
   type, bind(c) :: line_info_type
     integer(c_intptr_t) :: first, cursor, behind
   end type line_info_type
@@ -40,50 +40,54 @@ module mech9_libedit
     !> An editor on streams of C; null where there is none.
     type(c_ptr) function el_init(program_name, input, output, errors) bind(c)
       import :: c_ptr, c_char
-      character(kind=c_char), intent(in) :: program_name(*)
-      type(c_ptr), value :: input, output, errors
+      character(kind=c_char), intent(in) :: program_name(*)   !< name for the user's settings, ended by a zero
+      type(c_ptr), value :: input   !< stream of C that keys are read from
+      type(c_ptr), value :: output   !< stream of C that the line is drawn on
+      type(c_ptr), value :: errors   !< stream of C for errors
     end function el_init
 
-    !> Give an editor back.
+    !> Free an editor.
     subroutine el_end(editor) bind(c)
       import :: c_ptr
-      type(c_ptr), value :: editor
+      type(c_ptr), value :: editor   !< address of the editor
     end subroutine el_end
 
-    !> Set something; what the words mean depends on it.
+    !> Change a setting, which determines the meaning of the three arguments.
     integer(c_int) function el_wset(editor, what, first, second, third) bind(c)
       import :: c_ptr, c_int, c_intptr_t
-      type(c_ptr), value :: editor
-      integer(c_int), value :: what
-      integer(c_intptr_t), value :: first, second, third
+      type(c_ptr), value :: editor   !< address of the editor
+      integer(c_int), value :: what   !< the setting, one of the numbers above
+      integer(c_intptr_t), value :: first   !< first argument, by the setting: number or address
+      integer(c_intptr_t), value :: second   !< second argument; zero where unused
+      integer(c_intptr_t), value :: third   !< third argument; zero where unused
     end function el_wset
 
-    !> Ask what was set; here for an address.
+    !> Read a setting; here one that is an address.
     integer(c_int) function el_wget(editor, what, answer) bind(c)
       import :: c_ptr, c_int
-      type(c_ptr), value :: editor
-      integer(c_int), value :: what
-      type(c_ptr), intent(out) :: answer
+      type(c_ptr), value :: editor   !< address of the editor
+      integer(c_int), value :: what   !< the setting, one of the numbers above
+      type(c_ptr), intent(out) :: answer   !< the value of the setting
     end function el_wget
 
     !> Edit a line: the address of its characters with its end among them; null at the end of input.
     type(c_ptr) function el_wgets(editor, count) bind(c)
       import :: c_ptr, c_int
-      type(c_ptr), value :: editor
-      integer(c_int), intent(out) :: count
+      type(c_ptr), value :: editor   !< address of the editor
+      integer(c_int), intent(out) :: count   !< number of characters; -1 after an error
     end function el_wgets
 
-    !> The address of the line as it stands, a line_info_type.
+    !> The address of the present line, a line_info_type.
     type(c_ptr) function el_wline(editor) bind(c)
       import :: c_ptr
-      type(c_ptr), value :: editor
+      type(c_ptr), value :: editor   !< address of the editor
     end function el_wline
 
-    !> Put characters in at the cursor; -1 where there is no room.
+    !> Insert characters at the cursor; the answer is -1 where there is no room.
     integer(c_int) function el_winsertstr(editor, text) bind(c)
       import :: c_ptr, c_int
-      type(c_ptr), value :: editor
-      integer(c_int), intent(in) :: text(*)
+      type(c_ptr), value :: editor   !< address of the editor
+      integer(c_int), intent(in) :: text(*)   !< code points, ended by a zero
     end function el_winsertstr
 
     !> An empty history.
@@ -91,45 +95,45 @@ module mech9_libedit
       import :: c_ptr
     end function history_winit
 
-    !> Give a history back.
+    !> Free a history.
     subroutine history_wend(history) bind(c)
       import :: c_ptr
-      type(c_ptr), value :: history
+      type(c_ptr), value :: history   !< address of the history
     end subroutine history_wend
 
-    !> Ask something of a history.
+    !> Perform an operation on a history.
     integer(c_int) function history_w(history, event, what, operand) bind(c)
       import :: c_ptr, c_int, c_intptr_t, history_event_type
-      type(c_ptr), value :: history
-      type(history_event_type), intent(inout) :: event
-      integer(c_int), value :: what
-      integer(c_intptr_t), value :: operand
+      type(c_ptr), value :: history   !< address of the history
+      type(history_event_type), intent(inout) :: event   !< gets the answer
+      integer(c_int), value :: what   !< the operation, one of the numbers above
+      integer(c_intptr_t), value :: operand   !< number or address of a text, by the operation
     end function history_w
 
-    !> One more number for an open file.
+    !> Another number for an open file.
     integer(c_int) function c_dup(descriptor) bind(c, name='dup')
       import :: c_int
-      integer(c_int), value :: descriptor
+      integer(c_int), value :: descriptor   !< number of the open file
     end function c_dup
 
     !> A stream of C on an open file.
     type(c_ptr) function c_fdopen(descriptor, mode) bind(c, name='fdopen')
       import :: c_ptr, c_int, c_char
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(in) :: mode(*)
+      integer(c_int), value :: descriptor   !< number of the open file
+      character(kind=c_char), intent(in) :: mode(*)   !< 'r' or 'w', ended by a zero
     end function c_fdopen
 
     !> Close a stream, and its file.
     integer(c_int) function c_fclose(file) bind(c, name='fclose')
       import :: c_ptr, c_int
-      type(c_ptr), value :: file
+      type(c_ptr), value :: file   !< the stream
     end function c_fclose
 
-    !> Choose how the system writes something; the empty name means the user's own way.
+    !> Choose rules of a language; the empty name means those that the user has set.
     type(c_ptr) function c_setlocale(category, name) bind(c, name='setlocale')
       import :: c_ptr, c_int, c_char
-      integer(c_int), value :: category
-      character(kind=c_char), intent(in) :: name(*)
+      integer(c_int), value :: category   !< kind of rules, such as lc_ctype
+      character(kind=c_char), intent(in) :: name(*)   !< name of the locale, ended by a zero
     end function c_setlocale
   end interface
 end module mech9_libedit

@@ -1,7 +1,7 @@
 !> A line edited on a terminal by libedit: keys, history, completion.
 !>
-!> libedit calls back for the prompt, for each key and for completion. What these need travels with the
-!> editor, as its client data: a box of plain Fortran variables. Ctrl-C is a key here and no signal.
+!> libedit calls procedures of this module for the prompt, for each key and for completion. Their data belong to the
+!> editor as its client data: a box of plain Fortran variables. Ctrl-C is a key here and not a signal.
 module mech9_libedit_editor
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_signed_char, c_char, c_ptr, c_null_ptr, c_null_char, c_loc, &
                                          c_funloc, c_funptr, c_f_pointer, c_associated
@@ -21,18 +21,18 @@ module mech9_libedit_editor
   public :: line_editor_type
 
   integer(c_intptr_t), parameter :: nothing = 0
-  !> Answers that are remembered.
+  !> Number of answers that the history keeps.
   integer(c_intptr_t), parameter :: history_size = 1000
-  !> Letters of a line at most, as many as the terminal itself would take; libedit draws longer ones ever slower.
+  !> Most letters of a line, as many as the terminal itself accepts; libedit draws longer lines slowly.
   integer, parameter :: longest_line = 4095
   character, parameter :: ctrl_c = achar(3), bell = achar(7)
-  !> The function for completion as keys are bound to it.
+  !> Name of the function for completion, to which keys are bound.
   character(len=*), parameter :: completion_name = 'complete-word'
 
-  !> What the functions that libedit calls have at hand.
+  !> Data for the functions that libedit calls.
   type :: box_type
     type(input_bytes_type) :: bytes
-    integer :: status = input_read         !< why there is no key any more
+    integer :: status = input_read     !< input_read, or the reason why there are no more keys
     integer(wide), allocatable :: prompt(:)
     type(string_type), allocatable :: words(:)
     integer(wide), allocatable :: name(:)  !< of the function for completion, which libedit keeps by address
@@ -54,11 +54,11 @@ module mech9_libedit_editor
 
 contains
 
-  !> Begin; `ready` is false where the terminal is not to be had.
+  !> Start the editor; `ready` is false where the terminal cannot be used.
   subroutine start(self, program_name, ready)
     class(line_editor_type), intent(inout) :: self   !< the line editor
-    character(len=*), intent(in) :: program_name
-    logical, intent(out) :: ready
+    character(len=*), intent(in) :: program_name   !< name for the user's settings of libedit
+    logical, intent(out) :: ready   !< whether lines can be edited
 
     call take_letters_of_user()
     self%input = c_fdopen(c_dup(int(standard_input, c_int)), 'r'//c_null_char)
@@ -78,8 +78,8 @@ contains
     end if
   end subroutine start
 
-  !> Letters are shown as the user's terminal has them; where the user has no preference, all of them.
-  !> Numbers stay as they are.
+  !> Show letters by the user's locale; where the user has set none, show all letters of Unicode. The form of numbers
+  !> does not change.
   subroutine take_letters_of_user()
     type(c_ptr) :: name
     character(kind=c_char), pointer :: letters(:)
@@ -93,7 +93,7 @@ contains
     name = c_setlocale(lc_ctype, 'C.UTF-8'//c_null_char)
   end subroutine take_letters_of_user
 
-  !> Everything that is as we want it, and not as libedit has it.
+  !> Change the settings of libedit that differ from its defaults.
   subroutine set_up(self)
     class(line_editor_type), intent(inout) :: self   !< the line editor
     integer(c_int) :: status
@@ -113,19 +113,19 @@ contains
     call set_text(self%editor, el_bind, '\e[3~', 'ed-delete-next-char')
     call set_text(self%editor, el_bind, '\e[1;5D', 'ed-prev-word')
     call set_text(self%editor, el_bind, '\e[1;5C', 'em-next-word')
-    ! a command line of the editor's own has no place here
+    ! the editor's own command line is switched off
     call set_text(self%editor, el_bind, '\ex', 'ed-unassigned')
     call set_text(self%editor, el_bind, '\eX', 'ed-unassigned')
     ! while a line is edited, the terminal makes no signal of Ctrl-C
     call set_text(self%editor, el_setty, '-d', 'intr=')
   end subroutine set_up
 
-  !> What a prompt needs. A procedure of its own: gfortran 12 does not allocate what is assigned to a component
-  !> behind a pointer in a polymorphic variable.
+  !> Store the data of a prompt. This is a procedure of its own because gfortran 12 does not allocate a component on assignment
+  !> when it is reached through a pointer in a polymorphic variable.
   subroutine fill_box(box, prompt, words)
-    type(box_type), intent(inout) :: box
-    character(len=*), intent(in) :: prompt
-    type(string_type), intent(in), optional :: words(:)
+    type(box_type), intent(inout) :: box   !< gets the data
+    character(len=*), intent(in) :: prompt   !< text before the line
+    type(string_type), intent(in), optional :: words(:)   !< words offered for completion; absent: none
 
     box%status = input_read
     box%prompt = to_wide(prompt)
@@ -136,7 +136,7 @@ contains
     end if
   end subroutine fill_box
 
-  !> Ask for a line and wait for it.
+  !> Show the prompt and wait for a line.
   subroutine read_line(self, prompt, words, line, status)
     class(line_editor_type), intent(inout) :: self   !< the line editor
     character(len=*), intent(in) :: prompt              !< one line
@@ -167,7 +167,7 @@ contains
     ignored = history_w(self%history, self%event, h_enter, word_of(c_loc(remembered)))
   end subroutine read_line
 
-  !> Give back what was taken.
+  !> Free editor, history, streams and data.
   subroutine stop_editor(self)
     class(line_editor_type), intent(inout) :: self   !< the line editor
     integer(c_int) :: ignored
@@ -183,19 +183,19 @@ contains
     self%output = c_null_ptr
   end subroutine stop_editor
 
-  !> Called for the prompt.
+  !> The prompt; libedit calls this function.
   type(c_ptr) function show_prompt(editor) bind(c)
-    type(c_ptr), value :: editor
+    type(c_ptr), value :: editor   !< address of the editor
     type(box_type), pointer :: box
 
     box => box_of(editor)
     show_prompt = c_loc(box%prompt)
   end function show_prompt
 
-  !> Called for the next key: one code point; answers how many were read.
+  !> Read the next key, one code point, and return how many were read; libedit calls this function.
   integer(c_int) function get_key(editor, key) bind(c)
-    type(c_ptr), value :: editor
-    integer(wide), intent(out) :: key
+    type(c_ptr), value :: editor   !< address of the editor
+    integer(wide), intent(out) :: key   !< code point of the key
     type(box_type), pointer :: box
     logical :: disturbed
 
@@ -214,9 +214,9 @@ contains
     get_key = merge(1_c_int, 0_c_int, box%status == input_read)
   end function get_key
 
-  !> Draw prompt and line once more, from the beginning of the line that the cursor is in.
+  !> Draw prompt and line again, from the beginning of the line that the cursor is in.
   subroutine draw_again(editor)
-    type(c_ptr), intent(in) :: editor
+    type(c_ptr), intent(in) :: editor   !< address of the editor
     integer(c_int) :: ignored
 
     write (error_unit, '(a)', advance='no') achar(13)
@@ -224,27 +224,27 @@ contains
     ignored = el_wset(editor, el_refresh, nothing, nothing, nothing)
   end subroutine draw_again
 
-  !> Not a key that does something.
+  !> Whether a key is a letter and not a command.
   pure logical function is_letter(key)
-    integer(wide), intent(in) :: key
+    integer(wide), intent(in) :: key   !< code point of the key
 
     is_letter = key >= 32 .and. key /= 127
   end function is_letter
 
-  !> Letters of the line as it stands.
+  !> Number of letters of the present line.
   integer function line_length(editor)
-    type(c_ptr), intent(in) :: editor
+    type(c_ptr), intent(in) :: editor   !< address of the editor
     type(line_info_type), pointer :: info
 
     call c_f_pointer(el_wline(editor), info)
     line_length = int((info%behind - info%first)/(storage_size(1_wide)/8))
   end function line_length
 
-  !> One UTF-8 character; unknown_character for bytes that are none.
+  !> Read one UTF-8 character; it is unknown_character where the bytes form none.
   subroutine read_character(bytes, point, status, disturbed)
-    type(input_bytes_type), intent(inout) :: bytes
-    integer(wide), intent(out) :: point
-    integer, intent(out) :: status
+    type(input_bytes_type), intent(inout) :: bytes   !< standard input
+    integer(wide), intent(out) :: point   !< code point of the character
+    integer, intent(out) :: status   !< input_read, input_ended or input_interrupted
     logical, intent(out) :: disturbed     !< as that of next_byte
     character(len=4) :: letter
     integer :: length, i
@@ -252,7 +252,7 @@ contains
     point = 0
     call bytes%next_byte(letter(1:1), status, disturbed)
     if (status /= input_read .or. disturbed) return
-    ! as many bytes as there are leading ones
+    ! the number of leading one bits is the number of bytes
     length = max(1, leadz(not(ishft(ichar(letter(1:1)), bit_size(1) - 8))))
     point = unknown_character
     if (length > 4) return
@@ -266,10 +266,11 @@ contains
     point = code_point(letter(:length))
   end subroutine read_character
 
-  !> Called for Tab: insert what all words that fit have in common; where that is nothing, list them.
+  !> Insert the letters that all fitting words have in common, or list these words where there are none. libedit calls this
+!> function for the key Tab.
   integer(c_signed_char) function complete_word(editor, key) bind(c)
-    type(c_ptr), value :: editor
-    integer(c_int), value :: key
+    type(c_ptr), value :: editor   !< address of the editor
+    integer(c_int), value :: key   !< code of the key, not used
     type(box_type), pointer :: box
     type(string_type), allocatable :: found(:)
     character(len=:), allocatable :: beginning, common
@@ -291,9 +292,9 @@ contains
     complete_word = int(answer, c_signed_char)
   end function complete_word
 
-  !> What stands before the cursor.
+  !> The text before the cursor.
   function line_to_cursor(editor) result(text)
-    type(c_ptr), intent(in) :: editor
+    type(c_ptr), intent(in) :: editor   !< address of the editor
     character(len=:), allocatable :: text
     type(line_info_type), pointer :: info
     integer(wide), pointer :: points(:)
@@ -305,7 +306,7 @@ contains
   end function line_to_cursor
 
   function box_of(editor) result(box)
-    type(c_ptr), intent(in) :: editor
+    type(c_ptr), intent(in) :: editor   !< address of the editor
     type(box_type), pointer :: box
     type(c_ptr) :: address
 
@@ -313,12 +314,12 @@ contains
     call c_f_pointer(address, box)
   end function box_of
 
-  !> A setting that takes texts. libedit looks at them only now.
+  !> Change a setting that takes texts. libedit reads them only during this call.
   subroutine set_text(editor, what, first, second)
-    type(c_ptr), intent(in) :: editor
-    integer(c_int), intent(in) :: what
-    character(len=*), intent(in) :: first
-    character(len=*), intent(in), optional :: second
+    type(c_ptr), intent(in) :: editor   !< address of the editor
+    integer(c_int), intent(in) :: what   !< number of the setting, such as el_bind
+    character(len=*), intent(in) :: first   !< its first text
+    character(len=*), intent(in), optional :: second   !< its second text; absent: none
     integer(wide), allocatable, target :: one(:), other(:)
     integer(c_int) :: ignored
 
@@ -333,15 +334,15 @@ contains
 
   !> An address as a machine word.
   pure integer(c_intptr_t) function word_of(address)
-    type(c_ptr), intent(in) :: address
+    type(c_ptr), intent(in) :: address   !< any address
 
     word_of = transfer(address, 0_c_intptr_t)
   end function word_of
 
-  !> The address of a function as a machine word. By value: gfortran would put the address of a function of
-  !> a shared library where it cannot be filled in when the program is loaded.
+  !> The address of a function as a machine word. The argument is passed by value: gfortran would otherwise place the address
+  !> of a function of a shared library where the loader cannot set it.
   pure integer(c_intptr_t) function function_word(address)
-    type(c_funptr), value :: address
+    type(c_funptr), value :: address   !< address of the function
 
     function_word = transfer(address, 0_c_intptr_t)
   end function function_word

@@ -1,7 +1,7 @@
-!> Lines that a person or a script answers to prompts.
+!> Lines that a person or a script gives as answers to prompts.
 !>
 !> On a terminal lines can be edited, recalled and completed. From a pipe or a file, and on a terminal that
-!> cannot move its cursor, they are read as they come. Prompts go to standard error.
+!> cannot move its cursor, they are read without editing. Prompts are written to standard error.
 module mech9_line_input
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_text, only: string_type, lower
@@ -15,13 +15,13 @@ module mech9_line_input
 
   character, parameter :: line_feed = achar(10), carriage_return = achar(13)
 
-  !> Standard input as lines. It must be closed, so that the terminal's memory is given back.
+  !> Standard input as lines. It must be closed, so that the memory of the editor is freed.
   type :: line_input_type
     private
     type(input_bytes_type) :: bytes
     type(line_editor_type) :: editor
     logical :: edits = .false.
-    logical :: echoes = .false.    !< whoever reads the prompts sees the answers beside them
+    logical :: echoes = .false.  !< the reader of the prompts sees the answers beside them
   contains
     procedure :: open => open_input
     procedure :: read_line
@@ -30,11 +30,11 @@ module mech9_line_input
 
 contains
 
-  !> Begin. From now on Ctrl-C and a closed terminal are answers of `read_line` instead of the
-  !> program's end.
+  !> Open the input. After this call Ctrl-C and a closed terminal are results of `read_line` and do not end
+  !> the program.
   subroutine open_input(self, program_name)
     class(line_input_type), intent(inout) :: self   !< the line input
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< name for the user's settings of libedit
 
     call catch_interrupts()
     self%echoes = is_terminal(standard_input)
@@ -43,7 +43,7 @@ contains
     if (is_terminal(standard_error)) call self%editor%start(program_name, self%edits)
   end subroutine open_input
 
-  !> Ask for a line and wait for it. A last line without an end counts as one.
+  !> Show the prompt and wait for a line. A last line without a line end is a line too.
   subroutine read_line(self, prompt, words, line, status)
     class(line_input_type), intent(inout) :: self   !< the line input
     character(len=*), intent(in) :: prompt             !< may have several lines
@@ -65,7 +65,7 @@ contains
     end if
   end subroutine read_line
 
-  !> No more lines are asked for.
+  !> End the reading of lines.
   subroutine close_input(self)
     class(line_input_type), intent(inout) :: self   !< the line input
 
@@ -73,7 +73,7 @@ contains
     self%edits = .false.
   end subroutine close_input
 
-  !> A terminal of which nothing is known, or that can only type on.
+  !> Whether the terminal is of unknown kind, or cannot move its cursor.
   logical function dumb_terminal()
     character(len=8) :: name
     integer :: status
@@ -84,11 +84,11 @@ contains
     if (status == -1) dumb_terminal = .false.
   end function dumb_terminal
 
-  !> A line of any length, as it comes.
+  !> Read a line of any length without editing.
   subroutine read_plain(bytes, line, status)
-    type(input_bytes_type), intent(inout) :: bytes
-    character(len=:), allocatable, intent(out) :: line
-    integer, intent(out) :: status
+    type(input_bytes_type), intent(inout) :: bytes   !< standard input
+    character(len=:), allocatable, intent(out) :: line   !< the line without its end
+    integer, intent(out) :: status   !< line_read, line_ended or line_interrupted
     character(len=:), allocatable :: grown
     character :: byte
     integer :: n
@@ -113,9 +113,9 @@ contains
     line = line(:n)
   end subroutine read_plain
 
-  !> To standard error. Where nobody listens any more, nothing can be done about it.
+  !> Write a text to standard error. A failure is ignored: there is no other place for a message.
   subroutine say(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the text, without a line end
     integer :: status
 
     if (len(text) == 0) return

@@ -6,7 +6,7 @@ module mech9_no_editor
   private
   public :: line_editor_type
 
-  !> An editor that never is ready.
+  !> An editor that is never ready.
   type :: line_editor_type
   contains
     procedure, nopass :: start
@@ -16,26 +16,26 @@ module mech9_no_editor
 
 contains
 
-  !> There is nothing to begin with.
+  !> Answer that lines cannot be edited.
   subroutine start(program_name, ready)
-    character(len=*), intent(in) :: program_name
-    logical, intent(out) :: ready
+    character(len=*), intent(in) :: program_name   !< not used
+    logical, intent(out) :: ready   !< always false
 
     ready = .false.
   end subroutine start
 
-  !> Not called, since it was never ready.
+  !> Return the end of the input; this procedure is not called, since the editor is never ready.
   subroutine read_line(prompt, words, line, status)
-    character(len=*), intent(in) :: prompt
-    type(string_type), intent(in) :: words(:)
-    character(len=:), allocatable, intent(out) :: line
-    integer, intent(out) :: status
+    character(len=*), intent(in) :: prompt   !< not used
+    type(string_type), intent(in) :: words(:)   !< not used
+    character(len=:), allocatable, intent(out) :: line   !< always empty
+    integer, intent(out) :: status   !< always input_ended
 
     line = ''
     status = input_ended
   end subroutine read_line
 
-  !> There is nothing to give back.
+  !> Do nothing: the editor holds no resources.
   subroutine stop_editor()
   end subroutine stop_editor
 end module mech9_no_editor

@@ -1,18 +1,18 @@
-!> Text as UTF-8 bytes, and as the code points a line editor works on.
+!> Conversion of text between UTF-8 bytes and the code points that a line editor uses.
 module mech9_wide_text
   use mech9_printable, only: utf8_length
   implicit none
   private
   public :: to_wide, to_bytes, code_point, unknown_character
 
-  !> U+FFFD, which stands for what is no character.
+  !> U+FFFD, which replaces bytes that form no character.
   integer, parameter :: unknown_character = int(z'FFFD')
 
 contains
 
-  !> The code points of a text and a zero at its end, as C wants it.
+  !> The code points of a text with a zero at the end, the form of strings in C.
   pure function to_wide(text) result(points)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< a text in UTF-8
     integer, allocatable :: points(:)
     integer :: i, n, length
 
@@ -30,7 +30,7 @@ contains
 
   !> The code point of one UTF-8 character; unknown_character where the bytes are none.
   pure integer function code_point(bytes) result(point)
-    character(len=*), intent(in) :: bytes
+    character(len=*), intent(in) :: bytes   !< the bytes of one character
     integer :: i
 
     point = unknown_character
@@ -46,7 +46,7 @@ contains
 
   !> Code points as UTF-8.
   pure function to_bytes(points) result(text)
-    integer, intent(in) :: points(:)
+    integer, intent(in) :: points(:)   !< code points, without a zero at the end
     character(len=:), allocatable :: text
     character(len=4*size(points)) :: buffer
     integer :: i, used, length, k
@@ -60,7 +60,7 @@ contains
       if (length == 1) then
         buffer(used + 1:used + 1) = char(iand(points(i), 127))
       else
-        ! as many leading ones as there are bytes
+        ! the first byte begins with as many one bits as there are bytes
         buffer(used + 1:used + 1) = char(256 - 2**(8 - length) + ishft(points(i), -6*(length - 1)))
       end if
       used = used + length
@@ -69,7 +69,7 @@ contains
   end function to_bytes
 
   pure integer function bytes_of(point)
-    integer, intent(in) :: point
+    integer, intent(in) :: point   !< a code point
 
     select case (point)
     case (128:2047)

@@ -10,7 +10,7 @@ module mech9_bash_completion
 
 contains
 
-  !> The script, of whole lines. Bash hands it the line cut at each `=`; a file's name may hold anything.
+  !> The script, as whole lines. Bash passes it the command line, split at each `=`; names of files may have any letters.
   pure function bash_completion(program_name) result(script)
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: script
@@ -35,7 +35,7 @@ contains
       'complete -F _'//program_name//' '//program_name//eol
   end function bash_completion
 
-  !> The words that a name of the data file takes, after --set GROUP.NAME=
+  !> Completion after --set GROUP.NAME= by the words that the name takes.
   pure function values() result(text)
     character(len=:), allocatable :: text
     integer :: i
@@ -48,9 +48,9 @@ contains
     end do
   end function values
 
-  !> What follows each option that takes something.
+  !> Completion after each option that takes an argument.
   pure function arguments(program_name) result(text)
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: text, label
     integer :: i
 
@@ -73,9 +73,10 @@ contains
     end do
   end function arguments
 
-  !> One branch of the choice: these words fit.
+  !> One branch of the `case` of bash, which offers these words.
   pure function choice(label, words, also, condition) result(text)
-    character(len=*), intent(in) :: label, words
+    character(len=*), intent(in) :: label   !< pattern of bash that the option must match
+    character(len=*), intent(in) :: words   !< words offered, with blanks between them
     character(len=*), intent(in), optional :: also        !< another command
     character(len=*), intent(in), optional :: condition   !< without which it goes on as if nothing stood before
     character(len=:), allocatable :: text
@@ -88,7 +89,7 @@ contains
   end function choice
 
   pure function options_of(program_name) result(text)
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: text
     integer :: i
 
@@ -109,9 +110,9 @@ contains
     end do
   end function groups_of_data
 
-  !> Every GROUP.NAME once, with something behind it.
+  !> Every GROUP.NAME once, with an ending.
   pure function names_of_data(ending) result(text)
-    character(len=*), intent(in) :: ending
+    character(len=*), intent(in) :: ending   !< text appended to each name
     character(len=:), allocatable :: text
     integer :: i
 
@@ -122,7 +123,7 @@ contains
   end function names_of_data
 
   pure function data_name(row) result(text)
-    integer, intent(in) :: row
+    integer, intent(in) :: row   !< row of item_table
     character(len=:), allocatable :: text
 
     text = trim(item_table(row)%group)//'.'//trim(item_table(row)%name)

@@ -1,4 +1,4 @@
-!> The command line: its words, and what they ask for.
+!> The command line: its words, the data file and the options.
 module mech9_command_line
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name, starts_with
@@ -14,10 +14,10 @@ module mech9_command_line
     character(len=:), allocatable :: argument         !< empty where it has none
   end type given_type
 
-  !> What a command line asks for: a data file, and options by the names of the table of options.
+  !> The content of a command line: a data file, and options by the names of the table of options.
   type :: command_line_type
     character(len=:), allocatable :: file             !< the data file; empty where none is given
-    character(len=:), allocatable :: line             !< all words, as a shell would take them
+    character(len=:), allocatable :: line       !< all words as a line for a shell
     type(given_type), allocatable, private :: given(:)
   contains
     procedure :: has
@@ -32,7 +32,7 @@ contains
 
   !> The words of this program's own command line, without the program's name.
   subroutine get_command_words(words)
-    type(string_type), allocatable, intent(out) :: words(:)
+    type(string_type), allocatable, intent(out) :: words(:)   !< the words, without the program's name
     integer :: i, length
 
     allocate (words(command_argument_count()))
@@ -47,7 +47,7 @@ contains
   pure subroutine parse_command_line(words, program_name, options, err)
     type(string_type), intent(in) :: words(:)      !< without the program's name
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d: whose options count
-    type(command_line_type), intent(out) :: options
+    type(command_line_type), intent(out) :: options   !< the data file and the options
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
     logical :: only_files
@@ -72,7 +72,7 @@ contains
     call judge(program_name, options, err)
   end subroutine parse_command_line
 
-  !> Words as one line that a shell takes for the same words.
+  !> Words as one line that a shell splits into the same words.
   pure function shell_line(words) result(line)
     type(string_type), intent(in) :: words(:)   !< as a program is given them
     character(len=:), allocatable :: line
@@ -92,9 +92,9 @@ contains
     end do
   end function shell_line
 
-  !> Length of a word as a shell must be given it.
+  !> Length of a word in the form for a shell, with its quotes.
   pure integer function shell_length(word)
-    character(len=*), intent(in) :: word
+    character(len=*), intent(in) :: word   !< one word of the command line
     integer :: i
 
     shell_length = len(word)
@@ -105,9 +105,9 @@ contains
     end do
   end function shell_length
 
-  !> A word as a shell must be given it: in quotes where it holds what a shell would not take as it is.
+  !> A word in the form for a shell: in quotes where it holds letters with a meaning for the shell.
   pure subroutine write_for_shell(word, text)
-    character(len=*), intent(in) :: word
+    character(len=*), intent(in) :: word   !< one word of the command line
     character(len=*), intent(inout) :: text   !< of length shell_length(word)
     character(len=*), parameter :: quote = "'\''"
     integer :: i, at
@@ -128,24 +128,24 @@ contains
     text(at:at) = "'"
   end subroutine write_for_shell
 
-  !> Whether a shell takes a word as it is.
+  !> Whether a word has only letters without a special meaning for a shell.
   pure logical function is_harmless(word)
-    character(len=*), intent(in) :: word
+    character(len=*), intent(in) :: word   !< one word of the command line
     character(len=*), parameter :: harmless = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+%@'
 
     is_harmless = word /= '' .and. verify(word, harmless) == 0
   end function is_harmless
 
-  !> A single dash is not an option: it names standard input or output.
+  !> Whether a word is an option; a single dash is none: it means standard input or output.
   pure logical function is_option(word)
-    character(len=*), intent(in) :: word
+    character(len=*), intent(in) :: word   !< one word of the command line
 
     is_option = starts_with(word, '-') .and. len(word) > 1
   end function is_option
 
   pure subroutine take_file(word, options, err)
-    character(len=*), intent(in) :: word
-    type(command_line_type), intent(inout) :: options
+    character(len=*), intent(in) :: word   !< the path of the data file
+    type(command_line_type), intent(inout) :: options   !< gets the data file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (word == '') then
@@ -160,10 +160,10 @@ contains
 
   !> Read the option that begins at words(i), and step over it.
   pure subroutine read_option(words, i, program_name, options, err)
-    type(string_type), intent(in) :: words(:)
-    integer, intent(inout) :: i
-    character(len=*), intent(in) :: program_name
-    type(command_line_type), intent(inout) :: options
+    type(string_type), intent(in) :: words(:)   !< the words of the command line
+    integer, intent(inout) :: i   !< position of the option; afterwards that of the next word
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    type(command_line_type), intent(inout) :: options   !< gets the option
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: name, argument
     integer :: equals, place
@@ -197,7 +197,7 @@ contains
 
   pure subroutine raise_unknown(name, program_name, err)
     character(len=*), intent(in) :: name   !< with its dashes
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: nearest, hint
     integer :: i
@@ -211,11 +211,11 @@ contains
     call raise(err, exit_usage, "unknown option '"//name//"'; "//hint)
   end subroutine raise_unknown
 
-  !> Whether an option may be given so: its argument and how often.
+  !> Check the argument of an option, and whether the option may be repeated.
   pure subroutine judge_argument(option, argument, has_argument, options, err)
-    type(option_type), intent(in) :: option
-    character(len=*), intent(in) :: argument
-    logical, intent(in) :: has_argument
+    type(option_type), intent(in) :: option   !< the option, as a row of its table
+    character(len=*), intent(in) :: argument   !< its argument; empty where it has none
+    logical, intent(in) :: has_argument   !< whether an argument is given
     type(command_line_type), intent(in) :: options   !< what was given before
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: name
@@ -237,9 +237,9 @@ contains
     end if
   end subroutine judge_argument
 
-  !> Is it a whole number from 1 on that an integer can hold?
+  !> Whether a text is a whole number from 1 on that an integer can hold.
   pure logical function is_whole_number(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the argument of an option
     integer :: value, status
 
     is_whole_number = .false.
@@ -248,9 +248,9 @@ contains
     if (status == 0) is_whole_number = value > 0
   end function is_whole_number
 
-  !> Is it of the form GROUP.NAME=VALUE? The grammar of the data file knows the names.
+  !> Whether a text has the form GROUP.NAME=VALUE. The reader of the data file checks the names.
   pure logical function is_assignment(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the argument of an option
     integer :: equals, dot
 
     equals = index(text, '=')
@@ -258,10 +258,11 @@ contains
     is_assignment = dot > 1 .and. dot < equals - 1
   end function is_assignment
 
-  !> One option more. An array constructor would be shorter, but gfortran 12 leaks what is in it.
+  !> Append an option. An array constructor would be shorter, but gfortran 12 leaks its content.
   pure subroutine append(given, name, argument)
-    type(given_type), allocatable, intent(inout) :: given(:)
-    character(len=*), intent(in) :: name, argument
+    type(given_type), allocatable, intent(inout) :: given(:)   !< the options given so far
+    character(len=*), intent(in) :: name   !< name of the option, without the dashes
+    character(len=*), intent(in) :: argument   !< its argument; empty where it has none
     type(given_type), allocatable :: longer(:)
     integer :: i
 
@@ -299,7 +300,7 @@ contains
   pure subroutine arguments(self, name, texts)
     class(command_line_type), intent(in) :: self   !< the command line
     character(len=*), intent(in) :: name    !< without the dashes
-    type(string_type), allocatable, intent(out) :: texts(:)
+    type(string_type), allocatable, intent(out) :: texts(:)   !< the arguments, in their order
     integer :: i, n
 
     allocate (texts(count(self%given%name == name)))
@@ -315,28 +316,28 @@ contains
   pure integer function number(self, name, default)
     class(command_line_type), intent(in) :: self   !< the command line
     character(len=*), intent(in) :: name    !< without the dashes
-    integer, intent(in) :: default
+    integer, intent(in) :: default   !< the result where the option is not given
     integer :: place
 
     number = default
     place = place_of(self, name)
-    if (place > 0) read (self%given(place)%argument, *) number   ! judged when it was taken
+    if (place > 0) read (self%given(place)%argument, *) number   ! checked when it was read
   end function number
 
-  !> Where an option stands among the given ones; 0 where it is not given.
+  !> Position of an option among the given ones; 0 where it is not given.
   pure integer function place_of(self, name)
     class(command_line_type), intent(in) :: self   !< the command line
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< name of the option, without the dashes
 
     do place_of = size(self%given), 1, -1
       if (self%given(place_of)%name == name) return
     end do
   end function place_of
 
-  !> What the words mean together.
+  !> Check the options for contradictions.
   pure subroutine judge(program_name, options, err)
-    character(len=*), intent(in) :: program_name
-    type(command_line_type), intent(in) :: options
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options   !< the data file and the options
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (options%has('help') .or. options%has('version') .or. options%has('help-data')) return
@@ -351,7 +352,7 @@ contains
     end if
   end subroutine judge
 
-  !> The option that is answered instead of a run, the first where there are several; empty where none is given.
+  !> The option that replaces the run by an answer, the first one where there are several; empty where none is given.
   pure function answer(self) result(name)
     class(command_line_type), intent(in) :: self   !< the command line
     character(len=:), allocatable :: name
@@ -364,17 +365,17 @@ contains
     end do
   end function answer
 
-  !> Whether a conversation is asked for, instead of work on a data file as it is.
+  !> Whether the program holds a conversation instead of working on a data file.
   pure logical function converses(self)
     class(command_line_type), intent(in) :: self   !< the command line
 
     converses = self%file == '' .or. self%has('dialogue') .or. self%has('edit') .or. self%has('resume')
   end function converses
 
-  !> A conversation is about one file or none, and ends with a run, not with an answer.
+  !> Check the options of a conversation: it takes one data file or none, and no option that replaces the run by an answer.
   pure subroutine judge_conversation(program_name, options, err)
-    character(len=*), intent(in) :: program_name
-    type(command_line_type), intent(in) :: options
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options   !< the data file and the options
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: missing
     character(len=9), parameter :: generic(6) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'set']

@@ -1,5 +1,5 @@
-!> What a program says of itself: its purpose, its options, its exit codes. --help, the manual page and the completion of the
-!> shell come from here.
+!> The help of a program: its purpose, its options, its exit codes. --help, the manual page and the completion of the
+!> shell are made from these.
 module mech9_help_text
   use mech9_error, only: exit_done, exit_internal, exit_usage, exit_data, exit_structure, exit_assembly, &
                          exit_singular, exit_integrator, exit_file, exit_interrupted
@@ -9,7 +9,7 @@ module mech9_help_text
   private
   public :: help_text, option_form, purpose, exit_row_type, exit_table
 
-  !> A code that a program answers to the shell.
+  !> An exit code of a program.
   type :: exit_row_type
     integer :: code
     character(len=32) :: meaning
@@ -32,7 +32,7 @@ module mech9_help_text
 
 contains
 
-  !> What a program does, in one line.
+  !> The purpose of a program, in one line.
   pure function purpose(program_name) result(text)
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: text
@@ -41,9 +41,9 @@ contains
     if (program_name == 'mech9d') text = 'dynamics of mechanisms from structural data'
   end function purpose
 
-  !> The text of --help, of whole lines, the last one without its end.
+  !> The text of --help, as whole lines; the last one has no line end.
   pure function help_text(program_name) result(text)
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: text
     character(len=28) :: left
     integer :: i
@@ -61,7 +61,7 @@ contains
     text = text//eol//eol//'Results go to files or standard output, talk to standard error.'//eol//exit_lines()
   end function help_text
 
-  !> The exit codes in as few lines as they need.
+  !> The exit codes in as few lines as possible.
   pure function exit_lines() result(text)
     character(len=:), allocatable :: text, item, line
     integer :: i
@@ -81,9 +81,9 @@ contains
     text = text//line
   end function exit_lines
 
-  !> An option as it is written: "--table PATH", "--help-data [GROUP[.NAME]]".
+  !> An option in the form of the help: "--table PATH", "--help-data [GROUP[.NAME]]".
   pure function option_form(option) result(form)
-    type(option_type), intent(in) :: option
+    type(option_type), intent(in) :: option   !< the option, as a row of its table
     character(len=:), allocatable :: form
 
     form = '--'//trim(option%name)

@@ -1,4 +1,4 @@
-!> The manual page of a program, in the language of man(7).
+!> The manual page of a program, in the markup of man(7).
 module mech9_manual_page
   use mech9_text, only: to_text, starts_with
   use mech9_printable, only: with_escapes
@@ -15,7 +15,7 @@ module mech9_manual_page
 
 contains
 
-  !> The whole page, of whole lines.
+  !> The whole page, as whole lines.
   pure function manual_page(program_name) result(page)
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: page
@@ -28,7 +28,7 @@ contains
   end function manual_page
 
   pure function description(program_name) result(text)
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: text
 
     text = '.SH DESCRIPTION'//eol
@@ -47,7 +47,7 @@ contains
   end function description
 
   pure function options_of(program_name) result(text)
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: text
     integer :: i
 
@@ -59,7 +59,7 @@ contains
   end function options_of
 
   pure function conversation(program_name) result(text)
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: text
 
     text = '.SH CONVERSATION'//eol// &
@@ -103,7 +103,7 @@ contains
   end function data_file
 
   pure function item(row) result(text)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
     character(len=:), allocatable :: text, example
 
     example = trim(row%name)//' = '//trim(row%example)
@@ -112,7 +112,7 @@ contains
   end function item
 
   pure function examples(program_name) result(text)
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=:), allocatable :: text
 
     text = '.SH EXAMPLES'//eol// &
@@ -137,33 +137,34 @@ contains
     text = text//paragraph('After 6, 7 and 130 the results up to there are kept and the files are closed.')
   end function exit_status
 
-  !> Something and what is said of it, indented below.
+  !> A term with its explanation, indented below it.
   pure function entry(label, words) result(text)
-    character(len=*), intent(in) :: label, words
+    character(len=*), intent(in) :: label   !< the term
+    character(len=*), intent(in) :: words   !< its explanation
     character(len=:), allocatable :: text
 
     text = '.TP'//eol//'.B "'//escaped(label)//'"'//eol//line(words)
   end function entry
 
   pure function paragraph(words) result(text)
-    character(len=*), intent(in) :: words
+    character(len=*), intent(in) :: words   !< the sentences
     character(len=:), allocatable :: text
 
     text = '.PP'//eol//line(words)
   end function paragraph
 
-  !> Words as a line of text, which begins with no command of roff.
+  !> Sentences as a line of text that does not begin with a command of roff.
   pure function line(words) result(text)
-    character(len=*), intent(in) :: words
+    character(len=*), intent(in) :: words   !< the sentences
     character(len=:), allocatable :: text
 
     text = escaped(words)//eol
     if (scan(words(:min(1, len(words))), '.') == 1) text = '\&'//text
   end function line
 
-  !> The text with every letter meant as it stands: to roff some are commands, others it would make prettier.
+  !> The text with escapes for the letters that roff would take for commands or replace by others.
   pure function escaped(words) result(text)
-    character(len=*), intent(in) :: words
+    character(len=*), intent(in) :: words   !< text without commands of roff
     character(len=:), allocatable :: text
 
     text = with_escapes(words, '\-''"^~`', [character(len=5) :: '\e', '\-', '\(aq', '\(dq', '\(ha', '\(ti', '\(ga'])

@@ -6,7 +6,7 @@ module mech9_options
   public :: no_argument, optional_argument, needed_argument, any_text, whole_number, assignment
 
   integer, parameter :: no_argument = 0, optional_argument = 1, needed_argument = 2
-  !> What an argument looks like: any text, a whole number from 1 on, GROUP.NAME=VALUE.
+  !> Forms of an argument: any text, a whole number from 1 on, GROUP.NAME=VALUE.
   integer, parameter :: any_text = 0, whole_number = 1, assignment = 2
 
   !> One option.
@@ -14,7 +14,7 @@ module mech9_options
     character(len=12) :: name             !< without the dashes
     integer :: takes = no_argument        !< whether it takes an argument
     character(len=18) :: argument = ''    !< the argument's name in the help
-    integer :: form = any_text            !< what the argument looks like
+    integer :: form = any_text      !< the form of the argument
     logical :: repeats = .false.          !< whether it may be given more than once
     character(len=13) :: programs = ''    !< the programs that have it
     character(len=72) :: help = ''        !< one line
@@ -88,7 +88,7 @@ contains
 
   !> The names of all options of a program, without the dashes.
   pure function option_names(program_name) result(names)
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     character(len=len(options_table%name)), allocatable :: names(:)
     integer :: i
 

@@ -14,7 +14,7 @@ module mech9_pages
 
 contains
 
-  !> Write them into the current folder, as PROGRAM.1 and PROGRAM.bash, and end the program.
+  !> Write the files into the current folder, as PROGRAM.1 and PROGRAM.bash, and end the program.
   subroutine write_pages()
     type(error_type), allocatable :: err
     integer :: i

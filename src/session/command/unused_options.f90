@@ -1,4 +1,4 @@
-!> Options that are given and have nothing to act on, in words: no error, but no silence either.
+!> Notes about options without effect, which are no errors.
 module mech9_unused_options
   use mech9_command_line, only: command_line_type
   use mech9_mechanism, only: mechanism_type
@@ -6,17 +6,17 @@ module mech9_unused_options
   private
   public :: print_unused_options
 
-  !> What only a run, or the reading of more than the structure, takes notice of.
+  !> Options that have an effect only on a run, and those that need more of the mechanism than its structure.
   character(len=*), parameter :: of_runs(*) = [character(len=8) :: 'table', 'hdf5', 'plot', 'no-write']
   character(len=*), parameter :: of_mechanisms(*) = [character(len=8) :: 'check', 'plan', 'branches', 'range', 'graph', 'sketch']
 
 contains
 
-  !> A line for each reason for which options come to nothing.
+  !> Write a line for each reason why options are without effect.
   subroutine print_unused_options(unit, program_name, options, mechanism)
-    integer, intent(in) :: unit
-    character(len=*), intent(in) :: program_name
-    type(command_line_type), intent(in) :: options
+    integer, intent(in) :: unit   !< Fortran unit to write to
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options   !< the command line
     type(mechanism_type), intent(in) :: mechanism     !< may ask for pictures, too
     character(len=:), allocatable :: answer, names
     logical :: drawn
@@ -38,7 +38,7 @@ contains
       write (unit, '(a)') program_name//': without effect: --view; no picture of the mechanism is drawn'
   end subroutine print_unused_options
 
-  !> Whether the data file asks for pictures of the mechanism.
+  !> Whether the data file requests pictures of the mechanism.
   pure logical function pictures_of(mechanism)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
 
@@ -47,11 +47,11 @@ contains
     if (allocated(mechanism%output%animation)) pictures_of = pictures_of .or. mechanism%output%animation /= ''
   end function pictures_of
 
-  !> Those of some options that are given: "--table, --hdf5".
+  !> The given ones of some options, as a list: "--table, --hdf5".
   pure subroutine list_given(options, names, list)
-    type(command_line_type), intent(in) :: options
-    character(len=*), intent(in) :: names(:)
-    character(len=:), allocatable, intent(out) :: list
+    type(command_line_type), intent(in) :: options   !< the command line
+    character(len=*), intent(in) :: names(:)   !< names of options, without the dashes
+    character(len=:), allocatable, intent(out) :: list   !< those that are given, with dashes and commas
     integer :: i
 
     list = ''

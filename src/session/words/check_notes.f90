@@ -1,4 +1,4 @@
-!> Notes of --check on data that are allowed and often mistaken: angles in the other unit, bodies and links without effect.
+!> Notes of --check on data that are allowed but often mistakes: angles in the other unit, bodies and links without effect.
 module mech9_check_notes
   use mech9_kinds, only: wp, pi, radians_per_degree
   use mech9_error, only: error_type
@@ -10,19 +10,20 @@ module mech9_check_notes
   private
   public :: print_notes
 
-  !> Numbers that a list shows at most.
+  !> Most numbers that a list shows.
   integer, parameter :: longest_list = 24
-  !> Rates of so many rad/s and more that are whole multiples of the second number look like degrees.
+  !> A rate from `fast` on that is a multiple of `whole` [rad/s] was probably meant in degrees.
   real(wp), parameter :: fast = 45.0_wp, whole = 15.0_wp
-  !> Angles in degrees that are so near to a few quarters of a turn in radians look like radians: pi is often rounded to 3.14.
+  !> An angle in degrees whose number is so near, relatively, to that of a few quarters of a turn in radians was probably
+!> meant in radians: pi is often rounded to 3.14.
   real(wp), parameter :: rounded_pi = 1.0e-3_wp
   integer, parameter :: most_quarters = 8
 
 contains
 
-  !> A line for each note.
+  !> Write a line for each note.
   subroutine print_notes(unit, mechanism, with_masses)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     logical, intent(in) :: with_masses       !< bodies and initial velocities count in this program, else drives
     type(error_type), allocatable :: err
@@ -44,13 +45,14 @@ contains
     end if
   end subroutine print_notes
 
-  !> Angles and their rates that seem to be in the other unit.
+  !> Note an angle or a rate that seems to be in the other unit.
   subroutine note_angle(unit, mechanism, k, what, q, dq)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: k                 !< the coordinate
     character(len=*), intent(in) :: what     !< 'the drive' or 'the start'
-    real(wp), intent(in) :: q, dq            !< its value and rate at the start [rad, rad/s]
+    real(wp), intent(in) :: q   !< value of the coordinate [rad]
+    real(wp), intent(in) :: dq   !< its rate [rad/s]
     character(len=:), allocatable :: begin
     real(wp) :: quarters
 
@@ -72,9 +74,9 @@ contains
       to_text(dq/radians_per_degree)//' degrees a second; where radians are meant, leave out angle_unit=''deg'''
   end subroutine note_angle
 
-  !> Bodies of the frame, and links that were left without mass.
+  !> Note a body of the frame, and links without mass beside links with mass.
   subroutine note_bodies(unit, mechanism)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     logical :: massless(mechanism%structure%n_links)

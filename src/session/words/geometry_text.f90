@@ -1,4 +1,4 @@
-!> The geometry in words: the dimensions of links for --check, and what is odd about chains that cannot close or move.
+!> The geometry in words: the dimensions of links for --check, and oddities of chains that cannot close or move.
 module mech9_geometry_text
   use mech9_kinds, only: wp, radians_per_degree
   use mech9_error, only: error_type, add_place, exit_structure, exit_assembly
@@ -11,18 +11,18 @@ module mech9_geometry_text
   private
   public :: print_dimensions, explain_geometry
 
-  !> Lines of the table that are printed at most.
+  !> Most lines of the table.
   integer, parameter :: most_lines = 40
-  !> Lengths below this part of the largest one, and angles below it [rad], are shown as zero: they are round-off.
+  !> Lengths below this part of the largest one, and angles below this [rad], are shown as zero: they are round-off.
   real(wp), parameter :: round_off = 1.0e-13_wp
-  !> Digits of lengths and angles.
+  !> Significant digits of lengths and angles.
   integer, parameter :: digits = 6
 
 contains
 
-  !> The table of the links' dimensions, in which a mistaken number of the data file shows.
+  !> Write the dimensions of the links, in which a wrong number of the data file is noticed.
   subroutine print_dimensions(unit, mechanism)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     character(len=3) :: angle_name
@@ -50,23 +50,23 @@ contains
 
   !> A text at the left of a column.
   pure character(len=12) function left(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< the text; of a longer one the beginning remains
 
     left = text
   end function left
 
   !> A number at the right of a column; a dash where there is none.
   pure character(len=16) function right(number, given)
-    real(wp), intent(in) :: number
-    logical, intent(in) :: given
+    real(wp), intent(in) :: number   !< the number
+    logical, intent(in) :: given   !< whether there is a number
 
     right = '-'
     if (given) right = to_text(number, digits)
     right = adjustr(right)
   end function right
 
-  !> Put before the error of a mechanism that cannot be assembled or cannot move what is odd about its geometry, and the place
-  !> of the pair that seems to be mistaken. Other errors, and mechanisms without oddities, stay as they are.
+  !> Add the oddity of a geometry to the error of a mechanism that cannot be assembled or cannot move: before the message, with
+  !> the place of the pair that is probably wrong. Other errors, and those of mechanisms without oddities, do not change.
   subroutine explain_geometry(mechanism, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
@@ -82,7 +82,7 @@ contains
 
   !> A sentence about an oddity.
   pure function words_of(oddity) result(words)
-    type(oddity_type), intent(in) :: oddity
+    type(oddity_type), intent(in) :: oddity   !< the oddity, with pairs, link, angle or distance by its kind
     character(len=:), allocatable :: words, chain, pairs
 
     chain = ' of the closed chain of pairs '//to_text(oddity%pairs)

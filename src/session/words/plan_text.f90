@@ -1,4 +1,4 @@
-!> The plan in words, for --plan and --verbose: what is computed, and what is left out and why.
+!> The plan in words, for --plan and --verbose: the computations, and those left out with the reason.
 module mech9_plan_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -12,14 +12,14 @@ module mech9_plan_text
   private
   public :: print_plan
 
-  !> Digits of directions.
+  !> Significant digits of directions.
   integer, parameter :: digits_shown = 6
 
 contains
 
-  !> The blocks in order, each with its chains, unknowns, equations and rank, and what is left out.
+  !> Write the blocks in order, each with its chains, unknowns, equations and rank, and the computations left out.
   subroutine print_plan(unit, mechanism, plan, requested)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan          !< of the whole mechanism
     type(requested_type), intent(in) :: requested        !< what the run asks for
@@ -42,13 +42,13 @@ contains
     if (size(mechanism%bodies) > 0) call print_dynamics_plan(unit, mechanism, plan)
   end subroutine print_plan
 
-  !> One block: its links, equations and chains.
+  !> Write one block: its links, equations and chains.
   subroutine print_block(unit, plan, block, number, is_needed)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
-    integer, intent(in) :: number
-    logical, intent(in) :: is_needed
+    integer, intent(in) :: number   !< number of the block
+    logical, intent(in) :: is_needed   !< whether a result or load depends on the block
     integer :: c, i
 
     write (unit, '(a)') 'block '//to_text(number)//': links '// &
@@ -73,11 +73,12 @@ contains
     end do
   end subroutine print_block
 
-  !> "turning about (0, 0, 1), sliding along (1, 0, 0), (0, 1, 0) of link 1"; nothing where there are all six.
+  !> Write the directions in which the links of a chain can move, as in "turning about (0, 0, 1), sliding along (1, 0, 0),
+!> (0, 1, 0) of link 1"; nothing where all six motions are possible.
   subroutine print_basis(unit, plan, closure)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(closure_type), intent(in) :: closure
+    type(closure_type), intent(in) :: closure   !< the closed chain
     character(len=:), allocatable :: turning, sliding
     real(wp) :: turns(3, 3), slides(3, 3), to_link(3, 3)
     integer :: n_turns, n_slides, link
@@ -114,7 +115,7 @@ contains
 
   !> "(0, 0, 1)"; round-off is shown as zero.
   pure function direction_in_words(direction) result(words)
-    real(wp), intent(in) :: direction(3)
+    real(wp), intent(in) :: direction(3)   !< direction in the axes of a link, of length 1
     character(len=:), allocatable :: words
     real(wp) :: clean(3)
 
@@ -123,9 +124,9 @@ contains
             to_text(clean(3), digits_shown)//')'
   end function direction_in_words
 
-  !> Planar or spatial, and why.
+  !> Write whether the arithmetic is planar or spatial, and why.
   subroutine print_arithmetic(unit, plan)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
 
     if (plan%planar%used) then
@@ -136,9 +137,9 @@ contains
     end if
   end subroutine print_arithmetic
 
-  !> What Lagrange's equations leave out.
+  !> Write which terms Lagrange's equations leave out.
   subroutine print_dynamics_plan(unit, mechanism, plan)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(dynamics_plan_type) :: dynamics

@@ -12,15 +12,15 @@ module mech9_range_text
   private
   public :: print_ranges
 
-  !> Digits of a limit: it is good to some 1e-12.
+  !> Significant digits of a limit, whose relative error is about 1e-12.
   integer, parameter :: digits = 13
   integer, parameter :: width = 22
 
 contains
 
-  !> A line for each independent coordinate: start, lower and upper end, unit, and what limits it.
+  !> Write a line for each independent coordinate: start, lower and upper end, unit, and the cause of its limits.
   subroutine print_ranges(unit, mechanism, plan, start)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start      !< assembled
@@ -44,8 +44,8 @@ contains
   end subroutine print_ranges
 
   pure function column(text, width) result(padded)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: width
+    character(len=*), intent(in) :: text   !< the text of the column
+    integer, intent(in) :: width   !< letters of the column
     character(len=max(width, len(text) + 1)) :: padded
 
     padded = text
@@ -53,20 +53,20 @@ contains
 
   !> The value of an end; a dash where there is none.
   pure function value_of(found, factor) result(text)
-    type(end_type), intent(in) :: found
-    real(wp), intent(in) :: factor
+    type(end_type), intent(in) :: found   !< one end of the range
+    real(wp), intent(in) :: factor   !< from rad or m to the unit of the file
     character(len=:), allocatable :: text
 
     text = '-'
     if (found%kind == ends_at_limit .or. found%kind == ends_otherwise) text = to_text(factor*found%value, digits)
   end function value_of
 
-  !> What limits a coordinate on both sides.
+  !> The causes of the limits of a coordinate on both sides.
   pure function reasons(plan, range, factor, unit) result(text)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(motion_range_type), intent(in) :: range
-    real(wp), intent(in) :: factor
-    character(len=*), intent(in) :: unit
+    type(motion_range_type), intent(in) :: range   !< the range of the coordinate
+    real(wp), intent(in) :: factor   !< from rad or m to the unit of the file
+    character(len=*), intent(in) :: unit   !< unit of the coordinate in the file
     character(len=:), allocatable :: text, lower, upper
 
     lower = reason(plan, range%lower, factor, unit)
@@ -77,9 +77,9 @@ contains
 
   pure function reason(plan, found, factor, unit) result(text)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(end_type), intent(in) :: found
-    real(wp), intent(in) :: factor
-    character(len=*), intent(in) :: unit
+    type(end_type), intent(in) :: found   !< one end of the range
+    real(wp), intent(in) :: factor   !< from rad or m to the unit of the file
+    character(len=*), intent(in) :: unit   !< unit of the coordinate in the file
     character(len=:), allocatable :: text
 
     select case (found%kind)

@@ -17,8 +17,8 @@ contains
 
   !> ", 1.2 us each".
   pure function each(total, count) result(text)
-    real(wp), intent(in) :: total
-    integer, intent(in) :: count
+    real(wp), intent(in) :: total   !< time of all of them [s]
+    integer, intent(in) :: count   !< how many there are
     character(len=:), allocatable :: text
 
     text = ''
@@ -27,7 +27,7 @@ contains
 
   !> A time span in a readable unit.
   pure function duration(seconds) result(text)
-    real(wp), intent(in) :: seconds
+    real(wp), intent(in) :: seconds   !< a time span [s]
     character(len=:), allocatable :: text
 
     if (seconds < 1.0e-3_wp) then
@@ -39,10 +39,10 @@ contains
     end if
   end function duration
 
-  !> What a report begins with: which program this was, what it ran and what came of it.
+  !> Write the beginning of a report: the program, the mechanism, the exit code and the errors.
   subroutine begin_report(json, program_name, mechanism, diagnostics, table_path)
-    type(json_type), intent(inout) :: json
-    character(len=*), intent(in) :: program_name
+    type(json_type), intent(inout) :: json   !< the report, which is being composed
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
     character(len=*), intent(in) :: table_path          !< '-' is standard output; empty: no table
@@ -55,13 +55,14 @@ contains
     call json%end_array()
   end subroutine begin_report
 
-  !> The report where nothing was run: an answer was asked for, or something is wrong.
+  !> Write the report of a program that made no run, because of an option such as --check or because of an error.
   subroutine save_short_report(path, program_name, mechanism, exit_code, choice, diagnostics, err)
-    character(len=*), intent(in) :: path
-    character(len=*), intent(in) :: program_name
+    character(len=*), intent(in) :: path   !< path of the report
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     type(mechanism_type), intent(in) :: mechanism       !< as far as it was read
     integer, intent(in) :: exit_code                    !< that the program is going to answer
-    type(diagnostics_type), intent(in) :: choice, diagnostics   !< what it is going to say
+    type(diagnostics_type), intent(in) :: choice   !< errors of the command line or the choice of an answer
+    type(diagnostics_type), intent(in) :: diagnostics   !< errors of the data file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(json_type) :: json
 
@@ -75,12 +76,12 @@ contains
     call json%save(path, err)
   end subroutine save_short_report
 
-  !> Which program this was, and how it ends.
+  !> Add the program with its version, and the exit code.
   subroutine add_outcome(json, program_name, mechanism, exit_code)
-    type(json_type), intent(inout) :: json
-    character(len=*), intent(in) :: program_name
+    type(json_type), intent(inout) :: json   !< the report, which is being composed
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: exit_code
+    integer, intent(in) :: exit_code   !< exit code of the program
 
     call json%add('program', program_name)
     call json%add('version', version)
@@ -90,9 +91,9 @@ contains
     call json%add('exit_code', exit_code)
   end subroutine add_outcome
 
-  !> What is wrong: each message, with its place where it has one.
+  !> Add each error: its message, and its place where it has one.
   subroutine add_errors(json, diagnostics)
-    type(json_type), intent(inout) :: json
+    type(json_type), intent(inout) :: json   !< the report, which is being composed
     type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
     character(len=:), allocatable :: message
     type(span_type) :: span
@@ -117,9 +118,9 @@ contains
     end do
   end subroutine add_errors
 
-  !> The structural vectors and the blocks.
+  !> Add the structural vectors and the blocks.
   subroutine add_structure(json, mechanism, plan)
-    type(json_type), intent(inout) :: json
+    type(json_type), intent(inout) :: json   !< the report, which is being composed
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer :: b, i
@@ -146,9 +147,9 @@ contains
   end subroutine add_structure
 
   subroutine add_integers(json, name, numbers)
-    type(json_type), intent(inout) :: json
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: numbers(:)
+    type(json_type), intent(inout) :: json   !< the report, which is being composed
+    character(len=*), intent(in) :: name   !< name of the list in the report
+    integer, intent(in) :: numbers(:)   !< the numbers of the list
     integer :: i
 
     call json%begin_array(name)

@@ -10,19 +10,19 @@ module mech9_structure_text
   private
   public :: print_structure, print_names_of_vectors, print_mobility, print_mobility_report, print_marked
 
-  !> Lines of one sort that are printed at most.
+  !> Most lines of one kind.
   integer, parameter :: most_lines = 40
-  !> Numbers that a list shows at most.
+  !> Most numbers that a list shows.
   integer, parameter :: longest_list = 24
-  !> Rates below this, against a rate of one, are none.
+  !> Rates below this part of a rate of one count as zero.
   real(wp), parameter :: least_share = 1.0e-9_wp
 
 contains
 
-  !> The structural vectors, a line each: "nrg = 1 2 3 ...".
+  !> Write the structural vectors, one in each line: "nrg = 1 2 3 ...".
   subroutine print_structure(unit, vectors)
-    integer, intent(in) :: unit
-    type(structural_vectors_type), intent(in) :: vectors
+    integer, intent(in) :: unit   !< Fortran unit to write to
+    type(structural_vectors_type), intent(in) :: vectors   !< the structural vectors
 
     write (unit, '(2a)') 'nrg = ', to_text(vectors%nrg, ' ')
     write (unit, '(2a)') 'nws = ', to_text(vectors%nws, ' ')
@@ -30,9 +30,9 @@ contains
     write (unit, '(2a)') 'nrw = ', to_text(vectors%nrw, ' ')
   end subroutine print_structure
 
-  !> What the structural vectors are, a line each.
+  !> Write the meaning of the structural vectors, one in each line.
   subroutine print_names_of_vectors(unit)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
 
     write (unit, '(a)') 'The structural vectors, an element for each place in the order of computation:'
     write (unit, '(a)') '  nrg  number of the link that is reached; a chain that closes ends on a link that was reached before'
@@ -41,9 +41,9 @@ contains
     write (unit, '(a)') '  nrw  number of closed chains so far; it grows by one at the link on which a chain closes'
   end subroutine print_names_of_vectors
 
-  !> Counts, mobility and redundancy.
+  !> Write counts, mobility and redundancy.
   subroutine print_mobility(unit, plan)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer :: b, unknowns, equations
 
@@ -60,7 +60,7 @@ contains
   end subroutine print_mobility
 
   subroutine print_counts(unit, plan)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
 
     write (unit, '(a)') to_text(plan%n_links)//' links, '//counted(plan%n_coordinates, 'coordinate')//', '// &
@@ -70,18 +70,18 @@ contains
 
   !> "1 coordinate", "2 coordinates".
   pure function counted(number, noun) result(words)
-    integer, intent(in) :: number
-    character(len=*), intent(in) :: noun
+    integer, intent(in) :: number   !< how many there are
+    character(len=*), intent(in) :: noun   !< the noun in the singular
     character(len=:), allocatable :: words
 
     words = trim(to_text(number)//' '//noun//merge(' ', 's', number == 1))
   end function counted
 
-  !> Counts, ranks, redundant equations, and what each coordinate can be.
+  !> Write counts, ranks, redundant equations, and which coordinates can be independent or cannot move.
   subroutine print_mobility_report(unit, plan, report)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(mobility_report_type), intent(in) :: report
+    type(mobility_report_type), intent(in) :: report   !< mobility and ranks
     integer :: i, c
 
     call print_counts(unit, plan)
@@ -107,11 +107,11 @@ contains
     end do
   end subroutine print_mobility_report
 
-  !> Equations and rank of each block; of many blocks only those that are singular at the start.
+  !> Write equations and rank of each block; of many blocks only those that are singular at the start.
   subroutine print_ranks(unit, plan, report)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(mobility_report_type), intent(in) :: report
+    type(mobility_report_type), intent(in) :: report   !< mobility and ranks
     integer :: b, left_out
 
     left_out = 0
@@ -130,11 +130,11 @@ contains
     if (left_out > 0) write (unit, '(a)') 'and '//to_text(left_out)//' blocks more'
   end subroutine print_ranks
 
-  !> Coordinates that could be independent instead of one that is.
+  !> Write which coordinates could be independent instead of one that is.
   subroutine print_alternatives(unit, plan, report, i)
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit   !< Fortran unit to write to
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(mobility_report_type), intent(in) :: report
+    type(mobility_report_type), intent(in) :: report   !< mobility and ranks
     integer, intent(in) :: i                  !< its place among the independent ones
     integer :: k
     integer, allocatable :: others(:)
@@ -148,11 +148,11 @@ contains
     end if
   end subroutine print_alternatives
 
-  !> Words and the numbers that are marked; nothing where none is.
+  !> Write a text and the numbers that are marked; nothing where none is.
   subroutine print_marked(unit, mask, words, more)
-    integer, intent(in) :: unit
-    logical, intent(in) :: mask(:)
-    character(len=*), intent(in) :: words
+    integer, intent(in) :: unit   !< Fortran unit to write to
+    logical, intent(in) :: mask(:)   !< whether each number is in the list
+    character(len=*), intent(in) :: words   !< text before the list
     character(len=*), intent(in), optional :: more    !< words after the numbers
     integer :: k
 
