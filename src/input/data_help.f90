@@ -70,7 +70,7 @@ contains
     integer, intent(in) :: unit   !< Fortran unit to write to
     integer :: i
 
-    write (unit, '(a)') 'The groups of a data file, in any order; --help-data GROUP tells of one, GROUP.NAME of a name in it:'
+    write (unit, '(a)') 'The groups of a data file, in any order; --help-data GROUP explains one, GROUP.NAME a name in it:'
     do i = 1, size(group_table)
       write (unit, '(2x,a,a12,a)') '&', group_table(i)%name//'   ', trim(group_table(i)%help)
     end do

@@ -47,23 +47,23 @@ module mech9_grammar
     group_row_type('structure', .false., '', 'both', &
                    'which links meet, which coordinates are independent: first set (c, cq) or second (nrg, nws, rdw, nrw)'), &
     group_row_type('pair', .true., 'coordinate', 'both', &
-                   'a joint with one degree of freedom: which links, what kind, where'), &
+                   'a joint with one degree of freedom: its links, its kind, its axis'), &
     group_row_type('initial', .true., 'coordinate', 'both', &
                    'a coordinate at the start: a guess of a dependent one, the value of an independent one'), &
     group_row_type('point', .true., 'name', 'both', 'a point of a link whose motion is recorded'), &
     group_row_type('drive', .true., 'coordinate', 'mech9k', 'an independent coordinate as a function of time; mech9d refuses it'), &
     group_row_type('body', .true., 'link', 'mech9d', 'mass, centre and inertia of a link; links without a body are massless'), &
     group_row_type('gravity', .false., '', 'mech9d', 'the acceleration of gravity'), &
-    group_row_type('load', .true., '', 'mech9d', 'a force, torque, spring or damper, or a user''s own'), &
+    group_row_type('load', .true., '', 'mech9d', 'a force, torque, spring or damper, or a user''s procedure'), &
     group_row_type('time', .false., '', 'both', &
-                   'when results are given: at start + (end - start) i/intervals, i = 0 .. intervals'), &
-    group_row_type('solver', .false., '', 'mech9d', 'how to integrate'), &
-    group_row_type('output', .false., '', 'both', 'what is recorded, and in which files'), &
+                   'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
+    group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &
+    group_row_type('output', .false., '', 'both', 'the recorded quantities, and the files for them'), &
     group_row_type('user', .false., '', 'both', 'numbers handed to the user''s own procedures')]
 
   type(item_row_type), parameter :: general_items(*) = [ &
     item_row_type('mechanism', 'title', 'text', 1, 1, '', optional, '''''', '', '', '', &
-                  'one line that says what it is', '''Four-bar'''), &
+                  'one line that describes the mechanism', '''Four-bar'''), &
     item_row_type('mechanism', 'links', 'integer', 1, 1, '', optional, '(counted)', '>=1', '', '', &
                   'number of links, the frame included, which is link 1', '6'), &
     item_row_type('mechanism', 'coordinates', 'integer', 1, 1, '', optional, '(counted)', '>=1', '', '', &
@@ -71,8 +71,8 @@ module mech9_grammar
     item_row_type('mechanism', 'angle_unit', 'text', 1, 1, '', optional, '''rad''', '', 'rad deg', '', &
                   'unit of all angles in this file and in its results', '''deg'''), &
     item_row_type('mechanism', 'data_tolerance', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
-                  'error of the dimensions in this file, of the mechanism''s size and in rad: redundant equations may stay '// &
-                  'open by as much', '1e-6', seldom=.true.), &
+                  'error of the dimensions (over the mechanism''s size) and of the angles (rad): limit of residuals '// &
+                  'of redundant equations', '1e-6', seldom=.true.), &
     item_row_type('structure', 'c', 'integer', 1, unlimited, '', optional, '(from the pairs)', '>=0', '', '', &
                   'coincidence matrix by rows: element i,j is the number of the pair between links i and j, or 0', &
                   'c(1,:) = 0, 1, 2'), &
@@ -83,9 +83,9 @@ module mech9_grammar
     item_row_type('structure', 'nws', 'integer', 1, unlimited, '', optional, '(from c and cq)', '>=0', '', '', &
                   'second set: the coordinate that leads to each link of nrg; 0 where a chain starts', '0, 1, 2, 3'), &
     item_row_type('structure', 'rdw', 'integer', 1, unlimited, '', optional, '(from c and cq)', '>=0', '', '', &
-                  'second set: 1 where that coordinate is independent or a chain starts, else 0', '1, 1, 0, 0'), &
+                  'second set: 1 where the coordinate in nws is independent or a chain starts, else 0', '1, 1, 0, 0'), &
     item_row_type('structure', 'nrw', 'integer', 1, unlimited, '', optional, '(from c and cq)', '>=0', '', '', &
-                  'second set: how many chains are closed up to each link of nrg', '0, 0, 0, 1')]
+                  'second set: number of chains that are closed up to each link of nrg', '0, 0, 0, 1')]
 
   type(item_row_type), parameter :: pair_items(*) = [ &
     item_row_type('pair', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
@@ -93,7 +93,7 @@ module mech9_grammar
     item_row_type('pair', 'links', 'integer', 2, 2, '', needed, '', '>=1', '', '', &
                   'the reference link and the moving link', '1, 2'), &
     item_row_type('pair', 'kind', 'text', 1, 1, '', needed, '', '', screws//' user', '', &
-                  'turns, slides, does both as a screw, or moves as a user''s procedure says', '''revolute'''), &
+                  'it turns, slides, does both as a screw, or moves by a user''s procedure', '''revolute'''), &
     item_row_type('pair', 'point', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', screws, &
                   'a point of the axis, in the reference link', '0, 0, 0'), &
     item_row_type('pair', 'axis', 'real', 3, 3, '', optional, '(needed unless dh)', '', '', screws, &
@@ -121,10 +121,10 @@ module mech9_grammar
     item_row_type('initial', 'velocity', 'real', 1, 1, 'q/s', optional, '0', '', '', '', &
                   'its rate (independent coordinates in mech9d)', '1.5', program='mech9d'), &
     item_row_type('point', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
-                  'heads the columns of the table; letters, digits and _', '''P'''), &
+                  'heading of its columns in the table; letters, digits and _', '''P'''), &
     item_row_type('point', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', 'the link it is part of', '3'), &
     item_row_type('point', 'position', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', '', &
-                  'where it is, in the link', '1.0, 0.3, 0'), &
+                  'its position in the frame of the link', '1.0, 0.3, 0'), &
     item_row_type('drive', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
                   'number of the independent coordinate', '5'), &
     item_row_type('drive', 'kind', 'text', 1, 1, '', needed, '', '', 'polynomial harmonic table user', '', &
@@ -132,25 +132,25 @@ module mech9_grammar
     item_row_type('drive', 'coefficients', 'real', 1, unlimited, 'q, q/s, ...', needed, '', '', '', 'polynomial', &
                   'c0, c1, c2, ... of q = c0 + c1 t + c2 t^2 + ...', '0.5, 2.0'), &
     item_row_type('drive', 'mean', 'real', 1, 1, 'q', optional, '0', '', '', 'harmonic', &
-                  'of q = mean + amplitude sin(angular_frequency t + phase)', '0.1'), &
+                  'the mean in q = mean + amplitude sin(angular_frequency t + phase)', '0.1'), &
     item_row_type('drive', 'amplitude', 'real', 1, 1, 'q', needed, '', '', '', 'harmonic', &
-                  'how far the coordinate goes to each side of the mean', '0.3'), &
+                  'largest distance of the coordinate from the mean', '0.3'), &
     item_row_type('drive', 'angular_frequency', 'real', 1, 1, 'angle/s', needed, '', '', '', 'harmonic', &
-                  'a full turn of it is one swing to and fro; see mean', '6.28'), &
+                  'growth of the angle of the sine per second; the period is a full turn divided by it', '6.28'), &
     item_row_type('drive', 'phase', 'real', 1, 1, 'angle', optional, '0', '', '', 'harmonic', &
-                  'where in its swing the coordinate is at t = 0; 0 is at the mean and growing', '1.57'), &
+                  'angle of the sine at t = 0; 0 starts at the mean, with q increasing where the amplitude is positive', '1.57'), &
     item_row_type('drive', 'file', 'text', 1, 1, 's, q', needed, '', '', '', 'table', &
-                  'a text file with t and q in each line, beside the data file; a smooth curve runs through them', &
+                  'a text file with t and q in each line, in the folder of the data file; a smooth curve joins the points', &
                   '''motion.dat''')]
 
   type(item_row_type), parameter :: body_items(*) = [ &
     item_row_type('body', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', 'the link it belongs to', '3'), &
     item_row_type('body', 'mass', 'real', 1, 1, 'kg', needed, '', '>=0', '', '', 'its mass', '2.0'), &
     item_row_type('body', 'centre', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', '', &
-                  'its mass centre, in the link', '1.6, 0.4, 0'), &
+                  'its mass centre, in the frame of the link', '1.6, 0.4, 0'), &
     item_row_type('body', 'inertia', 'real', 6, 6, 'kg m^2', optional, '0, 0, 0, 0, 0, 0', '', '', '', &
                   'xx, yy, zz, xy, xz, yz about the centre, in link axes; xy is minus the integral of xy dm; '// &
-                  'in a plane one is enough', &
+                  'one is enough in a plane', &
                   '0.1, 0.1, 0.2, 0, 0, 0'), &
     item_row_type('gravity', 'acceleration', 'real', 3, 3, 'm/s^2', needed, '', '', '', '', &
                   'its components along the axes of link 1', '0, -9.81, 0')]
@@ -164,40 +164,41 @@ module mech9_grammar
     item_row_type('load', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', 'coordinate', &
                   'number of the coordinate it acts on', '6'), &
     item_row_type('load', 'position', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', 'force spring', &
-                  'the point of the (first) link it acts on, in the link', '1.0, 0, 0'), &
+                  'the point at which it acts on the (first) link, in the frame of the link', '1.0, 0, 0'), &
     item_row_type('load', 'second_position', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', 'spring', &
-                  'the point of the second link', '0, 0.3, 0'), &
+                  'the point at which it acts on the second link, in the frame of the link', '0, 0.3, 0'), &
     item_row_type('load', 'force', 'real', 3, 3, 'N', needed, '', '', '', 'force', &
-                  'its components along the axes that frame names', '0, -10, 0'), &
+                  'its components along the axes chosen by frame', '0, -10, 0'), &
     item_row_type('load', 'force', 'real', 1, 1, 'N or N m', optional, '0', '', '', 'coordinate', &
                   'a constant part of the load', '2.5'), &
     item_row_type('load', 'torque', 'real', 3, 3, 'N m', needed, '', '', '', 'torque', &
-                  'its components along the axes that frame names', '0, 0, 4'), &
+                  'its components along the axes chosen by frame', '0, 0, 4'), &
     item_row_type('load', 'frame', 'text', 1, 1, '', optional, '''fixed''', '', 'fixed link', 'force torque', &
-                  'along the axes of link 1, or turning with the link', '''link'''), &
+                  'fixed: components along the axes of link 1; link: along the axes of the link, which turn with it', '''link'''), &
     item_row_type('load', 'stiffness', 'real', 1, 1, 'N/m', optional, '0', '>=0', '', 'spring', &
-                  'force per length of stretch', '200'), &
+                  'force per length by which it is stretched', '200'), &
     item_row_type('load', 'stiffness', 'real', 1, 1, 'N/m, N m/rad', optional, '0', '', '', 'coordinate', &
-                  'in -stiffness (q - rest) - damping dq/dt + force; per rad for angles, whatever angle_unit says', '200'), &
+                  'the load is -stiffness (q - rest) - damping dq/dt + force; per rad for angles, also with angle_unit=''deg''', &
+                  '200'), &
     item_row_type('load', 'free_length', 'real', 1, 1, 'm', optional, '0', '>=0', '', 'spring', &
-                  'length at which it does not pull', '0.5'), &
+                  'length at which its force is zero', '0.5'), &
     item_row_type('load', 'rest', 'real', 1, 1, 'q', optional, '0', '', '', 'coordinate', &
                   'value at which the spring is at rest', '0.5'), &
     item_row_type('load', 'damping', 'real', 1, 1, 'N s/m', optional, '0', '>=0', '', 'spring', &
                   'force per rate of its length', '1.5'), &
     item_row_type('load', 'damping', 'real', 1, 1, 'N s/m, N m s', optional, '0', '', '', 'coordinate', &
-                  'torque or force for each unit of dq/dt; per rad/s for angles, whatever angle_unit says', '1.5')]
+                  'torque or force per dq/dt; per rad/s for angles, also with angle_unit=''deg''', '1.5')]
 
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &
     item_row_type('time', 'end', 'real', 1, 1, 's', optional, '1', '', '', '', 'time of the last result', '2.5'), &
     item_row_type('time', 'intervals', 'integer', 1, 1, '', optional, '100', '>=0', '', '', &
-                  'number of steps between results; 0 for the start alone', '200'), &
+                  'number of intervals between the results; 0 for the start alone', '200'), &
     item_row_type('solver', 'method', 'text', 1, 1, '', optional, '''prince-dormand''', '', &
                   'prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
-                  'the integrator; bdf for stiff motions', '''adams'''), &
+                  'the method of integration; bdf for stiff motions', '''adams'''), &
     item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0 and <1', '', '', &
-                  'error allowed in each step, relative to coordinates and rates; it adds up: docs/accuracy.md tells how far', &
+                  'error allowed in each step, relative to coordinates and rates; errors add up, see docs/accuracy.md', &
                   '1e-8', seldom=.true.), &
     item_row_type('solver', 'absolute_tolerance', 'real', 1, 1, '', optional, '1e-10', '>0', '', '', &
                   'error allowed in a step, in rad, m and their rates', '1e-10', seldom=.true.), &
@@ -210,26 +211,27 @@ module mech9_grammar
     item_row_type('output', 'sketch', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'SVG file for a drawing of the mechanism at the start', '''fig1.svg''', seldom=.true.), &
     item_row_type('output', 'animation', 'text', 1, 1, '', optional, '''''', '', '', '', &
-                  'file for the moving mechanism: .html is a page that plays it, .svg and .gif are pictures that repeat', &
+                  'file for the moving mechanism: .html is a page that plays it, .svg and .gif are pictures that repeat it', &
                   '''fig1.html''', seldom=.true.), &
     item_row_type('output', 'view', 'text', 1, 1, '', optional, '''''', '', '', '', &
-                  'of these pictures: axes to the right and up, as in xz; iso; or the direction to the viewer, as in 1,-2,1', &
+                  'axes of both pictures to the right and up, as in xz; iso; or the direction to the viewer, as in 1,-2,1', &
                   '''xz''', seldom=.true.), &
     item_row_type('output', 'poses', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'the HDF5 file holds the poses of all links too, and an .xdmf file beside it shows them in ParaView', '.true.', &
                   seldom=.true.), &
     item_row_type('output', 'compression', 'integer', 1, 1, '', optional, '0', '>=0', '', '', &
-                  'how much the HDF5 file is compressed: 0 not at all (the fastest) to 9 (the smallest)', '4', seldom=.true.), &
+                  'compression of the HDF5 file: from 0, none (the fastest), to 9 (the smallest)', '4', seldom=.true.), &
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'a column with the least singular value of the worst chains (rad, lengths of the mechanism)', &
                   '.true.', seldom=.true.), &
     item_row_type('output', 'coordinates', 'integer', 1, unlimited, '', optional, '(all)', '>=1', '', '', &
-                  'coordinates that are recorded; chains that nothing recorded depends on are not solved', '5, 7', &
+                  'coordinates that are recorded; chains on which no recorded quantity depends are not solved', '5, 7', &
                   seldom=.true.), &
     item_row_type('output', 'derivatives', 'integer', 1, 1, '', optional, '2', '>=0', '', '', &
-                  'what is recorded: 0 positions, 1 velocities too, 2 accelerations too', '0', seldom=.true.), &
+                  'highest recorded derivative: 0 positions, 1 velocities too, 2 accelerations too', '0', seldom=.true.), &
     item_row_type('output', 'energies', 'logical', 1, 1, '', optional, '.true.', '', '', '', &
-                  'mech9d records kinetic and potential energy and their sum', '.false.', seldom=.true., program='mech9d'), &
+                  'whether mech9d records kinetic and potential energy and their sum', '.false.', seldom=.true., &
+                  program='mech9d'), &
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]
 

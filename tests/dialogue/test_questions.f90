@@ -134,7 +134,7 @@ contains
       call words_for(question, interview%outline, words)
       call tester%is_true(size(words) >= 4, label_of(question)//': words to complete')
       if (question%kind == ask_seldom .and. group_table(question%group_row)%name == 'output') &
-        call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'view: of these pictures') > 0, &
+        call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'view: axes of both pictures') > 0, &
                             'seldom names are explained one by one')
       if (question%kind /= ask_item) cycle
       asked(question%row) = .true.
