@@ -58,7 +58,7 @@ contains
       left = option_form(options_table(i))
       text = text//eol//'  '//left//trim(options_table(i)%help)
     end do
-    text = text//eol//eol//'Results go to files or standard output, talk to standard error.'//eol//exit_lines()
+    text = text//eol//eol//'Results are written to files or standard output, messages to standard error.'//eol//exit_lines()
   end function help_text
 
   !> The exit codes in as few lines as possible.

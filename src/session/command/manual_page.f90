@@ -33,9 +33,9 @@ contains
 
     text = '.SH DESCRIPTION'//eol
     if (program_name == 'mech9k') then
-      text = text//line('Follows a mechanism with closed kinematic chains while its independent coordinates are driven &
-                        &as functions of time: positions, velocities and accelerations of all coordinates and of &
-                        &chosen points.')
+      text = text//line('Computes the motion of a mechanism with closed kinematic chains whose independent coordinates are &
+                        &driven as functions of time: positions, velocities and accelerations of all coordinates &
+                        &and of chosen points.')
     else
       text = text//line('Integrates the motion of a mechanism with closed kinematic chains under forces, from &
                         &Lagrange''s equations in its independent coordinates.')
@@ -43,7 +43,8 @@ contains
     text = text// &
       paragraph('The mechanism is described by numbers in a data file: which links meet, which coordinates are &
                 &independent, how each pair moves. Mistakes in the file are shown with line and column, all at once.')// &
-      paragraph('Results go to files or standard output, talk to standard error. Progress is shown on a terminal only.')
+      paragraph('Results are written to files or standard output, messages to standard error. Progress is shown only &
+                &on a terminal.')
   end function description
 
   pure function options_of(program_name) result(text)
@@ -63,24 +64,24 @@ contains
     character(len=:), allocatable :: text
 
     text = '.SH CONVERSATION'//eol// &
-      line('Without FILE '//program_name//' asks for the data, one after the other. Enter takes what stands in brackets; &
-           &? explains the question, back returns to the one before, list shows all answers, quit leaves. An answer that &
-           &cannot be right is refused at once with the reason. The structure is judged as soon as it is complete, and the &
-           &geometry by putting the mechanism together.')// &
+      line('Without FILE '//program_name//' asks for the data, one after the other. Enter takes the value in brackets; &
+           &? explains the question, back returns to the one before, list shows all answers, quit leaves. A wrong answer &
+           &is refused at once with the reason. The structure is checked as soon as it is complete, and the geometry by &
+           &assembling the mechanism.')// &
       paragraph('In the summary at the end any answer can be changed, by its number or its name, as in "time end = 2". &
-                &The answers are saved as a data file that repeats the run. What is typed is kept on the way: after Ctrl-C, &
-                &or when the terminal is closed, --resume goes on.')// &
+                &The answers are saved as a data file that repeats the run. All answers are kept: after Ctrl-C, or &
+                &when the terminal was closed, --resume continues the conversation.')// &
       paragraph('After the run its results can be shown, plotted in the terminal or into a picture, and compared with &
-                &those of the run before; an answer can be changed and the mechanism run again.')// &
+                &those of the previous run; an answer can be changed and the mechanism run again.')// &
       paragraph('On a terminal lines can be edited; the arrow keys recall earlier answers, and Tab completes words. &
-                &Answers may come from a file or a pipe as well: '//program_name//' < answers.')
+                &Answers can also be read from a file or a pipe: '//program_name//' < answers.')
   end function conversation
 
   pure function environment() result(text)
     character(len=:), allocatable :: text
 
     text = '.SH ENVIRONMENT'//eol// &
-           entry('TERM', 'With dumb, or without any, lines are not edited, and no cursor is moved.')
+           entry('TERM', 'If its value is dumb, or if it is not set, lines cannot be edited and the cursor is not moved.')
   end function environment
 
   !> Every group and name of the data file.
@@ -91,7 +92,7 @@ contains
 
     text = '.SH DATA FILE'//eol// &
            line('Groups of Fortran namelist, &GROUP NAME=VALUE, ... /, in any order; ! begins a comment. &
-                &The same text comes from --help-data.')
+                &The option --help-data prints the same text.')
     do i = 1, size(group_table)
       text = text//'.SS '//escaped('&'//trim(group_table(i)%name))//eol// &
              line(trim(group_table(i)%help)//' ('//use_text(group_table(i))//').')
@@ -119,11 +120,11 @@ contains
            entry(program_name, 'Ask for a mechanism, save and run it.')// &
            entry(program_name//' --edit mine.nml', 'The same, beginning with the data of a file.')// &
            entry(program_name//' mine.nml --check', &
-                 'Read the file, judge structure and mobility, put the mechanism together.')// &
+                 'Read the file, check structure and mobility, assemble the mechanism.')// &
            entry(program_name//' mine.nml --table mine.dat', &
                  'Run it; the table goes to mine.dat.')// &
            entry(program_name//' mine.nml --set time.end=2 --table -', &
-                 'Run it two seconds long; the table goes to standard output.')
+                 'Run it for two seconds; the table goes to standard output.')
   end function examples
 
   pure function exit_status() result(text)
@@ -134,7 +135,7 @@ contains
     do i = 1, size(exit_table)
       text = text//entry(to_text(exit_table(i)%code), trim(exit_table(i)%meaning))
     end do
-    text = text//paragraph('After 6, 7 and 130 the results up to there are kept and the files are closed.')
+    text = text//paragraph('After 6, 7 and 130 the files hold the results up to the end of the run.')
   end function exit_status
 
   !> A term with its explanation, indented below it.

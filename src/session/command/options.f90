@@ -24,47 +24,47 @@ module mech9_options
 
   type(option_type), parameter :: options_table(*) = [ &
     option_type('check', no_argument, '', any_text, .false., both, &
-                'read, judge and assemble the mechanism, do not run it'), &
+                'read, check and assemble the mechanism without running it'), &
     option_type('structure', no_argument, '', any_text, .false., both, &
                 'print the structural vectors nrg, nws, rdw, nrw'), &
     option_type('plan', no_argument, '', any_text, .false., both, &
-                'print what will be computed, in which order, and what is skipped'), &
+                'print the computations in their order, and those that are left out'), &
     option_type('branches', no_argument, '', any_text, .false., both, &
                 'list the assemblies found for the start from many random guesses'), &
     option_type('starts', needed_argument, 'N', whole_number, .false., both, &
-                'how many guesses --branches tries; 100 unless given'), &
+                'number of guesses that --branches tries; 100 if not given'), &
     option_type('range', no_argument, '', any_text, .false., 'mech9k', &
                 'print how far each independent coordinate can go from the start'), &
     option_type('graph', needed_argument, 'FILE', any_text, .false., both, &
                 'draw links, pairs and blocks as a graph: .dot, .svg, .png or .pdf'), &
     option_type('table', needed_argument, 'PATH', any_text, .false., both, &
-                'write the table there; - is standard output; .csv: with commas'), &
+                'write the table of results; - is standard output; .csv: with commas'), &
     option_type('hdf5', needed_argument, 'PATH', any_text, .false., both, &
-                'write the results as an HDF5 file there'), &
+                'write the results as an HDF5 file'), &
     option_type('plot', needed_argument, '[TARGET:]NAMES', any_text, .true., both, &
                 'plot columns, as in q3,P.x or P.x:P.y; TARGET is a picture or term'), &
     option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &
                 'draw the mechanism at the start'), &
     option_type('animate', needed_argument, 'FILE', any_text, .false., both, &
-                'draw it moving: a page (.html), or a picture (.svg, .gif)'), &
+                'draw the moving mechanism: a page (.html) or a picture (.svg, .gif)'), &
     option_type('view', needed_argument, 'VIEW', any_text, .false., both, &
-                'of both drawings: xy, xz, ... iso, or a direction as 1,-2,1'), &
+                'view of both drawings: xy, xz, ... iso, or a direction as 1,-2,1'), &
     option_type('no-write', no_argument, '', any_text, .false., both, &
-                'compute all that is asked for, write no results'), &
+                'compute all results, but write none'), &
     option_type('report', needed_argument, 'FILE', any_text, .false., both, &
-                'write how it went, what was wrong and what it took as JSON'), &
+                'write exit code, errors, counts and times of the run as JSON'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
     option_type('dialogue', no_argument, '', any_text, .false., both, &
-                'ask for the data in a conversation; so does no FILE at all'), &
+                'ask for the data in a conversation, as without any FILE'), &
     option_type('edit', needed_argument, 'FILE', any_text, .false., both, &
                 'open a data file in the conversation'), &
     option_type('resume', needed_argument, 'FILE', any_text, .false., both, &
-                'go on with a conversation that was left or interrupted'), &
+                'continue a conversation that was left or interrupted'), &
     option_type('quiet', no_argument, '', any_text, .false., both, &
-                'say nothing but errors'), &
+                'print only errors'), &
     option_type('verbose', no_argument, '', any_text, .false., both, &
-                'say more: the structural vectors and the plan before the run'), &
+                'print the structural vectors and the plan before the run, too'), &
     option_type('help', no_argument, '', any_text, .false., both, &
                 'print this text'), &
     option_type('help-data', optional_argument, 'GROUP[.NAME]', any_text, .false., both, &

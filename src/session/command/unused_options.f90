@@ -28,10 +28,10 @@ contains
     end if
     if (answer == 'structure') then
       call list_given(options, of_mechanisms, names)
-      if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --structure looks at the structure alone'
+      if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --structure reads the structure alone'
     end if
     if (options%has('starts') .and. (answer == 'structure' .or. .not. options%has('branches'))) &
-      write (unit, '(a)') program_name//': without effect: --starts; it says how many guesses --branches tries'
+      write (unit, '(a)') program_name//': without effect: --starts; it is the number of guesses of --branches'
     drawn = options%has('sketch')
     if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(mechanism)
     if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
