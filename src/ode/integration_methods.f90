@@ -18,18 +18,18 @@ module mech9_integration_methods
   integer, parameter :: fehlberg_table = 4
   integer, parameter :: kutta_merson_table = 5
 
-  !> A method, as it is told to the user and to those who choose its parts.
+  !> A method: its name and help for users, and its properties for the procedures that set it up.
   type :: integration_method_type
     character(len=15) :: name
     integer :: family        !< runge_kutta or multistep
     integer :: table         !< of its coefficients; no_table for multistep methods
     integer :: order         !< of its error; the highest one where it varies
-    integer :: stages        !< rates of change worked out in a step; 0 where that varies
+    integer :: stages        !< evaluations of the rate in a step; 0 where their number varies
     logical :: reuses_last   !< the last stage is the first one of the next step
     character(len=64) :: help
   end type integration_method_type
 
-  !> All of them, in the order in which they are told.
+  !> All methods, in the order in which they are listed for users.
   type(integration_method_type), parameter :: integration_methods(*) = [ &
     integration_method_type('prince-dormand', runge_kutta, prince_dormand_table, 8, 13, .false., &
                             'Prince-Dormand 8(7), Runge-Kutta'), &
@@ -44,9 +44,9 @@ module mech9_integration_methods
 
 contains
 
-  !> Place of a name in the list; 0 when it is not there.
+  !> Place of a name in the list; 0 where it is not there.
   pure integer function method_index(name)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< as in integration_methods, with or without blanks at its end
 
     do method_index = size(integration_methods), 1, -1
       if (integration_methods(method_index)%name == name) return

@@ -1,4 +1,4 @@
-!> Integration of a motion step by step, by a method chosen by name, with failures in plain words.
+!> Integration of a system of equations step by step, by a method chosen by name, with failures in plain words.
 module mech9_integrator
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, add_place, exit_internal, exit_data, exit_integrator
@@ -18,16 +18,16 @@ module mech9_integrator
   !> a quarter at most, so that all of them together make it 1e-24 of what it was.
   integer, parameter :: most_refusals = 40
 
-  !> What an integration took, from its creation on.
+  !> The work of an integration, from its creation on.
   type :: integration_statistics_type
     integer(long) :: steps = 0                  !< accepted
     integer(long) :: rate_evaluations = 0       !< all of them: for differences, too
-    integer(long) :: jacobian_evaluations = 0   !< by an implicit method: asked of the system, or by differences of its rate
+    integer(long) :: jacobian_evaluations = 0   !< by an implicit method: by the system, or by differences of its rate
     integer(long) :: error_test_failures = 0    !< steps made again because of their error
     integer(long) :: convergence_failures = 0   !< implicit steps made again
     integer(long) :: refusals = 0               !< trials that the system refused
-    integer :: last_order = 0
-    real(wp) :: last_step = 0.0_wp              !< [s]
+    integer :: last_order = 0                   !< of the method in the last step
+    real(wp) :: last_step = 0.0_wp              !< length of the last step [s]
   end type integration_statistics_type
 
   !> An integration under way. It must not be copied; `destroy` gives back what it holds.
@@ -35,15 +35,15 @@ module mech9_integrator
     private
     type(system_box_type), pointer :: box => null()
     class(stepper_type), allocatable :: stepper
-    real(wp) :: t = 0.0_wp                 !< of the last accepted step [s]
-    real(wp), allocatable :: y(:)          !< there
-    real(wp), allocatable :: trial(:)      !< where a step ends
-    logical :: fresh = .true.              !< no step since the creation or the last restart
-    logical :: stopped = .false.           !< the last step ended at its stop
-    real(wp) :: t_stop = 0.0_wp            !< of the last call [s]
-    integer :: maximum_steps = 1000000     !< to one stop
-    integer :: steps_to_stop = 0
-    integer(long) :: steps = 0
+    real(wp) :: t = 0.0_wp               !< of the last accepted step [s]
+    real(wp), allocatable :: y(:)        !< values at t
+    real(wp), allocatable :: trial(:)    !< values at the end of the step being made
+    logical :: fresh = .true.            !< no step since the creation or the last restart
+    logical :: stopped = .false.         !< the last step ended at its stop
+    real(wp) :: t_stop = 0.0_wp          !< of the last call [s]
+    integer :: maximum_steps = 1000000   !< to one stop
+    integer :: steps_to_stop = 0         !< accepted since the last stop was set
+    integer(long) :: steps = 0           !< accepted since the creation
   contains
     procedure :: create
     procedure :: step
@@ -60,13 +60,13 @@ contains
   !> Begin at (t, y). The system must have the target attribute (or be a pointer's target), outlive the
   !> integrator, and not be used by others meanwhile. Fails for an unknown method or useless tolerances.
   subroutine create(self, system, method, relative_tolerance, absolute_tolerance, t, y, err)
-    class(integrator_type), intent(inout) :: self   !< the integrator
-    class(ode_system_type), intent(inout), target :: system
+    class(integrator_type), intent(inout) :: self   !< an integrator, which is destroyed first
+    class(ode_system_type), intent(inout), target :: system   !< the equations, which must be no temporary value
     character(len=*), intent(in) :: method              !< name, as in integration_methods; blank: the first one
     real(wp), intent(in) :: relative_tolerance          !< of each part of y, in a step
     real(wp), intent(in) :: absolute_tolerance(:)       !< of each part of y, in its unit
     real(wp), intent(in) :: t                           !< [s]
-    real(wp), intent(in) :: y(:)
+    real(wp), intent(in) :: y(:)   !< initial values, one for each variable
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: index, outcome
 
@@ -99,8 +99,8 @@ contains
 
   !> Place of a method in integration_methods; blank means the first. Fails for an unknown name.
   pure subroutine check_method(method, index, err)
-    character(len=*), intent(in) :: method
-    integer, intent(out) :: index
+    character(len=*), intent(in) :: method              !< name, as in integration_methods; blank: the first one
+    integer, intent(out) :: index                       !< place of the method in integration_methods; 0 where the name is unknown
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: hint, names
     integer :: i
@@ -118,9 +118,11 @@ contains
     call raise(err, exit_data, 'unknown method of integration '''//trim(method)//''''//hint//' There are: '//names)
   end subroutine check_method
 
+  !> Fails for tolerances with which no step can be judged.
   pure subroutine check_tolerances(relative, absolute, n, err)
-    real(wp), intent(in) :: relative, absolute(:)
-    integer, intent(in) :: n
+    real(wp), intent(in) :: relative                    !< relative tolerance
+    real(wp), intent(in) :: absolute(:)                 !< absolute tolerances, one for each variable
+    integer, intent(in) :: n                            !< number of variables
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (n < 1 .or. size(absolute) /= n) then
@@ -132,14 +134,14 @@ contains
     end if
   end subroutine check_tolerances
 
-  !> One accepted step from where the integration stands, towards t_stop and never beyond; the last one
+  !> Make one accepted step towards t_stop and never beyond; the last one
   !> ends exactly there. With `farthest` a step may go on beyond t_stop, to there at most. On failure t and y are
   !> those of the last accepted step.
   subroutine step(self, t_stop, t, y, err, farthest)
-    class(integrator_type), intent(inout) :: self   !< the integrator
+    class(integrator_type), intent(inout) :: self       !< the integrator
     real(wp), intent(in) :: t_stop                      !< may lie before the start [s]
     real(wp), intent(inout) :: t                        !< where it ends [s]
-    real(wp), intent(inout) :: y(:)
+    real(wp), intent(inout) :: y(:)                     !< values there
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), intent(in), optional :: farthest          !< in the same direction [s]
     real(wp) :: t_new, t_last
@@ -162,20 +164,20 @@ contains
     y = self%y
   end subroutine step
 
-  !> What the method takes for y at a time within the last step, if it can tell; see its stepper.
+  !> The method's own approximation of y at a time within the last step, if it has one; see its stepper.
   subroutine interpolate(self, t, y, found)
     class(integrator_type), intent(inout) :: self   !< the integrator
-    real(wp), intent(in) :: t                           !< [s]
-    real(wp), intent(out) :: y(:)
-    logical, intent(out) :: found
+    real(wp), intent(in) :: t                       !< [s]
+    real(wp), intent(out) :: y(:)                   !< values at t
+    logical, intent(out) :: found                   !< whether the method can tell them; else y has no meaning
 
     call self%stepper%interpolate(t, y, found)
   end subroutine interpolate
 
   !> Count the steps to each stop. Fails when there were too many.
   subroutine count_steps(self, t_stop, err)
-    class(integrator_type), intent(inout) :: self   !< the integrator
-    real(wp), intent(in) :: t_stop
+    class(integrator_type), intent(inout) :: self       !< the integrator
+    real(wp), intent(in) :: t_stop                      !< where the steps are to end [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (abs(t_stop - self%t_stop) > 0.0_wp) then
@@ -189,11 +191,11 @@ contains
                ' tolerances are too small, or maximum_steps is')
   end subroutine count_steps
 
-  !> One accepted step into `trial`. What the system refuses is tried again with less.
+  !> Make one accepted step and keep its end in `trial`. A step that the system refuses is made again, shorter.
   subroutine take_step(self, t_stop, t_new, err)
-    class(integrator_type), intent(inout) :: self   !< the integrator
-    real(wp), intent(in) :: t_stop
-    real(wp), intent(out) :: t_new
+    class(integrator_type), intent(inout) :: self       !< the integrator
+    real(wp), intent(in) :: t_stop                      !< where the steps are to end [s]
+    real(wp), intent(out) :: t_new                      !< end of the step [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: reach
     integer :: outcome, trials
@@ -202,7 +204,7 @@ contains
     do trials = 1, most_refusals
       call self%stepper%advance(next_stop(self, t_stop), t_new, self%trial, outcome)
       if (outcome == stepped) then
-        if (.not. abs(t_new - self%t) > 0.0_wp) call explain_full_stop(self, err)
+        if (.not. abs(t_new - self%t) > 0.0_wp) call explain_vanishing_step(self, err)
         return
       end if
       if (outcome /= evaluation_failed .or. self%box%broken .or. .not. self%box%has_cause()) exit
@@ -215,11 +217,11 @@ contains
     call explain(self, outcome, err)
   end subroutine take_step
 
-  !> The stop itself, or half the way where one step and a short rest would remain: the methods take
-  !> many steps to recover from a very short one.
+  !> The stop that is given to the method: t_stop itself, or half the way where one step and a short rest would
+  !> remain, because the methods need many steps to recover from a very short one.
   real(wp) function next_stop(self, t_stop)
     class(integrator_type), intent(inout) :: self   !< the integrator
-    real(wp), intent(in) :: t_stop
+    real(wp), intent(in) :: t_stop                  !< where the steps are to end [s]
     real(wp) :: h, rest, half, enough
 
     next_stop = t_stop
@@ -227,10 +229,10 @@ contains
     h = abs(self%stepper%next_step())
     rest = abs(t_stop - self%t)
     if (self%stopped) then
-      ! h is the last step, which the stop may have cut short: equal intervals are not to be halved
+      ! h is the last step, which the stop may have cut short; equal intervals must not be halved
       enough = 1.000001_wp*h
     else
-      ! h is what comes next, and the method itself takes what round-off leaves for reached
+      ! h is the next step; the method itself counts a stop as reached that is only round-off away
       enough = h + 50.0_wp*epsilon(h)*(abs(self%t) + h)
     end if
     if (rest <= enough .or. rest >= 2.0_wp*h) return
@@ -240,8 +242,8 @@ contains
 
   !> Go on from y, which differs from the result of the last step by no more than about the tolerance.
   subroutine correct(self, y, err)
-    class(integrator_type), intent(inout) :: self   !< the integrator
-    real(wp), intent(in) :: y(:)
+    class(integrator_type), intent(inout) :: self       !< the integrator
+    real(wp), intent(in) :: y(:)                        !< the corrected values
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: outcome
 
@@ -250,12 +252,12 @@ contains
     if (outcome /= stepped) call explain(self, outcome, err)
   end subroutine correct
 
-  !> Begin anew at (t, y), after an event that changed the motion; with a first step of the given length
-  !> or of one to be found. Statistics go on.
+  !> Begin anew at (t, y), after an event that changed the motion, with a first step of the given length
+  !> or one that the method finds. The statistics continue.
   subroutine restart(self, t, y, err, first_step)
-    class(integrator_type), intent(inout) :: self   !< the integrator
+    class(integrator_type), intent(inout) :: self       !< the integrator
     real(wp), intent(in) :: t                           !< [s]
-    real(wp), intent(in) :: y(:)
+    real(wp), intent(in) :: y(:)                        !< values at t
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), intent(in), optional :: first_step        !< with its sign; 0: to be found [s]
     real(wp) :: h
@@ -270,9 +272,9 @@ contains
     if (outcome /= stepped) call explain(self, outcome, err)
   end subroutine restart
 
-  !> Set limits; those not named stay.
+  !> Set limits; those that are not given stay.
   subroutine limit(self, err, maximum_steps, largest_step, first_step)
-    class(integrator_type), intent(inout) :: self   !< the integrator
+    class(integrator_type), intent(inout) :: self       !< the integrator
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer, intent(in), optional :: maximum_steps      !< to one stop; 1000000 unless set
     real(wp), intent(in), optional :: largest_step      !< 0: none [s]
@@ -286,7 +288,7 @@ contains
     if (outcome /= stepped) call explain(self, outcome, err)
   end subroutine limit
 
-  !> What the integration took so far.
+  !> The work of the integration so far.
   function statistics(self)
     class(integrator_type), intent(inout) :: self   !< the integrator
     type(integration_statistics_type) :: statistics
@@ -304,9 +306,9 @@ contains
     statistics%last_step = counts%last_step
   end function statistics
 
-  !> Where the integration stands, as the beginning of a message.
+  !> The beginning of a message: the time at which the integration stops.
   pure function stands(t) result(text)
-    real(wp), intent(in) :: t        !< where it stands [s]
+    real(wp), intent(in) :: t   !< end of the last accepted step [s]
     character(len=80) :: text
 
     text = 'the integration cannot go on from t = '//to_text(t, 10)//' s:'
@@ -314,8 +316,8 @@ contains
 
   !> The failure of a step in plain words.
   subroutine explain(self, outcome, err)
-    class(integrator_type), intent(in) :: self   !< the integrator
-    integer, intent(in) :: outcome
+    class(integrator_type), intent(in) :: self          !< the integrator
+    integer, intent(in) :: outcome                      !< one of the outcomes of mech9_stepper but `stepped`
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%box%has_cause()) then
@@ -341,16 +343,16 @@ contains
 
   !> The failure of the system, which keeps its code.
   subroutine explain_by_system(self, err)
-    class(integrator_type), intent(in) :: self   !< the integrator
+    class(integrator_type), intent(in) :: self          !< the integrator
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     err = self%box%failure
     call add_place(err, trim(stands(self%t))//' at t = '//to_text(self%box%t_failed, 10)//' s')
   end subroutine explain_by_system
 
-  !> The step has become shorter than time can be told apart.
-  subroutine explain_full_stop(self, err)
-    class(integrator_type), intent(in) :: self   !< the integrator
+  !> The failure where a step has become too short to change the time.
+  subroutine explain_vanishing_step(self, err)
+    class(integrator_type), intent(in) :: self          !< the integrator
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%box%has_cause()) then
@@ -359,7 +361,7 @@ contains
     end if
     call raise(err, exit_integrator, trim(stands(self%t))//' the steps have become too short for time to advance.'// &
                ' The motion becomes infinitely fast there, or comes to a position that it cannot pass')
-  end subroutine explain_full_stop
+  end subroutine explain_vanishing_step
 
   !> Give back what the integration holds. An integrator can then be created again.
   subroutine destroy(self)

@@ -1,4 +1,4 @@
-!> What an integrator asks of a motion: its rate of change, and what follows an accepted step.
+!> A system of ordinary differential equations as an integrator uses it: its rate of change, and the correction of an accepted step.
 module mech9_ode_system
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal, exit_singular, exit_integrator
@@ -6,11 +6,11 @@ module mech9_ode_system
   private
   public :: ode_system_type, is_recoverable
 
-  !> A system of ordinary differential equations y' = f(t, y); its data travels with it.
+  !> A system of ordinary differential equations y' = f(t, y), with its data.
   type, abstract :: ode_system_type
     !> Whether `settle` is to be called after each accepted step.
     logical :: settles = .false.
-    !> Whether `jacobian` can be called; otherwise methods that need it take differences, as for the motion of a mechanism.
+    !> Whether `jacobian` can be called; otherwise methods that need a Jacobian take differences of the rate.
     logical :: has_jacobian = .false.
   contains
     procedure(rate_interface), deferred :: rate
@@ -21,37 +21,39 @@ module mech9_ode_system
   abstract interface
     !> The rate of change of y at time t.
     !>
-    !> A failure with exit_singular or exit_integrator, and numbers that are not finite, tell that a trial
-    !> went too far: it is made again with a smaller step, and ends the integration only when that does not
+    !> A failure with exit_singular or exit_integrator, and numbers that are not finite, mean that a trial
+    !> went too far: the step is made again, smaller, and the integration ends only where that does not
     !> help. Any other failure ends it at once.
     subroutine rate_interface(self, t, y, ydot, err)
       import :: ode_system_type, wp, error_type
-      class(ode_system_type), intent(inout) :: self   !< the ode system
-      real(wp), intent(in) :: t        !< [s]
-      real(wp), intent(in) :: y(:)
-      real(wp), intent(out) :: ydot(:)
+      class(ode_system_type), intent(inout) :: self       !< the equations, with their data and scratch
+      real(wp), intent(in) :: t                           !< [s]
+      real(wp), intent(in) :: y(:)                        !< values at t
+      real(wp), intent(out) :: ydot(:)                    !< derivatives of y in time
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine rate_interface
   end interface
 
 contains
 
-  !> After each accepted step: y may be put back to where it must lie, by a change not much larger than
-  !> the tolerance. A failure makes the step again, smaller, by the rule of `rate`. (This one does nothing.)
+  !> Correct y after an accepted step, so that it satisfies conditions that the equations do not keep exactly, by a change
+  !> not much larger than the tolerance. After a failure the step is made again, smaller, by the rule of `rate`. (This
+  !> procedure, for systems without such conditions, does nothing.)
   subroutine nothing_to_settle(self, t, y, err)
-    class(ode_system_type), intent(inout) :: self   !< the ode system
-    real(wp), intent(in) :: t           !< [s]
-    real(wp), intent(inout) :: y(:)
+    class(ode_system_type), intent(inout) :: self       !< the equations, with their data and scratch
+    real(wp), intent(in) :: t                           !< [s]
+    real(wp), intent(inout) :: y(:)                     !< values at t; the settled ones afterwards
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
   end subroutine nothing_to_settle
 
-  !> Derivatives of the rate: jac(i, j) = d ydot(i)/d y(j). Fails by the rule of `rate`. (This one always.)
+  !> Derivatives of the rate: jac(i, j) = d ydot(i)/d y(j). Fails by the rule of `rate`. (This procedure, for systems
+  !> without a Jacobian, always fails.)
   subroutine no_jacobian(self, t, y, ydot, jac, err)
-    class(ode_system_type), intent(inout) :: self   !< the ode system
-    real(wp), intent(in) :: t           !< [s]
-    real(wp), intent(in) :: y(:)
-    real(wp), intent(in) :: ydot(:)     !< the rate at (t, y)
-    real(wp), intent(out) :: jac(:, :)
+    class(ode_system_type), intent(inout) :: self       !< the equations, with their data and scratch
+    real(wp), intent(in) :: t                           !< [s]
+    real(wp), intent(in) :: y(:)                        !< values at t
+    real(wp), intent(in) :: ydot(:)                     !< the rate at (t, y)
+    real(wp), intent(out) :: jac(:, :)                  !< derivatives of ydot in y
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     jac = 0.0_wp

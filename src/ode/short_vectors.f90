@@ -1,37 +1,37 @@
-!> Sums of short vectors for SUNDIALS: its own take several times as many instructions, and a Runge-Kutta method forms one in
-!> every stage.
+!> Linear combinations of short vectors for SUNDIALS, whose own take several times as many instructions; a Runge-Kutta method
+!> forms one in every stage.
 module mech9_short_vectors
   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_int64_t, c_double, c_f_pointer
   implicit none
   private
   public :: linear_combination
 
-  !> Numbers that are summed at a time.
+  !> Elements that are summed at a time.
   integer, parameter :: chunk = 64
 
-  ! Of SUNDIALS, by their C names: the Fortran wrappers cost as much again.
+  ! Functions of SUNDIALS by their C names: the Fortran wrappers take as much time again.
   interface
     function length_of(vector) bind(c, name='N_VGetLength')
       import :: c_ptr, c_int64_t
-      type(c_ptr), value :: vector
+      type(c_ptr), value :: vector   !< a serial vector of SUNDIALS
       integer(c_int64_t) :: length_of
     end function length_of
 
     function numbers_of(vector) bind(c, name='N_VGetArrayPointer')
       import :: c_ptr
-      type(c_ptr), value :: vector
+      type(c_ptr), value :: vector   !< a serial vector of SUNDIALS
       type(c_ptr) :: numbers_of
     end function numbers_of
   end interface
 
 contains
 
-  !> Called by SUNDIALS for z = sum of c(i) x(i); z may be one of the x. Answers 0.
+  !> SUNDIALS calls this function for z = sum of c(i) x(i); z may be one of the x. It answers 0.
   integer(c_int) function linear_combination(n, c, x, z) bind(c) result(answer)
-    integer(c_int), value :: n
-    real(c_double), intent(in) :: c(n)
-    type(c_ptr), intent(in) :: x(n)          !< serial vectors
-    type(c_ptr), value :: z
+    integer(c_int), value :: n           !< number of terms
+    real(c_double), intent(in) :: c(n)   !< factors
+    type(c_ptr), intent(in) :: x(n)      !< serial vectors
+    type(c_ptr), value :: z              !< serial vector that gets the sum
     real(c_double) :: total(chunk)
     real(c_double), pointer, contiguous :: numbers(:)
     integer :: length, first, part, i
@@ -53,18 +53,22 @@ contains
     answer = 0
   end function linear_combination
 
+  !> The first term of a sum.
   pure subroutine start(n, factor, x, total)
-    integer, intent(in) :: n
-    real(c_double), intent(in) :: factor, x(n)
-    real(c_double), intent(out) :: total(n)
+    integer, intent(in) :: n                  !< number of elements
+    real(c_double), intent(in) :: factor      !< factor of x
+    real(c_double), intent(in) :: x(n)        !< elements of a vector
+    real(c_double), intent(out) :: total(n)   !< factor x
 
     total = factor*x
   end subroutine start
 
+  !> A further term of a sum.
   pure subroutine add(n, factor, x, total)
-    integer, intent(in) :: n
-    real(c_double), intent(in) :: factor, x(n)
-    real(c_double), intent(inout) :: total(n)
+    integer, intent(in) :: n                    !< number of elements
+    real(c_double), intent(in) :: factor        !< factor of x
+    real(c_double), intent(in) :: x(n)          !< elements of a vector
+    real(c_double), intent(inout) :: total(n)   !< the sum so far, to which factor x is added
 
     total = total + factor*x
   end subroutine add

@@ -1,4 +1,4 @@
-!> A method of integration, one step at a time, and what can become of a step.
+!> A method of integration, one step at a time, and the outcomes of a step.
 module mech9_stepper
   use mech9_kinds, only: wp, long
   implicit none
@@ -6,25 +6,25 @@ module mech9_stepper
   public :: stepper_type, stepper_counts_type
   public :: stepped, evaluation_failed, too_inaccurate, not_convergent, too_accurate, out_of_memory, refused
 
-  !> What became of a step.
-  integer, parameter :: stepped = 0
-  integer, parameter :: evaluation_failed = 1  !< the system failed; it knows why
-  integer, parameter :: too_inaccurate = 2     !< the error test failed again and again
-  integer, parameter :: not_convergent = 3     !< the implicit equations could not be solved
-  integer, parameter :: too_accurate = 4       !< more is asked for than the numbers can hold
+  !> Outcomes of a step.
+  integer, parameter :: stepped = 0             !< the step was made
+  integer, parameter :: evaluation_failed = 1   !< the system failed, and keeps the failure
+  integer, parameter :: too_inaccurate = 2      !< the error test failed again and again
+  integer, parameter :: not_convergent = 3      !< the implicit equations could not be solved
+  integer, parameter :: too_accurate = 4        !< the tolerances demand more digits than the numbers have
   integer, parameter :: out_of_memory = 5
   integer, parameter :: refused = 6            !< anything else
 
-  !> What a method counted from its creation on.
+  !> Counts of a method from its creation on.
   type :: stepper_counts_type
-    integer(long) :: error_test_failures = 0
-    integer(long) :: convergence_failures = 0
-    integer(long) :: jacobian_evaluations = 0  !< of the system's own Jacobian, or of differences of its rate
-    integer :: last_order = 0
-    real(wp) :: last_step = 0.0_wp             !< [s]
+    integer(long) :: error_test_failures = 0    !< steps made again because of their error
+    integer(long) :: convergence_failures = 0   !< implicit steps made again because their equations were not solved
+    integer(long) :: jacobian_evaluations = 0   !< of the system's own Jacobian, or of differences of its rate
+    integer :: last_order = 0                   !< of the method in the last step
+    real(wp) :: last_step = 0.0_wp              !< length of the last step [s]
   end type stepper_counts_type
 
-  !> A method at work. It starts from the values it was created with.
+  !> A method at work. It starts from the values given at its creation.
   type, abstract :: stepper_type
   contains
     procedure(advance_interface), deferred :: advance
@@ -42,67 +42,67 @@ module mech9_stepper
     !> mean nothing, and the method must be restarted.
     subroutine advance_interface(self, t_stop, t, y, outcome)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self   !< the stepper
-      real(wp), intent(in) :: t_stop           !< [s]
-      real(wp), intent(out) :: t               !< [s]
-      real(wp), intent(out) :: y(:)
-      integer, intent(out) :: outcome
+      class(stepper_type), intent(inout) :: self   !< the method at work
+      real(wp), intent(in) :: t_stop               !< where the step ends at the latest, on either side of the last step's end [s]
+      real(wp), intent(out) :: t                   !< end of the step [s]
+      real(wp), intent(out) :: y(:)                !< values there
+      integer, intent(out) :: outcome              !< `stepped`, or why it failed
     end subroutine advance_interface
 
-    !> What the method itself takes for y at a time within the last step; `found` is false where it has no way to
-    !> tell it as accurately as the ends of steps.
+    !> The method's own approximation of y at a time within the last step; `found` is false where it has none that is
+    !> as accurate as the ends of steps.
     subroutine interpolate_interface(self, t, y, found)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self   !< the stepper
-      real(wp), intent(in) :: t                !< [s]
-      real(wp), intent(out) :: y(:)
-      logical, intent(out) :: found
+      class(stepper_type), intent(inout) :: self   !< the method at work
+      real(wp), intent(in) :: t                    !< a time within the last step [s]
+      real(wp), intent(out) :: y(:)                !< values at t
+      logical, intent(out) :: found                !< whether the method can tell them
     end subroutine interpolate_interface
 
-    !> Go on from y, changed a little, instead of what the last step gave.
+    !> Go on from y, which differs little from the result of the last step.
     subroutine correct_interface(self, t, y, outcome)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self   !< the stepper
-      real(wp), intent(in) :: t                !< of the last step [s]
-      real(wp), intent(in) :: y(:)
-      integer, intent(out) :: outcome
+      class(stepper_type), intent(inout) :: self   !< the method at work
+      real(wp), intent(in) :: t                    !< end of the last step [s]
+      real(wp), intent(in) :: y(:)                 !< the corrected values there
+      integer, intent(out) :: outcome              !< `stepped`, or why it failed
     end subroutine correct_interface
 
     !> Begin anew at (t, y) with a step of the given length, or of one to be found if it is 0.
     subroutine restart_interface(self, t, y, first_step, outcome)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self   !< the stepper
-      real(wp), intent(in) :: t                !< [s]
-      real(wp), intent(in) :: y(:)
-      real(wp), intent(in) :: first_step       !< with its sign [s]
-      integer, intent(out) :: outcome
+      class(stepper_type), intent(inout) :: self   !< the method at work
+      real(wp), intent(in) :: t                    !< where it begins [s]
+      real(wp), intent(in) :: y(:)                 !< values there
+      real(wp), intent(in) :: first_step           !< length of the first step with its sign; 0: to be found [s]
+      integer, intent(out) :: outcome              !< `stepped`, or why it failed
     end subroutine restart_interface
 
     !> Take no step longer than this; 0 for no limit.
     subroutine limit_interface(self, largest_step, outcome)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self   !< the stepper
-      real(wp), intent(in) :: largest_step     !< [s]
-      integer, intent(out) :: outcome
+      class(stepper_type), intent(inout) :: self   !< the method at work
+      real(wp), intent(in) :: largest_step         !< length of the longest step; 0: no limit [s]
+      integer, intent(out) :: outcome              !< `stepped`, or why it failed
     end subroutine limit_interface
 
     !> The step intended next, or the one last tried where a step has failed; with its sign [s].
     real(wp) function next_step_interface(self)
       import :: stepper_type, wp
-      class(stepper_type), intent(inout) :: self   !< the stepper
+      class(stepper_type), intent(inout) :: self   !< the method at work
     end function next_step_interface
 
-    !> What was counted so far.
+    !> The counts so far.
     subroutine counts_interface(self, counts)
       import :: stepper_type, stepper_counts_type
-      class(stepper_type), intent(inout) :: self   !< the stepper
-      type(stepper_counts_type), intent(out) :: counts
+      class(stepper_type), intent(inout) :: self         !< the method at work
+      type(stepper_counts_type), intent(out) :: counts   !< the counts since the creation
     end subroutine counts_interface
 
     !> Give back what the method holds.
     subroutine close_interface(self)
       import :: stepper_type
-      class(stepper_type), intent(inout) :: self   !< the stepper
+      class(stepper_type), intent(inout) :: self   !< the method at work
     end subroutine close_interface
   end interface
 end module mech9_stepper

@@ -1,4 +1,4 @@
-!> What is particular to SUNDIALS 7: the one module of its parts, contexts, messages.
+!> The particulars of SUNDIALS 7, which are the one module of its parts, contexts and messages.
 module mech9_sundials_7
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_int, c_int32_t
   use fsundials_core_mod, only: FSUNContext_Create, FSUNContext_Free, FSUNContext_ClearErrHandlers, &
@@ -10,7 +10,7 @@ module mech9_sundials_7
   public :: N_Vector, FN_VGetArrayPointer, FN_VDestroy, SUNMatrix, FSUNMatDestroy
   public :: SUNLinearSolver, FSUNLinSolFree, SUNNonlinearSolver, FSUNNonlinSolFree
   public :: index_kind, last_stage_mistaken, open_context, close_context, silence_erkstep, silence_cvode, &
-    quicken
+    form_own_sums
 
   !> Kind of the integers that count the parts of vectors and matrices.
   integer, parameter :: index_kind = c_int32_t
@@ -19,11 +19,11 @@ module mech9_sundials_7
 
 contains
 
-  !> A context of its own for each integration, so that several run side by side, without those who
-  !> write messages to the terminal. `flag` is 0 when all is well.
+  !> Open a context for one integration alone, so that several run side by side, without the handlers that
+  !> write messages to the terminal.
   subroutine open_context(context, flag)
-    type(c_ptr), intent(out) :: context
-    integer(c_int), intent(out) :: flag
+    type(c_ptr), intent(out) :: context   !< the new context
+    integer(c_int), intent(out) :: flag   !< 0 when all is well
     type(c_ptr) :: no_logger
 
     flag = FSUNContext_Create(SUN_COMM_NULL, context)
@@ -36,7 +36,7 @@ contains
 
   !> Give a context back.
   subroutine close_context(context)
-    type(c_ptr), intent(inout) :: context
+    type(c_ptr), intent(inout) :: context   !< the context; null afterwards
     integer(c_int) :: flag
 
     flag = FSUNContext_Free(context)
@@ -44,21 +44,21 @@ contains
 
   !> Keep ERKStep's messages from the terminal: its context already does.
   subroutine silence_erkstep(memory, flag)
-    type(c_ptr), intent(inout) :: memory
-    integer(c_int), intent(out) :: flag
+    type(c_ptr), intent(inout) :: memory   !< the integrator of SUNDIALS
+    integer(c_int), intent(out) :: flag    !< 0: all is well
 
     flag = 0
   end subroutine silence_erkstep
 
   !> Sums of vectors are left to SUNDIALS.
-  subroutine quicken(vector)
-    type(N_Vector), intent(inout) :: vector
-  end subroutine quicken
+  subroutine form_own_sums(vector)
+    type(N_Vector), intent(inout) :: vector   !< a serial vector
+  end subroutine form_own_sums
 
   !> Keep CVODE's messages from the terminal: its context already does.
   subroutine silence_cvode(memory, flag)
-    type(c_ptr), intent(inout) :: memory
-    integer(c_int), intent(out) :: flag
+    type(c_ptr), intent(inout) :: memory   !< the integrator of SUNDIALS
+    integer(c_int), intent(out) :: flag    !< 0: all is well
 
     flag = 0
   end subroutine silence_cvode

@@ -35,15 +35,15 @@ module mech9_sundials_multistep
     type(system_box_type), pointer :: box => null()
     type(c_ptr) :: context = c_null_ptr
     type(c_ptr) :: memory = c_null_ptr
-    type(N_Vector), pointer :: vector => null()                   !< where steps end
+    type(N_Vector), pointer :: vector => null()       !< where steps end
     real(c_double), pointer :: values(:) => null()    !< of the vector
     real(c_double), pointer :: history(:) => null()   !< y at the last step, as the method goes on from it
     type(SUNMatrix), pointer :: matrix => null()
     type(SUNLinearSolver), pointer :: linear => null()
     type(SUNNonlinearSolver), pointer :: nonlinear => null()
-    type(stepper_counts_type) :: earlier                          !< counted before the last restart
-    real(wp) :: t = 0.0_wp                                        !< where it stands [s]
-    real(wp) :: last_step = 0.0_wp                                !< 0 before the first one since a restart [s]
+    type(stepper_counts_type) :: earlier   !< counted before the last restart
+    real(wp) :: t = 0.0_wp                 !< where it stands [s]
+    real(wp) :: last_step = 0.0_wp         !< 0 before the first one since a restart [s]
   contains
     procedure :: advance
     procedure :: interpolate
@@ -59,14 +59,14 @@ contains
 
   !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
   subroutine new_multistep(method, box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
-    type(integration_method_type), intent(in) :: method
-    type(system_box_type), pointer, intent(in) :: box
-    real(wp), intent(in) :: relative_tolerance
-    real(wp), intent(in) :: absolute_tolerance(:)
-    real(wp), intent(in) :: t                      !< [s]
-    real(wp), intent(in) :: y(:)
-    type(multistep_type), intent(inout) :: stepper
-    integer, intent(out) :: outcome
+    type(integration_method_type), intent(in) :: method   !< adams or bdf
+    type(system_box_type), pointer, intent(in) :: box     !< holds the system; must outlive the stepper
+    real(wp), intent(in) :: relative_tolerance            !< of each variable, in a step
+    real(wp), intent(in) :: absolute_tolerance(:)         !< of each variable, in its unit
+    real(wp), intent(in) :: t                             !< [s]
+    real(wp), intent(in) :: y(:)                          !< initial values
+    type(multistep_type), intent(inout) :: stepper        !< the method at work
+    integer, intent(out) :: outcome                       !< `stepped`, or why it failed
     integer(c_int) :: flag
 
     outcome = out_of_memory
@@ -84,15 +84,17 @@ contains
     if (flag == 0) flag = FCVodeInit(stepper%memory, c_funloc(evaluate_rate), t, stepper%vector)
     if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
     if (flag == 0) call set_solver(stepper, method, flag)
-    if (flag == 0) call set_habits(stepper, flag)
+    if (flag == 0) call set_options(stepper, flag)
     if (flag == 0) call find_history(stepper, flag)
     outcome = merge(stepped, refused, flag == 0)
   end subroutine new_multistep
 
+  !> Give CVODE the tolerances.
   subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
-    type(multistep_type), intent(inout) :: self   !< the multistep
-    real(wp), intent(in) :: relative_tolerance, absolute_tolerance(:)
-    integer(c_int), intent(out) :: flag
+    type(multistep_type), intent(inout) :: self     !< the method at work
+    real(wp), intent(in) :: relative_tolerance      !< of each variable, in a step
+    real(wp), intent(in) :: absolute_tolerance(:)   !< of each variable, in its unit
+    integer(c_int), intent(out) :: flag             !< 0 when all is well
     type(N_Vector), pointer :: absolute
     real(c_double), pointer :: values(:)
 
@@ -107,9 +109,9 @@ contains
 
   !> Adams' equations are solved by iterating them, those of backward differences by Newton's method.
   subroutine set_solver(self, method, flag)
-    type(multistep_type), intent(inout) :: self   !< the multistep
-    type(integration_method_type), intent(in) :: method
-    integer(c_int), intent(out) :: flag
+    type(multistep_type), intent(inout) :: self           !< the method at work
+    type(integration_method_type), intent(in) :: method   !< adams or bdf
+    integer(c_int), intent(out) :: flag                   !< 0 when all is well
     integer(index_kind) :: n
 
     flag = CV_MEM_FAIL
@@ -127,22 +129,23 @@ contains
     if (flag == 0 .and. self%box%system%has_jacobian) flag = FCVodeSetJacFn(self%memory, c_funloc(evaluate_jacobian))
   end subroutine set_solver
 
-  subroutine set_habits(self, flag)
-    type(multistep_type), intent(inout) :: self   !< the multistep
-    integer(c_int), intent(out) :: flag
+  !> Give CVODE the box and the limits, and keep its warnings from the terminal.
+  subroutine set_options(self, flag)
+    type(multistep_type), intent(inout) :: self   !< the method at work
+    integer(c_int), intent(out) :: flag           !< 0 when all is well
 
     flag = FCVodeSetUserData(self%memory, c_loc(self%box))
     if (flag == 0) flag = FCVodeSetMaxHnilWarns(self%memory, -1_c_int)
     if (flag == 0) flag = FCVodeSetMaxErrTestFails(self%memory, most_failures)
     if (flag == 0) flag = FCVodeSetMaxConvFails(self%memory, most_failures)
-  end subroutine set_habits
+  end subroutine set_options
 
-  !> Where the method keeps y at the last step, the first column of its Nordsieck array. Between steps
-  !> that is what CVODE calls the prediction. A small change there is carried on without a restart;
-  !> CVODE's own projection, which backward differences alone have, does the same.
+  !> Find the memory in which CVODE keeps y at the last step, the first column of its Nordsieck array. Between steps
+  !> CVODE gives it out as the prediction. The method goes on from a small change there without a restart, as it does
+  !> after CVODE's own projection, which only backward differences have.
   subroutine find_history(self, flag)
-    type(multistep_type), intent(inout) :: self   !< the multistep
-    integer(c_int), intent(out) :: flag
+    type(multistep_type), intent(inout) :: self   !< the method at work
+    integer(c_int), intent(out) :: flag           !< 0 when all is well
     type(c_ptr), target :: found(4)
     type(c_ptr) :: at(4), context
     real(c_double) :: t(1), gamma(1), rl1(1)
@@ -160,12 +163,13 @@ contains
     self%history => FN_VGetArrayPointer(vector)
   end subroutine find_history
 
+  !> A step against the direction of the last one needs a restart.
   subroutine advance(self, t_stop, t, y, outcome)
-    class(multistep_type), intent(inout) :: self   !< the multistep
-    real(wp), intent(in) :: t_stop
-    real(wp), intent(out) :: t
-    real(wp), intent(out) :: y(:)
-    integer, intent(out) :: outcome
+    class(multistep_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t_stop                 !< where the step ends at the latest [s]
+    real(wp), intent(out) :: t                     !< end of the step [s]
+    real(wp), intent(out) :: y(:)                  !< values there
+    integer, intent(out) :: outcome                !< `stepped`, or why it failed
     real(c_double) :: t_reached(1)
     integer(c_int) :: flag
     logical :: settled
@@ -195,9 +199,9 @@ contains
     end if
   end subroutine advance
 
-  !> What SUNDIALS' answer means.
+  !> The outcome that an answer of SUNDIALS means.
   pure integer function meaning(flag)
-    integer(c_int), intent(in) :: flag
+    integer(c_int), intent(in) :: flag   !< answer of a function of CVODE
 
     select case (flag)
     case (CV_SUCCESS, CV_TSTOP_RETURN)
@@ -217,23 +221,23 @@ contains
     end select
   end function meaning
 
-  !> By the polynomial through the values that the method goes on from.
+  !> The polynomial of the method gives the values.
   subroutine interpolate(self, t, y, found)
-    class(multistep_type), intent(inout) :: self   !< the multistep
-    real(wp), intent(in) :: t
-    real(wp), intent(out) :: y(:)
-    logical, intent(out) :: found
+    class(multistep_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t                      !< a time within the last step [s]
+    real(wp), intent(out) :: y(:)                  !< values at t
+    logical, intent(out) :: found                  !< whether the method can tell them
 
     found = FCVodeGetDky(self%memory, t, 0_c_int, self%vector) == 0
     y = self%values
   end subroutine interpolate
 
-  !> Keeps step and order.
+  !> The method keeps its step and its order.
   subroutine correct(self, t, y, outcome)
-    class(multistep_type), intent(inout) :: self   !< the multistep
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
-    integer, intent(out) :: outcome
+    class(multistep_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t                      !< end of the last step [s]
+    real(wp), intent(in) :: y(:)                   !< the corrected values there
+    integer, intent(out) :: outcome                !< `stepped`, or why it failed
 
     if (abs(self%last_step) > 0.0_wp) then
       self%history = y
@@ -243,13 +247,13 @@ contains
     end if
   end subroutine correct
 
-  !> Falls back to the first order, as all multistep methods must.
+  !> The method falls back to the first order, as all multistep methods must.
   subroutine restart(self, t, y, first_step, outcome)
-    class(multistep_type), intent(inout) :: self   !< the multistep
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
-    real(wp), intent(in) :: first_step
-    integer, intent(out) :: outcome
+    class(multistep_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t                      !< where it begins [s]
+    real(wp), intent(in) :: y(:)                   !< values there
+    real(wp), intent(in) :: first_step             !< its length with its sign; 0: to be found [s]
+    integer, intent(out) :: outcome                !< `stepped`, or why it failed
     type(stepper_counts_type) :: counts
     integer(c_int) :: flag
 
@@ -263,16 +267,18 @@ contains
     outcome = meaning(flag)
   end subroutine restart
 
+  !> CVODE keeps the limit.
   subroutine limit(self, largest_step, outcome)
-    class(multistep_type), intent(inout) :: self   !< the multistep
-    real(wp), intent(in) :: largest_step
-    integer, intent(out) :: outcome
+    class(multistep_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: largest_step           !< length of the longest step; 0: no limit [s]
+    integer, intent(out) :: outcome                !< `stepped`, or why it failed
 
     outcome = meaning(FCVodeSetMaxStep(self%memory, largest_step))
   end subroutine limit
 
+  !> The step that CVODE tries next.
   real(wp) function next_step(self)
-    class(multistep_type), intent(inout) :: self   !< the multistep
+    class(multistep_type), intent(inout) :: self   !< the method at work
     real(c_double) :: h(1)
     integer(c_int) :: flag
 
@@ -281,9 +287,10 @@ contains
     next_step = h(1)
   end function next_step
 
+  !> The counts of CVODE, which begin anew at a restart, are added to the earlier ones.
   subroutine count_so_far(self, counts)
-    class(multistep_type), intent(inout) :: self   !< the multistep
-    type(stepper_counts_type), intent(out) :: counts
+    class(multistep_type), intent(inout) :: self       !< the method at work
+    type(stepper_counts_type), intent(out) :: counts   !< the counts since the creation
     integer(c_long) :: number(1)
     integer(c_int) :: order(1), flag
     real(c_double) :: h(1)
@@ -306,8 +313,9 @@ contains
     counts%last_order = int(order(1))
   end subroutine count_so_far
 
+  !> Give back all that SUNDIALS holds.
   subroutine close_multistep(self)
-    class(multistep_type), intent(inout) :: self   !< the multistep
+    class(multistep_type), intent(inout) :: self   !< the method at work
     integer(c_int) :: flag
 
     if (c_associated(self%memory)) call FCVodeFree(self%memory)

@@ -9,7 +9,7 @@ module mech9_sundials_runge_kutta
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     too_accurate, out_of_memory, refused
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, index_kind, last_stage_mistaken, &
-    open_context, close_context, silence_erkstep, quicken
+    open_context, close_context, silence_erkstep, form_own_sums
   use mech9_sundials_system, only: system_box_type, evaluate_rate, settle_step
   use farkode_mod, only: FARKodeButcherTable_Create, FARKodeButcherTable_Free, ARK_SUCCESS, ARK_TSTOP_RETURN, &
     ARK_ONE_STEP, ARK_ERR_FAILURE, ARK_TOO_MUCH_ACC, ARK_RHSFUNC_FAIL, ARK_FIRST_RHSFUNC_ERR, ARK_REPTD_RHSFUNC_ERR, &
@@ -34,11 +34,11 @@ module mech9_sundials_runge_kutta
     type(system_box_type), pointer :: box => null()
     type(c_ptr) :: context = c_null_ptr
     type(c_ptr) :: memory = c_null_ptr
-    type(N_Vector), pointer :: vector => null()                  !< where steps end
+    type(N_Vector), pointer :: vector => null()      !< where steps end
     real(c_double), pointer :: values(:) => null()   !< of the vector
     integer :: order = 0
-    real(wp) :: t = 0.0_wp            !< where it stands [s]
-    real(wp) :: last_step = 0.0_wp    !< 0 before the first one [s]
+    real(wp) :: t = 0.0_wp           !< where it stands [s]
+    real(wp) :: last_step = 0.0_wp   !< 0 before the first one [s]
   contains
     procedure :: advance
     procedure :: interpolate
@@ -54,14 +54,14 @@ contains
 
   !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
   subroutine new_runge_kutta(method, box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
-    type(integration_method_type), intent(in) :: method
-    type(system_box_type), pointer, intent(in) :: box
-    real(wp), intent(in) :: relative_tolerance
-    real(wp), intent(in) :: absolute_tolerance(:)
-    real(wp), intent(in) :: t                      !< [s]
-    real(wp), intent(in) :: y(:)
-    type(runge_kutta_type), intent(inout) :: stepper
-    integer, intent(out) :: outcome
+    type(integration_method_type), intent(in) :: method   !< one of the Runge-Kutta methods
+    type(system_box_type), pointer, intent(in) :: box     !< holds the system; must outlive the stepper
+    real(wp), intent(in) :: relative_tolerance            !< of each variable, in a step
+    real(wp), intent(in) :: absolute_tolerance(:)         !< of each variable, in its unit
+    real(wp), intent(in) :: t                             !< [s]
+    real(wp), intent(in) :: y(:)                          !< initial values
+    type(runge_kutta_type), intent(inout) :: stepper      !< the method at work
+    integer, intent(out) :: outcome                       !< `stepped`, or why it failed
     integer(c_int) :: flag
 
     outcome = out_of_memory
@@ -74,7 +74,7 @@ contains
     if (.not. associated(stepper%vector)) return
     flag = FN_VEnableFusedOps_Serial(stepper%vector, 1_c_int)   ! a tenth to a fifth faster
     if (flag /= 0) return
-    call quicken(stepper%vector)
+    call form_own_sums(stepper%vector)
     stepper%values => FN_VGetArrayPointer(stepper%vector)
     stepper%values = y
     stepper%memory = FERKStepCreate(c_funloc(evaluate_rate), t, stepper%vector, stepper%context)
@@ -82,14 +82,16 @@ contains
     call silence_erkstep(stepper%memory, flag)
     if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
     if (flag == 0) call set_table(stepper, method, flag)
-    if (flag == 0) call set_habits(stepper, method, flag)
+    if (flag == 0) call set_options(stepper, method, flag)
     outcome = merge(stepped, refused, flag == 0)
   end subroutine new_runge_kutta
 
+  !> Give ERKStep the tolerances.
   subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
-    type(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    real(wp), intent(in) :: relative_tolerance, absolute_tolerance(:)
-    integer(c_int), intent(out) :: flag
+    type(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: relative_tolerance      !< of each variable, in a step
+    real(wp), intent(in) :: absolute_tolerance(:)   !< of each variable, in its unit
+    integer(c_int), intent(out) :: flag             !< 0 when all is well
     type(N_Vector), pointer :: absolute
     real(c_double), pointer :: values(:)
 
@@ -104,9 +106,9 @@ contains
 
   !> Give SUNDIALS the coefficients. A method whose table is not known is refused.
   subroutine set_table(self, method, flag)
-    type(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    type(integration_method_type), intent(in) :: method
-    integer(c_int), intent(out) :: flag              !< ARK_SUCCESS when all is well
+    type(runge_kutta_type), intent(inout) :: self         !< the method at work
+    type(integration_method_type), intent(in) :: method   !< the Runge-Kutta method
+    integer(c_int), intent(out) :: flag                   !< ARK_SUCCESS when all is well
 
     select case (method%table)
     case (prince_dormand_table)
@@ -124,10 +126,11 @@ contains
     end select
   end subroutine set_table
 
+  !> Give ERKStep coefficients of mech9_butcher_tables.
   subroutine set_own_table(self, table, flag)
-    type(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    type(butcher_table_type), intent(in) :: table
-    integer(c_int), intent(out) :: flag
+    type(runge_kutta_type), intent(inout) :: self   !< the method at work
+    type(butcher_table_type), intent(in) :: table   !< coefficients of the method
+    integer(c_int), intent(out) :: flag             !< 0 when all is well
     real(c_double), target :: c(table%stages), b(table%stages), d(table%stages), a(table%stages**2)
     type(c_ptr) :: handed
 
@@ -143,10 +146,11 @@ contains
     call FARKodeButcherTable_Free(handed)
   end subroutine set_own_table
 
-  subroutine set_habits(self, method, flag)
-    type(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    type(integration_method_type), intent(in) :: method
-    integer(c_int), intent(out) :: flag
+  !> Give ERKStep the box, the choice of steps and the limits, and keep its warnings from the terminal.
+  subroutine set_options(self, method, flag)
+    type(runge_kutta_type), intent(inout) :: self         !< the method at work
+    type(integration_method_type), intent(in) :: method   !< the Runge-Kutta method
+    integer(c_int), intent(out) :: flag                   !< 0 when all is well
     type(c_ptr) :: nothing
 
     nothing = c_null_ptr
@@ -154,7 +158,7 @@ contains
     if (flag == 0) flag = FERKStepSetErrorBias(self%memory, 1.0_wp)
     if (flag == 0) flag = FERKStepSetSafetyFactor(self%memory, safety)
     if (flag == 0) flag = FERKStepSetAdaptivityFn(self%memory, c_funloc(choose_step), nothing)
-    ! a step that reaches the stop is its own end: SUNDIALS' better interpolant would ask for more rates
+    ! interpolation is never used here, and SUNDIALS' better interpolant would evaluate more rates
     if (flag == 0) flag = FERKStepSetInterpolantDegree(self%memory, 1_c_int)
     if (flag == 0) flag = FERKStepSetMaxHnilWarns(self%memory, -1_c_int)
     if (flag == 0) flag = FERKStepSetMaxErrTestFails(self%memory, most_failures)
@@ -162,26 +166,34 @@ contains
     self%box%reuses_last_rate = last_stage_mistaken .and. method%reuses_last
     if (self%box%system%settles .or. (last_stage_mistaken .and. .not. method%reuses_last)) &
       flag = FERKStepSetPostprocessStepFn(self%memory, c_funloc(settle_step))
-  end subroutine set_habits
+  end subroutine set_options
 
-  !> Called by SUNDIALS for the length of the next step, or of a new trial. Answers 0.
+  !> SUNDIALS calls this function for the length of the next step, or of a new trial. It answers 0.
   integer(c_int) function choose_step(y, t, h1, h2, h3, e1, e2, e3, q, p, h_new, context) bind(c) result(answer)
-    type(N_Vector) :: y
-    real(c_double), value :: t, h1, h2, h3, e1, e2, e3   !< steps and errors, the last ones first
-    integer(c_int), value :: q, p                        !< orders of the method and of the embedded one
-    real(c_double), intent(out) :: h_new
-    type(c_ptr), value :: context
+    type(N_Vector) :: y                    !< values at the end of the last step; unused
+    real(c_double), value :: t             !< end of the last step; unused [s]
+    real(c_double), value :: h1            !< length of the last step, made or tried, with its sign [s]
+    real(c_double), value :: h2            !< length of the accepted step before it; 0: none [s]
+    real(c_double), value :: h3            !< length of the one before that; unused [s]
+    real(c_double), value :: e1            !< error of the last step, as a part of the allowed one
+    real(c_double), value :: e2            !< error of the step before it
+    real(c_double), value :: e3            !< error of the one before that; unused
+    integer(c_int), value :: q             !< order of the method
+    integer(c_int), value :: p             !< order of the embedded method
+    real(c_double), intent(out) :: h_new   !< length of the next step, with its sign [s]
+    type(c_ptr), value :: context          !< unused
 
     h_new = next_step_length(h1, h2, e1, e2, int(p) + 1)
     answer = 0
   end function choose_step
 
+  !> A step against the direction of the last one is prepared by turn_back.
   subroutine advance(self, t_stop, t, y, outcome)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    real(wp), intent(in) :: t_stop
-    real(wp), intent(out) :: t
-    real(wp), intent(out) :: y(:)
-    integer, intent(out) :: outcome
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t_stop                   !< where the step ends at the latest [s]
+    real(wp), intent(out) :: t                       !< end of the step [s]
+    real(wp), intent(out) :: y(:)                    !< values there
+    integer, intent(out) :: outcome                  !< `stepped`, or why it failed
     real(c_double) :: t_reached(1)
     integer(c_int) :: flag
 
@@ -199,12 +211,12 @@ contains
     self%t = t
   end subroutine advance
 
-  !> ERKStep accepts no stop against the direction of its last step. A first step back of half the rest at
-  !> most, which can only be made smaller, needs none.
+  !> ERKStep accepts no stop against the direction of its last step. The first step back is therefore set to half of the
+  !> way to the stop at most; as it can only become smaller, it needs no stop.
   subroutine turn_back(self, t_stop, flag)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    real(wp), intent(in) :: t_stop
-    integer(c_int), intent(out) :: flag
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t_stop                   !< where the step ends at the latest [s]
+    integer(c_int), intent(out) :: flag              !< 0 when all is well
     real(wp) :: half
 
     half = 0.5_wp*(t_stop - self%t)
@@ -212,9 +224,9 @@ contains
     if (flag == 0) flag = FERKStepReset(self%memory, self%t, self%vector)
   end subroutine turn_back
 
-  !> What SUNDIALS' answer means.
+  !> The outcome that an answer of SUNDIALS means.
   pure integer function meaning(flag)
-    integer(c_int), intent(in) :: flag
+    integer(c_int), intent(in) :: flag   !< answer of a function of ERKStep
 
     select case (flag)
     case (ARK_SUCCESS, ARK_TSTOP_RETURN)
@@ -233,34 +245,35 @@ contains
     end select
   end function meaning
 
-  !> Not at the order of the method.
+  !> The method has no approximation of its own order inside a step.
   subroutine interpolate(self, t, y, found)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    real(wp), intent(in) :: t
-    real(wp), intent(out) :: y(:)
-    logical, intent(out) :: found
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t                        !< a time within the last step [s]
+    real(wp), intent(out) :: y(:)                    !< values at the end of the last step
+    logical, intent(out) :: found                    !< whether that is the time t
 
     y = self%values
     found = abs(t - self%t) <= 0.0_wp
   end subroutine interpolate
 
-  !> Takes one evaluation of the rate that would not be needed otherwise.
+  !> A correction takes one more evaluation of the rate.
   subroutine correct(self, t, y, outcome)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
-    integer, intent(out) :: outcome
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t                        !< end of the last step [s]
+    real(wp), intent(in) :: y(:)                     !< the corrected values there
+    integer, intent(out) :: outcome                  !< `stepped`, or why it failed
 
     self%values = y
     outcome = meaning(FERKStepReset(self%memory, t, self%vector))
   end subroutine correct
 
+  !> The next step starts from the given values.
   subroutine restart(self, t, y, first_step, outcome)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
-    real(wp), intent(in) :: first_step
-    integer, intent(out) :: outcome
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t                        !< where it begins [s]
+    real(wp), intent(in) :: y(:)                     !< values there
+    real(wp), intent(in) :: first_step               !< its length with its sign; 0: to be found [s]
+    integer, intent(out) :: outcome                  !< `stepped`, or why it failed
     integer(c_int) :: flag
 
     self%values = y
@@ -270,16 +283,18 @@ contains
     outcome = meaning(flag)
   end subroutine restart
 
+  !> ERKStep keeps the limit.
   subroutine limit(self, largest_step, outcome)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    real(wp), intent(in) :: largest_step
-    integer, intent(out) :: outcome
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: largest_step             !< length of the longest step; 0: no limit [s]
+    integer, intent(out) :: outcome                  !< `stepped`, or why it failed
 
     outcome = meaning(FERKStepSetMaxStep(self%memory, largest_step))
   end subroutine limit
 
+  !> The step that ERKStep tries next.
   real(wp) function next_step(self)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
     real(c_double) :: h(1)
     integer(c_int) :: flag
 
@@ -288,9 +303,10 @@ contains
     next_step = h(1)
   end function next_step
 
+  !> The counts of ERKStep; the order is that of the method.
   subroutine count_so_far(self, counts)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
-    type(stepper_counts_type), intent(out) :: counts
+    class(runge_kutta_type), intent(inout) :: self     !< the method at work
+    type(stepper_counts_type), intent(out) :: counts   !< the counts since the creation
     integer(c_long) :: number(1)
     real(c_double) :: h(1)
     integer(c_int) :: flag
@@ -304,8 +320,9 @@ contains
     counts%last_order = self%order
   end subroutine count_so_far
 
+  !> Give back all that SUNDIALS holds.
   subroutine close_runge_kutta(self)
-    class(runge_kutta_type), intent(inout) :: self   !< the runge kutta
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
 
     if (c_associated(self%memory)) call FERKStepFree(self%memory)
     if (associated(self%vector)) call FN_VDestroy(self%vector)

@@ -1,4 +1,4 @@
-!> A system of equations as SUNDIALS calls it: the box that holds it, and the functions that open the box.
+!> A system of equations as SUNDIALS calls it, in a box that is passed through C, and the functions that open the box.
 module mech9_sundials_system
   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_f_pointer, c_loc
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
@@ -12,20 +12,20 @@ module mech9_sundials_system
   private
   public :: system_box_type, evaluate_rate, settle_step, evaluate_jacobian
 
-  !> What travels through C: the system, and what became of its evaluations.
+  !> The box that is passed through C: the system, and the outcomes of its evaluations.
   type :: system_box_type
     class(ode_system_type), pointer :: system => null()
     type(error_type), allocatable :: err       !< of the last evaluation
-    type(error_type), allocatable :: failure   !< the last one there was
-    real(wp) :: t_failed = 0.0_wp              !< of that [s]
-    logical :: broken = .false.                !< it was one that a smaller step does not help
-    integer(long) :: failed_at = 0             !< rate evaluations up to it
-    integer(long) :: rate_evaluations = 0
+    type(error_type), allocatable :: failure   !< the last failure of all evaluations
+    real(wp) :: t_failed = 0.0_wp              !< time of this failure [s]
+    logical :: broken = .false.                !< no smaller step helps against this failure
+    integer(long) :: failed_at = 0             !< rate evaluations up to this failure
+    integer(long) :: rate_evaluations = 0      !< in all
     integer(long) :: refusals = 0              !< failures that a smaller step may help
     !> Whether the rate after settling is taken from the last stage, of the same time and nearly the same y.
     logical :: reuses_last_rate = .false.
-    logical :: has_settled = .false.                    !< just now, and the rate there is asked for next
-    real(c_double), pointer :: last_rate(:) => null()   !< where SUNDIALS keeps it
+    logical :: has_settled = .false.                    !< the step has just settled, and SUNDIALS evaluates the rate there next
+    real(c_double), pointer :: last_rate(:) => null()   !< the rate of the last stage, in SUNDIALS' memory
   contains
     procedure :: settle
     procedure :: has_cause
@@ -33,11 +33,12 @@ module mech9_sundials_system
 
 contains
 
-  !> Called by SUNDIALS for y' = f(t, y). Answers 0; 1 if a smaller step may help; -1 if nothing does.
+  !> SUNDIALS calls this function for y' = f(t, y). It answers 0; 1 if a smaller step may help; -1 if nothing helps.
   integer(c_int) function evaluate_rate(t, y, ydot, context) bind(c) result(answer)
-    real(c_double), value :: t
-    type(N_Vector), target :: y, ydot
-    type(c_ptr), value :: context
+    real(c_double), value :: t       !< [s]
+    type(N_Vector), target :: y      !< values at t
+    type(N_Vector), target :: ydot   !< gets the derivatives of y in time
+    type(c_ptr), value :: context    !< address of the box
     type(system_box_type), pointer :: box
     real(c_double), pointer :: y_values(:), ydot_values(:)
     integer :: i
@@ -62,11 +63,12 @@ contains
     answer = answer_to(box, t)
   end function evaluate_rate
 
-  !> Called by SUNDIALS after a step that passed its error test: lets the system settle. Answers as evaluate_rate.
+  !> SUNDIALS calls this function after a step that passed its error test, to let the system settle. It answers as
+  !> evaluate_rate.
   integer(c_int) function settle_step(t, y, context) bind(c) result(answer)
-    real(c_double), value :: t
-    type(N_Vector), target :: y
-    type(c_ptr), value :: context
+    real(c_double), value :: t      !< [s]
+    type(N_Vector), target :: y     !< values at t; the settled ones afterwards
+    type(c_ptr), value :: context   !< address of the box
     type(system_box_type), pointer :: box
     real(c_double), pointer :: y_values(:)
     logical :: settled
@@ -78,13 +80,16 @@ contains
     answer = merge(0, 1, settled)
   end function settle_step
 
-  !> Called by SUNDIALS for the derivatives of f in y. Answers as evaluate_rate.
+  !> SUNDIALS calls this function for the derivatives of f in y. It answers as evaluate_rate.
   integer(c_int) function evaluate_jacobian(t, y, ydot, jac, context, work1, work2, work3) bind(c) result(answer)
-    real(c_double), value :: t
-    type(N_Vector), target :: y, ydot
-    type(SUNMatrix), target :: jac
-    type(c_ptr), value :: context
-    type(N_Vector), target :: work1, work2, work3
+    real(c_double), value :: t        !< [s]
+    type(N_Vector), target :: y       !< values at t
+    type(N_Vector), target :: ydot    !< derivatives of y in time at t
+    type(SUNMatrix), target :: jac    !< gets the derivatives of ydot in y, a dense matrix
+    type(c_ptr), value :: context     !< address of the box
+    type(N_Vector), target :: work1   !< scratch, unused
+    type(N_Vector), target :: work2   !< scratch, unused
+    type(N_Vector), target :: work3   !< scratch, unused
     type(system_box_type), pointer :: box
     real(c_double), pointer :: y_values(:), ydot_values(:), entries(:), columns(:, :)
     integer :: n
@@ -102,12 +107,12 @@ contains
     answer = answer_to(box, t)
   end function evaluate_jacobian
 
-  !> Let the system settle after a step, if it does.
+  !> Let the system settle after a step, if it is one that settles.
   subroutine settle(self, t, y, settled)
-    class(system_box_type), intent(inout) :: self   !< the system box
-    real(wp), intent(in) :: t
-    real(wp), intent(inout) :: y(:)
-    logical, intent(out) :: settled
+    class(system_box_type), intent(inout) :: self   !< the box
+    real(wp), intent(in) :: t                       !< [s]
+    real(wp), intent(inout) :: y(:)                 !< values at t; the settled ones afterwards
+    logical, intent(out) :: settled                 !< false: the step must be made again
 
     settled = .true.
     if (.not. self%system%settles) return
@@ -115,11 +120,11 @@ contains
     settled = answer_to(self, t) == 0
   end subroutine settle
 
-  !> Whether a failure of the system explains why the integration cannot go on: one that nothing helps, or
-  !> one so short ago that it is what the steps became short for.
+  !> Whether a failure of the system explains why the integration cannot go on: one that no smaller step helps against, or
+  !> one so recent that the steps became short because of it.
   pure logical function has_cause(self)
-    class(system_box_type), intent(in) :: self   !< the system box
-    integer, parameter :: recent = 100   ! rate evaluations: those of some steps, and of a Jacobian
+    class(system_box_type), intent(in) :: self   !< the box
+    integer, parameter :: recent = 100   ! rate evaluations of some steps, and of a Jacobian by differences
 
     has_cause = .false.
     if (allocated(self%failure)) has_cause = self%broken .or. self%rate_evaluations - self%failed_at <= recent
@@ -127,8 +132,8 @@ contains
 
   !> Fails where a number is not finite.
   pure subroutine must_be_finite(numbers, what, err)
-    real(wp), intent(in) :: numbers(:)
-    character(len=*), intent(in) :: what
+    real(wp), intent(in) :: numbers(:)                    !< values to be checked
+    character(len=*), intent(in) :: what                  !< name of the values in the message
     type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
     integer :: i
 
@@ -140,10 +145,10 @@ contains
     end do
   end subroutine must_be_finite
 
-  !> The answer that SUNDIALS understands to an evaluation at time t. Failures are remembered.
+  !> The answer to SUNDIALS after an evaluation at time t. Failures are kept in the box.
   integer(c_int) function answer_to(box, t) result(answer)
-    type(system_box_type), intent(inout) :: box
-    real(wp), intent(in) :: t
+    type(system_box_type), intent(inout) :: box   !< keeps the failure of the evaluation, if it failed
+    real(wp), intent(in) :: t                     !< time of the evaluation [s]
 
     answer = 0
     if (.not. allocated(box%err)) return
