@@ -1,21 +1,21 @@
 !> The search for the next closed chain: the cheapest walk from a known link, through unused pairs and unknown links, to a known
 !> link.
 !>
-!> Cheapest is: fewest dependent coordinates; ties: fewest coordinates, then the least link at
-!> an end, then, read from that end, the least coordinate numbers in order.
+!> The cheapest chain has the fewest dependent coordinates. Among chains with equally many, it has the fewest coordinates,
+!> then the least link at an end, then, read from that end, the least coordinate numbers in order.
 !>
-!> How. Each unknown link is labelled with its distance to the known links (the cost of the cheapest
-!> way there) and with the pair by which that way leaves them. A pair whose two links have
-!> different labels closes a chain, of cost distance + pair + distance, and the cheapest one is among
-!> these. As links become known, distances only shrink, so labels are mended, never made anew.
-!> Mending stops at half the cost of the cheapest chain in sight: no link of a cheapest chain is
-!> further from the known links than that, and what lies beyond waits in the queue until it matters.
+!> The method labels each unknown link with its distance to the known links (the cost of the cheapest
+!> walk there) and with the pair by which that walk leaves the known links. A pair whose two links have
+!> different labels closes a chain, of cost distance + pair + distance, and the cheapest chain is among
+!> these. As links become known, distances only shrink, so that labels are updated and never made anew.
+!> Updates stop at half the cost of the cheapest chain found so far: no link of a cheapest chain is
+!> further from the known links, and links beyond wait in the queue until they are needed.
 !> Below half that cost the label of a link is unique, since two labels at one distance would close
-!> a chain of twice that distance. So the ties too are settled from the labels.
+!> a chain of twice that distance. Hence the labels decide ties, too.
 !>
-!> A label is mended at most as often as half the cheapest chain in sight is long, and hardly ever more
-!> than a few times: the work grows like the number of pairs (times its logarithm, for the queues). Ladders
-!> with rungs as long as they have rungs are the worst known: there it grows with the power 1.5.
+!> A label is updated at most as often as half the cheapest chain found so far is long, and hardly ever more
+!> than a few times: the work grows like the number of pairs (times its logarithm, for the queues). The worst known
+!> mechanisms are ladders whose rungs are as long as the number of rungs: there the work grows with the power 1.5.
 module mech9_closed_chains
   use mech9_kinds, only: long
   use mech9_priority_queue, only: queue_item_type, priority_queue_type
@@ -26,21 +26,21 @@ module mech9_closed_chains
 
   integer(long), parameter :: unlabelled = huge(1_long)
 
-  !> What is known, what is used, and the labels. Bridges lie on no closed chain and are left out.
+  !> The state of the search. Bridges lie on no closed chain and are left out.
   type :: chain_search_type
-    logical, allocatable :: known(:)                   !< (N)
-    logical, allocatable :: used(:)                    !< (M)
-    !> Pairs looked at and items taken in or out of a queue: a measure of the work.
+    logical, allocatable :: known(:)   !< (N) the link is known
+    logical, allocatable :: used(:)    !< (M) the pair is used
+    !> Pairs examined and items taken in or out of a queue: a measure of the work.
     integer(long) :: operations = 0
     integer(long), allocatable, private :: distance(:) ! (N) to the known links, 0 for a known one
-    integer, allocatable, private :: label(:)          ! (N) pair by which that way leaves them
+    integer, allocatable, private :: label(:)          ! (N) pair by which the cheapest walk leaves them
     type(priority_queue_type), private :: pending      ! links to be labelled, by distance, label
     type(priority_queue_type), private :: closing      ! pairs that close a chain, by its cost and end
-    integer, allocatable, private :: seen(:)           ! (N) the last tracing that looked at a link
-    integer, private :: tracings = 0
+    integer, allocatable, private :: seen(:)           ! (N) number of the last tracing that reached the link
+    integer, private :: tracings = 0                   ! number of tracings so far
     integer, allocatable, private :: trail_links(:)    ! (N+1) the chain being traced
-    integer, allocatable, private :: trail_pairs(:)    ! (N+1)
-    integer, allocatable, private :: trail_next(:)     ! (N+1) where tracing goes on at each link
+    integer, allocatable, private :: trail_pairs(:)    ! (N+1) its pairs
+    integer, allocatable, private :: trail_next(:)     ! (N+1) place of the pair that tracing tries next at each link
   contains
     procedure :: start
     procedure :: make_known
@@ -60,8 +60,8 @@ contains
 
   !> Begin with nothing known and nothing used; a search can be started only once.
   pure subroutine start(self, graph)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
 
     allocate (self%known(graph%n_links), source=.false.)
     allocate (self%used(graph%n_pairs), source=.false.)
@@ -75,9 +75,9 @@ contains
 
   !> Add a link to the known ones. The pairs by which it was reached must be marked as used before.
   pure subroutine make_known(self, graph, link)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(in) :: link
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
+    integer, intent(in) :: link                       !< number of the link
 
     self%known(link) = .true.
     self%distance(link) = 0
@@ -88,10 +88,10 @@ contains
   !> The cheapest closed chain, run through so that an independent coordinate comes first where one
   !> end has it, else the smaller number. It is not yet marked as used or known.
   pure subroutine next_closed_chain(self, graph, chain, found)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    type(walk_type), intent(out) :: chain
-    logical, intent(out) :: found
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
+    type(walk_type), intent(out) :: chain             !< the closed chain as a walk
+    logical, intent(out) :: found                     !< whether there is one
     type(queue_item_type) :: cheapest, nearest
 
     do
@@ -111,9 +111,9 @@ contains
   !> After a link became known or got its label: offer the chains that its pairs close, and labels
   !> to its neighbours.
   pure subroutine look_around(self, graph, link)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(in) :: link
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
+    integer, intent(in) :: link                       !< number of the link
     integer(long) :: distance
     integer :: i, label
 
@@ -133,11 +133,11 @@ contains
     end do
   end subroutine look_around
 
-  !> Queue a pair if, as the labels stand, it closes a chain.
+  !> Queue a pair if it closes a chain by the present labels.
   pure subroutine offer(self, graph, pair)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(in) :: pair
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
+    integer, intent(in) :: pair                       !< number of the pair
     type(queue_item_type) :: item
     logical :: closes
 
@@ -147,14 +147,14 @@ contains
     self%operations = self%operations + 1
   end subroutine offer
 
-  !> The cost of the chain that a pair closes, and the least end of it as the labels stand:
+  !> The cost of the chain that a pair closes, and the least end of it by the present labels:
   !> least link, then least pair there.
   pure subroutine closing_item(self, graph, pair, item, closes)
-    class(chain_search_type), intent(in) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(in) :: pair
-    type(queue_item_type), intent(out) :: item
-    logical, intent(out) :: closes
+    class(chain_search_type), intent(in) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph     !< links and pairs of the mechanism
+    integer, intent(in) :: pair                    !< number of the pair
+    type(queue_item_type), intent(out) :: item     !< the pair, with cost and least end of the chain as its key
+    logical, intent(out) :: closes                 !< whether the pair closes a chain
     integer :: label(2), i
     integer(long) :: end_key(2)
 
@@ -181,26 +181,27 @@ contains
 
   !> An end of a chain as one number: by link, then by pair.
   pure integer(long) function end_number(graph, link, pair)
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(in) :: link, pair
+    type(link_graph_type), intent(in) :: graph   !< links and pairs of the mechanism
+    integer, intent(in) :: link                  !< number of the link at the end
+    integer, intent(in) :: pair                  !< number of the pair
 
     end_number = int(link, long)*(graph%n_pairs + 1) + pair
   end function end_number
 
   !> The known link of a pair that serves as label.
   pure integer function end_of_label(self, graph, pair)
-    class(chain_search_type), intent(in) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(in) :: pair
+    class(chain_search_type), intent(in) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph     !< links and pairs of the mechanism
+    integer, intent(in) :: pair                    !< number of the pair
 
     end_of_label = graph%ends(1, pair)
     if (.not. self%known(end_of_label)) end_of_label = graph%ends(2, pair)
   end function end_of_label
 
-  !> Drop the offers at the head of the queue that labels have overtaken; newer ones stand further back.
+  !> Drop the offers at the head of the queue that no longer agree with the labels; newer ones stand further back.
   pure subroutine drop_outdated(self, graph)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
     type(queue_item_type) :: offered, current
     logical :: closes
 
@@ -214,10 +215,10 @@ contains
     end do
   end subroutine drop_outdated
 
-  !> Label the link at the head of the queue, unless it is known or labelled as near already.
+  !> Label the link at the head of the queue, unless it is known or its label has no larger distance already.
   pure subroutine label_next(self, graph)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
     type(queue_item_type) :: item
 
     item = self%pending%top()
@@ -230,12 +231,12 @@ contains
   end subroutine label_next
 
   !> Trace the chain of an offer: from its least end through links with that label, across a pair to
-  !> another label, and home to the known links, each time by the least coordinate that will do.
+  !> another label, and back to the known links, each time by the least coordinate that is possible.
   pure subroutine trace(self, graph, item, chain)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    type(queue_item_type), intent(in) :: item
-    type(walk_type), intent(out) :: chain
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
+    type(queue_item_type), intent(in) :: item         !< the offer of a pair that closes a chain
+    type(walk_type), intent(out) :: chain             !< the closed chain as a walk
     integer :: n
 
     associate (per_link => int(graph%n_pairs + 1, long))
@@ -254,9 +255,12 @@ contains
     end if
   end subroutine trace
 
+  !> Whether a chain is run through from the end with coordinate a: an independent coordinate comes first, then the
+  !> smaller number.
   pure logical function comes_before(graph, a, b)
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(in) :: a, b
+    type(link_graph_type), intent(in) :: graph   !< links and pairs of the mechanism
+    integer, intent(in) :: a                     !< coordinate at one end
+    integer, intent(in) :: b                     !< coordinate at the other end
 
     if (graph%independent(a) .neqv. graph%independent(b)) then
       comes_before = graph%independent(a)
@@ -265,14 +269,14 @@ contains
     end if
   end function comes_before
 
-  !> The trail up to and including the pair that leads to another label or to a known link. A search in
-  !> depth by increasing coordinate numbers: what it finds first has the least numbers, and a link
-  !> it had to turn back from is not tried again.
+  !> The trail up to and including the pair that leads to another label or to a known link. It is found by a depth-first
+  !> search in the order of coordinate numbers: the first trail found has the least numbers, and a link
+  !> from which no trail leads on is not tried again.
   pure subroutine trace_out(self, graph, cost, n)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    integer(long), intent(in) :: cost               !< of the whole chain
-    integer, intent(out) :: n                       !< pairs in the trail
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
+    integer(long), intent(in) :: cost                 !< of the whole chain
+    integer, intent(out) :: n                         !< pairs in the trail
     integer(long) :: here
     integer :: i, link
 
@@ -314,9 +318,9 @@ contains
 
   !> From a link with another label on to the known links, each pair on a cheapest way there.
   pure subroutine trace_home(self, graph, n)
-    class(chain_search_type), intent(inout) :: self   !< the chain search
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(inout) :: n                     !< pairs in the trail
+    class(chain_search_type), intent(inout) :: self   !< the search
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
+    integer, intent(inout) :: n                       !< pairs in the trail
     integer :: i, link, label
 
     link = self%trail_links(n + 1)
@@ -338,9 +342,11 @@ contains
     end do
   end subroutine trace_home
 
+  !> The link at the other end of a pair.
   pure integer function other_end(graph, pair, link)
-    type(link_graph_type), intent(in) :: graph
-    integer, intent(in) :: pair, link
+    type(link_graph_type), intent(in) :: graph   !< links and pairs of the mechanism
+    integer, intent(in) :: pair                  !< number of the pair
+    integer, intent(in) :: link                  !< one of its links
 
     other_end = graph%ends(1, pair)
     if (other_end == link) other_end = graph%ends(2, pair)

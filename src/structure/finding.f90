@@ -1,6 +1,6 @@
-!> What is wrong with structural data, and at which number.
+!> A finding tells what is wrong with structural data, and at which number.
 !>
-!> Checks of data collect findings, so that a user sees all that is wrong at once, and whoever read
+!> Checks of data collect findings, so that a user sees all errors at once, and the reader of
 !> the data file can point at the very number.
 module mech9_finding
   implicit none
@@ -9,13 +9,13 @@ module mech9_finding
 
   integer, parameter :: longest_list = 8    !< numbers that a message lists
 
-  !> One thing that is wrong.
+  !> One error in structural data.
   type :: finding_type
     character(len=:), allocatable :: message   !< what is wrong and what to do
     !> Name of the data: 'c', 'cq', 'nrg', 'nws', 'rdw', 'nrw' or 'links'.
     character(len=8) :: name = ''
-    !> Where in it: row and column of C; position in a vector and 0; for 'links' the coordinate of the
-    !> pair and 1 or 2, the place of the link (0: both); 0, 0 for the whole.
+    !> Place in these data: row and column of C; position in a vector and 0; for 'links' the coordinate of the
+    !> pair and 1 or 2, the place of the link (0: both); 0, 0 for the data as a whole.
     integer :: index(2) = 0
   end type finding_type
 
@@ -31,12 +31,12 @@ module mech9_finding
 
 contains
 
-  !> Note one more thing.
+  !> Note one more finding.
   pure subroutine add(self, name, index, message)
     class(finding_list_type), intent(inout) :: self   !< the finding list
-    character(len=*), intent(in) :: name      !< see finding_type
-    integer, intent(in) :: index(2)           !< see finding_type
-    character(len=*), intent(in) :: message
+    character(len=*), intent(in) :: name              !< see finding_type
+    integer, intent(in) :: index(2)                   !< see finding_type
+    character(len=*), intent(in) :: message           !< what is wrong and what to do
     type(finding_type), allocatable :: grown(:)
 
     if (.not. allocated(self%items)) allocate (self%items(4))
@@ -51,10 +51,10 @@ contains
     self%items(self%count)%index = index
   end subroutine add
 
-  !> The findings as an array of just their number; the list is empty afterwards.
+  !> Move the findings into an array of the right size; the list is empty afterwards.
   pure subroutine hand_over(self, findings)
-    class(finding_list_type), intent(inout) :: self   !< the finding list
-    type(finding_type), allocatable, intent(out) :: findings(:)
+    class(finding_list_type), intent(inout) :: self               !< the finding list
+    type(finding_type), allocatable, intent(out) :: findings(:)   !< the findings in the order in which they were noted
 
     allocate (findings(self%count))
     if (self%count > 0) findings = self%items(:self%count)

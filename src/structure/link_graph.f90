@@ -12,29 +12,29 @@ module mech9_link_graph
     integer :: n_links = 0
     integer :: n_pairs = 0
     integer, allocatable :: ends(:, :)       !< (2,M) links of each pair
-    integer, allocatable :: first(:)         !< (N+1)
-    integer, allocatable :: pair_at(:)       !< (2M)
-    integer, allocatable :: other_at(:)      !< (2M)
-    logical, allocatable :: independent(:)   !< (M) of the coordinate of each pair
-    logical, allocatable :: is_bridge(:)     !< (M)
+    integer, allocatable :: first(:)         !< (N+1) place of the first pair of each link in pair_at
+    integer, allocatable :: pair_at(:)       !< (2M) pairs, link by link
+    integer, allocatable :: other_at(:)      !< (2M) link at the other end of each of them
+    logical, allocatable :: independent(:)   !< (M) the coordinate of the pair is independent
+    logical, allocatable :: is_bridge(:)     !< (M) the pair lies on no closed chain
     integer, allocatable :: outward(:)       !< (N) links in an order in which link 1 is first, and
                                              !< each link comes later than those nearer to it by bridges
-    !> (M) what a pair adds to the cost of a chain: costs are compared as the number of dependent
-    !> coordinates, then the number of coordinates.
+    !> (M) cost of a pair. The cost of a chain is the sum over its pairs; it compares first the number of dependent
+    !> coordinates, then the number of all coordinates.
     integer(long), allocatable :: cost(:)
   end type link_graph_type
 
   !> A walk from links(1) through pairs(1) to links(2), and so on.
   type :: walk_type
-    integer, allocatable :: links(:)         !< one more than pairs
-    integer, allocatable :: pairs(:)
+    integer, allocatable :: links(:)   !< (n+1) in the order of the walk
+    integer, allocatable :: pairs(:)   !< (n) in the order of the walk
   end type walk_type
 
 contains
 
-  !> The graph of a structure without findings.
+  !> The graph of a structure.
   pure function graph_from_structure(structure) result(graph)
-    type(structure_type), intent(in) :: structure
+    type(structure_type), intent(in) :: structure   !< a structure without findings
     type(link_graph_type) :: graph
 
     graph%n_links = structure%n_links
@@ -46,8 +46,9 @@ contains
     call find_bridges(graph)
   end function graph_from_structure
 
+  !> Sort the pairs by their links.
   pure subroutine collect_pairs(graph)
-    type(link_graph_type), intent(inout) :: graph
+    type(link_graph_type), intent(inout) :: graph   !< the graph, with the links of each pair
     integer :: next(graph%n_links), i, k, link
 
     allocate (graph%first(graph%n_links + 1), source=0)
@@ -73,10 +74,10 @@ contains
     end do
   end subroutine collect_pairs
 
-  !> One number for both parts of the cost: `scale` for a dependent coordinate, and one more for
-  !> any. Sums of up to four chains never reach from the one part into the other.
+  !> One number holds both parts of the cost: `scale` for a dependent coordinate, and one more for
+  !> any coordinate. In sums of up to four chains the lower part never reaches `scale`.
   pure subroutine set_costs(graph)
-    type(link_graph_type), intent(inout) :: graph
+    type(link_graph_type), intent(inout) :: graph   !< the graph, with the pairs of each link
     integer(long) :: scale
 
     scale = 4_long*graph%n_pairs + 4_long
@@ -86,12 +87,12 @@ contains
   !> Bridges by one depth-first walk from link 1 (Tarjan): the pair that first reached a link is a
   !> bridge if no other pair leads from that link, or from those reached through it, further back.
   pure subroutine find_bridges(graph)
-    type(link_graph_type), intent(inout) :: graph
-    integer :: reached(graph%n_links)        ! when a link was reached, 0: not yet
-    integer :: back(graph%n_links)           ! the earliest link that can be reached from here on
-    integer :: next(graph%n_links)           ! where to go on among the pairs of a link
-    integer :: through(graph%n_links)        ! pair that first reached a link
-    integer :: from(graph%n_links)           ! and the link it came from
+    type(link_graph_type), intent(inout) :: graph   !< the graph, with the pairs of each link
+    integer :: reached(graph%n_links)        ! number in the order in which links are reached; 0: not yet
+    integer :: back(graph%n_links)           ! the least such number that can be reached from this link on
+    integer :: next(graph%n_links)           ! place in pair_at of the next pair of the link
+    integer :: through(graph%n_links)        ! pair that first reached the link
+    integer :: from(graph%n_links)           ! link from which it was reached
     integer :: link, other, n
 
     allocate (graph%is_bridge(graph%n_pairs), source=.false.)

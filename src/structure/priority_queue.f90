@@ -7,9 +7,9 @@ module mech9_priority_queue
 
   !> An item; keys are compared number by number, so `minor` settles ties of `major`.
   type :: queue_item_type
-    integer(long) :: major = 0
-    integer(long) :: minor = 0
-    integer :: what = 0              !< the thing queued
+    integer(long) :: major = 0   !< first key
+    integer(long) :: minor = 0   !< second key
+    integer :: what = 0          !< number of the pair or link that is queued
   end type queue_item_type
 
   !> A binary heap: item i stands before items 2i and 2i + 1.
@@ -26,6 +26,7 @@ module mech9_priority_queue
 
 contains
 
+  !> Whether the queue has no items.
   pure logical function is_empty(self)
     class(priority_queue_type), intent(in) :: self   !< the priority queue
 
@@ -35,7 +36,7 @@ contains
   !> Put an item in.
   pure subroutine push(self, item)
     class(priority_queue_type), intent(inout) :: self   !< the priority queue
-    type(queue_item_type), intent(in) :: item
+    type(queue_item_type), intent(in) :: item           !< the item
     type(queue_item_type), allocatable :: grown(:)
     integer :: i
 
@@ -85,8 +86,10 @@ contains
     self%heap(i) = last
   end subroutine pop
 
+  !> Whether the key of the first item is less than that of the second.
   pure logical function before(a, b)
-    type(queue_item_type), intent(in) :: a, b
+    type(queue_item_type), intent(in) :: a   !< one item
+    type(queue_item_type), intent(in) :: b   !< the other item
 
     if (a%major /= b%major) then
       before = a%major < b%major

@@ -1,4 +1,4 @@
-!> The second set of structural data: the vectors nrg, nws, rdw, nrw that say in which order the kinematic chains are run
+!> The second set of structural data, the vectors nrg, nws, rdw, nrw, which hold the order in which the kinematic chains are run
 !> through.
 module mech9_structural_vectors
   use mech9_kinds, only: long
@@ -21,22 +21,22 @@ module mech9_structural_vectors
 
   !> One kinematic chain in the vectors.
   type :: chain_type
-    integer :: start = 0             !< the known link it starts at; it stands at position first - 1
-    integer :: first = 0             !< position of its first step
-    integer :: last = 0              !< position of its last step
-    logical :: closed = .false.      !< does its last step reach a known link?
+    integer :: start = 0          !< the known link it starts at; it stands at position first - 1
+    integer :: first = 0          !< position of its first step
+    integer :: last = 0           !< position of its last step
+    logical :: closed = .false.   !< its last step reaches a known link
   end type chain_type
 
 contains
 
-  !> Structure from the second set given as data: any valid one, in whatever order and of whatever
+  !> Structure from the second set given as data, in any valid order and of any
   !> length. nrw may be absent (not allocated, or of size 0) and is then computed.
   pure subroutine structure_from_vectors(vectors, structure, findings, n_links, n_coordinates)
-    type(structural_vectors_type), intent(inout) :: vectors
-    type(structure_type), intent(out) :: structure  !< of use only without findings
+    type(structural_vectors_type), intent(inout) :: vectors       !< the second set of data; nrw is computed where it is absent
+    type(structure_type), intent(out) :: structure                !< of use only without findings
     type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
-    integer, intent(in), optional :: n_links        !< N, where known; else the greatest link named
-    integer, intent(in), optional :: n_coordinates  !< M, where known; else the greatest coordinate named
+    integer, intent(in), optional :: n_links                      !< N, where known; else the greatest link named
+    integer, intent(in), optional :: n_coordinates                !< M, where known; else the greatest coordinate named
     type(finding_list_type) :: list
 
     call check_sizes(vectors, list)
@@ -63,7 +63,7 @@ contains
 
   !> The chains, in the order of the vectors, which must be valid.
   pure function chains_of(vectors) result(chains)
-    type(structural_vectors_type), intent(in) :: vectors
+    type(structural_vectors_type), intent(in) :: vectors   !< valid vectors
     type(chain_type), allocatable :: chains(:)
     integer :: i, n
 
@@ -88,8 +88,9 @@ contains
     vectors%nrw = closure_numbers(vectors)
   end subroutine number_closures
 
+  !> The vector nrw by its definition; links with impossible numbers are passed over.
   pure function closure_numbers(vectors) result(nrw)
-    type(structural_vectors_type), intent(in) :: vectors
+    type(structural_vectors_type), intent(in) :: vectors   !< with nrg and nws set
     integer :: nrw(size(vectors%nrg))
     logical :: known(size(vectors%nrg))   ! as long as any valid link number needs
     integer :: i, n
@@ -110,11 +111,12 @@ contains
   !> Take a number of links or coordinates that is known from elsewhere, unless the vectors are
   !> too short for it.
   pure subroutine take_count(name, things, known, count, most, list)
-    character(len=*), intent(in) :: name, things
-    integer, intent(in) :: known
-    integer, intent(inout) :: count
+    character(len=*), intent(in) :: name   !< of the vector: nrg or nws
+    character(len=*), intent(in) :: things   !< word for the message: links or coordinates
+    integer, intent(in) :: known   !< the number known from elsewhere
+    integer, intent(inout) :: count   !< the number taken from the vectors; the known one afterwards, if it is possible
     integer, intent(in) :: most                     !< as many as vectors of this length can hold
-    type(finding_list_type), intent(inout) :: list
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
 
     if (known >= 1 .and. known <= most) then
       count = known
@@ -126,7 +128,7 @@ contains
   !> All vectors must be there and equally long; only nrw may be absent.
   pure subroutine check_sizes(vectors, list)
     type(structural_vectors_type), intent(inout) :: vectors   !< absent ones get size 0
-    type(finding_list_type), intent(inout) :: list
+    type(finding_list_type), intent(inout) :: list            !< collects what is wrong
     integer :: n
 
     if (.not. allocated(vectors%nrg)) allocate (vectors%nrg(0))
@@ -141,18 +143,21 @@ contains
     if (size(vectors%nrw) > 0) call check_size('nrw', size(vectors%nrw), n, list)
   end subroutine check_sizes
 
+  !> Note a vector that is not as long as nrg.
   pure subroutine check_size(name, length, n, list)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: length, n
-    type(finding_list_type), intent(inout) :: list
+    character(len=*), intent(in) :: name             !< of the vector
+    integer, intent(in) :: length                    !< its size
+    integer, intent(in) :: n                         !< size of nrg
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
 
     if (length /= n) call list%add(name, [0, 0], name//' has '//to_text(length)//' numbers and nrg '// &
                                    to_text(n)//'; they must be equally long')
   end subroutine check_size
 
+  !> Note a wrong beginning of the vectors.
   pure subroutine check_head(vectors, list)
-    type(structural_vectors_type), intent(in) :: vectors
-    type(finding_list_type), intent(inout) :: list
+    type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
+    type(finding_list_type), intent(inout) :: list         !< collects what is wrong
 
     if (vectors%nrg(1) /= 1) call list%add('nrg', [1, 0], 'nrg starts with '//to_text(vectors%nrg(1))// &
                                            ', but must start with 1, the frame')
@@ -162,11 +167,11 @@ contains
                                            'from the frame')
   end subroutine check_head
 
-  !> Run through the chains: take links and kinds of the coordinates, and note what does not fit.
+  !> Run through the chains: take links and kinds of the coordinates, and note errors.
   pure subroutine walk(vectors, structure, list)
-    type(structural_vectors_type), intent(in) :: vectors
-    type(structure_type), intent(inout) :: structure
-    type(finding_list_type), intent(inout) :: list
+    type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
+    type(structure_type), intent(inout) :: structure       !< gets links and kinds of the coordinates
+    type(finding_list_type), intent(inout) :: list         !< collects what is wrong
     logical :: known(structure%n_links), used(structure%n_coordinates)
     logical :: may_go_on       ! false after a step that closed its chain
     integer :: i
@@ -196,11 +201,12 @@ contains
     call check_complete(known, used, list)
   end subroutine walk
 
+  !> Note a start of a chain at an unknown link, or without a step after it.
   pure subroutine check_restart(vectors, known, i, list)
-    type(structural_vectors_type), intent(in) :: vectors
-    logical, intent(in) :: known(:)
+    type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
+    logical, intent(in) :: known(:)   !< (N) links reached so far
     integer, intent(in) :: i                        !< a position with nws = 0
-    type(finding_list_type), intent(inout) :: list
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
 
     if (.not. known(vectors%nrg(i))) &
       call list%add('nrg', [i, 0], 'a chain starts at link '//to_text(vectors%nrg(i))//' (position '//to_text(i)// &
@@ -212,12 +218,13 @@ contains
     call list%add('nws', [i, 0], 'the chain that starts at position '//to_text(i)//' has no step; leave it out')
   end subroutine check_restart
 
+  !> Take links and kind of the coordinate of a step, and note an error.
   pure subroutine take_step(vectors, structure, used, i, list)
-    type(structural_vectors_type), intent(in) :: vectors
-    type(structure_type), intent(inout) :: structure
+    type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
+    type(structure_type), intent(inout) :: structure   !< gets links and kinds of the coordinates
     logical, intent(inout) :: used(:)               !< coordinates met so far
     integer, intent(in) :: i                        !< a position with nws /= 0
-    type(finding_list_type), intent(inout) :: list
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
     integer :: k
 
     k = vectors%nws(i)
@@ -237,16 +244,19 @@ contains
                     ' to itself; a pair joins two different links')
   end subroutine take_step
 
+  !> Whether there is a link of this number.
   pure logical function is_link(number, n_links)
-    integer, intent(in) :: number, n_links
+    integer, intent(in) :: number    !< any integer
+    integer, intent(in) :: n_links   !< N
 
     is_link = number >= 1 .and. number <= n_links
   end function is_link
 
   !> Every link must be reached and every coordinate used.
   pure subroutine check_complete(known, used, list)
-    logical, intent(in) :: known(:), used(:)
-    type(finding_list_type), intent(inout) :: list
+    logical, intent(in) :: known(:)                  !< (N) links that a chain reaches
+    logical, intent(in) :: used(:)                   !< (M) coordinates that stand in nws
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
     integer, allocatable :: missing(:)
     integer :: i
 
@@ -256,9 +266,10 @@ contains
     if (size(missing) > 0) call list%add('nws', [0, 0], 'these coordinates are missing in nws: '//some_of(missing, longest_list))
   end subroutine check_complete
 
+  !> Note numbers of rdw that are neither 0 nor 1, and starts of chains that are not 1.
   pure subroutine check_kinds(vectors, list)
-    type(structural_vectors_type), intent(in) :: vectors
-    type(finding_list_type), intent(inout) :: list
+    type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
+    type(finding_list_type), intent(inout) :: list         !< collects what is wrong
     integer :: i
 
     do i = 1, size(vectors%rdw)
@@ -271,10 +282,10 @@ contains
     end do
   end subroutine check_kinds
 
-  !> A number that is wrong by itself is noted; those that only follow a wrong one before them are not.
+  !> Note wrong numbers of nrw. A number that is wrong only because an earlier one is wrong is not noted.
   pure subroutine check_closures(vectors, list)
-    type(structural_vectors_type), intent(in) :: vectors
-    type(finding_list_type), intent(inout) :: list
+    type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
+    type(finding_list_type), intent(inout) :: list         !< collects what is wrong
     integer :: right(size(vectors%nrg)), i
 
     right = closure_numbers(vectors)

@@ -1,7 +1,7 @@
-!> The structure of a mechanism, the paper's first set of data: which pairs join which links, and which coordinates are
-!> independent; (7), (8).
+!> The structure of a mechanism, the paper's first set of data, tells the two links of each pair and the independent
+!> coordinates; (7), (8).
 !>
-!> Held sparsely, as two links a pair: the coincidence matrix C itself is only ever read.
+!> It is held sparsely, as two links a pair: the coincidence matrix C itself is only read.
 module mech9_structure
   use mech9_text, only: to_text, some_of
   use mech9_finding, only: finding_type, finding_list_type, longest_list
@@ -12,10 +12,10 @@ module mech9_structure
 
   !> Links, pairs and independent coordinates. Pair k has coordinate k.
   type :: structure_type
-    integer :: n_links = 0                          !< N, with link 1 the frame
-    integer :: n_coordinates = 0                    !< M, as many as pairs
-    integer, allocatable :: links(:, :)             !< (2,M) the two links of each pair
-    logical, allocatable :: independent(:)          !< (M) is the coordinate independent?
+    integer :: n_links = 0                   !< N, with link 1 the frame
+    integer :: n_coordinates = 0             !< M, as many as pairs
+    integer, allocatable :: links(:, :)      !< (2,M) the two links of each pair
+    logical, allocatable :: independent(:)   !< (M) the coordinate is independent
   end type structure_type
 
 contains
@@ -67,10 +67,10 @@ contains
     call list%hand_over(findings)
   end subroutine structure_from_matrix
 
-  !> Compare the links that the pairs themselves name with those of a structure given otherwise.
+  !> Compare the links that the pairs themselves name with those of a structure from other data.
   pure subroutine check_pair_links(structure, links, findings)
-    type(structure_type), intent(in) :: structure
-    integer, intent(in) :: links(:, :)              !< (2,M) links of pair k in column k
+    type(structure_type), intent(in) :: structure                 !< the structure, from the first or the second set of data
+    integer, intent(in) :: links(:, :)                            !< (2,M) links of pair k in column k
     type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
     type(finding_list_type) :: list
     integer :: k
@@ -86,19 +86,23 @@ contains
     call list%hand_over(findings)
   end subroutine check_pair_links
 
+  !> Note too few links or pairs.
   pure subroutine check_counts(n_links, n_coordinates, name, list)
-    integer, intent(in) :: n_links, n_coordinates
-    character(len=*), intent(in) :: name
-    type(finding_list_type), intent(inout) :: list
+    integer, intent(in) :: n_links                   !< N
+    integer, intent(in) :: n_coordinates             !< M
+    character(len=*), intent(in) :: name             !< name of the data for the finding: 'links' or 'c'
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
 
     if (n_links < 2) call list%add(name, [0, 0], 'a mechanism has at least two links (link 1 is the frame), not '// &
                                    to_text(n_links))
     if (n_coordinates < 1) call list%add(name, [0, 0], 'a mechanism has at least one pair, and a coordinate for it')
   end subroutine check_counts
 
+  !> Note links that do not exist, and pairs of a link with itself.
   pure subroutine check_link_numbers(n_links, links, list)
-    integer, intent(in) :: n_links, links(:, :)
-    type(finding_list_type), intent(inout) :: list
+    integer, intent(in) :: n_links                   !< N
+    integer, intent(in) :: links(:, :)               !< (2,M) links of pair k in column k
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
     integer :: i, k
 
     do k = 1, size(links, 2)
@@ -116,14 +120,15 @@ contains
   !> Note the links that no sequence of pairs joins to the frame.
   !> Pairs with wrong link numbers join nothing; they have a finding of their own.
   pure subroutine check_connected(n_links, links, name, list)
-    integer, intent(in) :: n_links, links(:, :)
-    character(len=*), intent(in) :: name
-    type(finding_list_type), intent(inout) :: list
+    integer, intent(in) :: n_links                   !< N
+    integer, intent(in) :: links(:, :)               !< (2,M) links of pair k in column k
+    character(len=*), intent(in) :: name             !< name of the data for the finding: 'links' or 'c'
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
     integer, allocatable :: group(:), apart(:)
     integer :: i, k, a, b
 
     if (n_links > 2*size(links, 2) + 1000) then
-      ! a mistyped count, most likely: no list of so many
+      ! the count is most likely mistyped: so many links are not listed
       call list%add(name, [0, 0], to_text(n_links)//' links cannot all be connected by '// &
                     to_text(size(links, 2))//' pairs')
       return
@@ -151,11 +156,11 @@ contains
     end if
   end subroutine check_connected
 
-  !> The least link of a link's group; the way there is halved for the next time.
+  !> The least link of a link's group; the path to it is halved for the next search (union-find).
   pure subroutine find_group(group, link, least)
-    integer, intent(inout) :: group(:)
-    integer, intent(in) :: link
-    integer, intent(out) :: least
+    integer, intent(inout) :: group(:)   !< (N) a link of the same group, no greater than the link itself; shortened
+    integer, intent(in) :: link          !< number of the link
+    integer, intent(out) :: least        !< the least link of its group
 
     least = link
     do while (group(least) /= least)
@@ -165,9 +170,10 @@ contains
     group(link) = least
   end subroutine find_group
 
+  !> Note numbers on the diagonal of C.
   pure subroutine check_diagonal(c, list)
-    integer, intent(in) :: c(:, :)
-    type(finding_list_type), intent(inout) :: list
+    integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
     integer :: i
 
     do i = 1, size(c, 1)
@@ -176,9 +182,10 @@ contains
     end do
   end subroutine check_diagonal
 
+  !> Note numbers of C that differ from those on the other side of the diagonal.
   pure subroutine check_symmetry(c, list)
-    integer, intent(in) :: c(:, :)
-    type(finding_list_type), intent(inout) :: list
+    integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
     integer :: i, j
 
     do i = 2, size(c, 1)
@@ -192,9 +199,9 @@ contains
   !> Links of each coordinate, with findings for numbers out of range, repeated or missing.
   !> Where C is not symmetric, a number counts as present but not as repeated: one fault, one finding.
   pure subroutine take_links(c, links, list)
-    integer, intent(in) :: c(:, :)
-    integer, intent(inout) :: links(:, :)           !< (2,M) zeros on entry
-    type(finding_list_type), intent(inout) :: list
+    integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
+    integer, intent(inout) :: links(:, :)            !< (2,M) zeros on entry
+    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
     integer :: i, j, k, m
     logical :: present_in_c(size(links, 2))
     integer, allocatable :: missing(:)
@@ -231,7 +238,7 @@ contains
 
   !> Links that C joins by any number, right or wrong, in either half.
   pure function joined_in_matrix(c) result(links)
-    integer, intent(in) :: c(:, :)
+    integer, intent(in) :: c(:, :)   !< (N,N) the coincidence matrix, right or wrong
     integer, allocatable :: links(:, :)
     integer :: i, j, n
 
@@ -246,10 +253,11 @@ contains
     end do
   end function joined_in_matrix
 
+  !> Mark the independent coordinates, and note numbers that do not exist or are repeated.
   pure subroutine take_independent(cq, structure, list)
-    integer, intent(in) :: cq(:)
-    type(structure_type), intent(inout) :: structure
-    type(finding_list_type), intent(inout) :: list
+    integer, intent(in) :: cq(:)                       !< independent coordinates
+    type(structure_type), intent(inout) :: structure   !< gets the kinds of the coordinates
+    type(finding_list_type), intent(inout) :: list     !< collects what is wrong
     integer :: i
 
     allocate (structure%independent(structure%n_coordinates), source=.false.)
@@ -265,9 +273,11 @@ contains
     end do
   end subroutine take_independent
 
-  !> "c(2,3) = 4"
+  !> An element of C as text, such as "c(2,3) = 4".
   pure function entry_text(c, i, j) result(text)
-    integer, intent(in) :: c(:, :), i, j
+    integer, intent(in) :: c(:, :)   !< (N,N) the coincidence matrix
+    integer, intent(in) :: i         !< row
+    integer, intent(in) :: j         !< column
     character(len=48) :: text
 
     text = 'c('//to_text(i)//','//to_text(j)//') = '//to_text(c(i, j))

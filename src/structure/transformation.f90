@@ -1,8 +1,8 @@
-!> The transformation of the first set of structural data (which pairs join which links) into the second one (in which order the
+!> The transformation of the first set of structural data (the links of each pair) into the second one (the order in which the
 !> chains are run through).
 !>
-!> The rules, each followed exactly for any number of links. Link 1 is known at first; the links of
-!> each chain become known with it. What is cheaper has fewer dependent coordinates or, with as
+!> These rules are followed exactly for any number of links. Link 1 is known at first; the links of
+!> each chain become known with it. A chain is cheaper than another one if it has fewer dependent coordinates or, with as
 !> many of them, fewer coordinates.
 !>
 !> 1. While there is a closed chain, that is, one from a known link over unused pairs and
@@ -10,11 +10,11 @@
 !>    then, read from that end, with the least coordinate numbers in order. It is run through so that
 !>    an independent coordinate comes first where one end has it, else the smaller number; a
 !>    chain of a single pair starts at its lesser link.
-!> 2. Else, if closed chains are left, they hang on the known links by bridges, pairs that lie on no
+!> 2. Else, if closed chains are left, bridges join them to the known links: pairs that lie on no
 !>    closed chain. Take the cheapest walk over bridges from a known link to a link of a closed chain
 !>    (ties: least start link, then least coordinate numbers), and append the closed chain that
 !>    rule 1 gives at that link. Go on with rule 1.
-!> 3. What is left are open chains: from the least known link with an unused pair walk on to a leaf,
+!> 3. Only open chains are left then: from the least known link with an unused pair walk on to a leaf,
 !>    at each link by an independent coordinate first, then by the least number.
 !>
 !> Each link but the first is reached once and each further pair closes a chain, L1 = M - N + 1 in all;
@@ -38,7 +38,7 @@ module mech9_transformation
     type(link_graph_type) :: graph
     type(chain_search_type) :: search
     integer(long), allocatable :: reach(:)   !< (N) cost over bridges, outwards, to the nearest closed chain
-    integer, allocatable :: onward(:)        !< (N) the bridge that leads there; 0: the link lies on one
+    integer, allocatable :: onward(:)        !< (N) first bridge of the walk there; 0: the link lies on a closed chain
     type(priority_queue_type) :: parts       !< bridges from known links to closed chains, by cost, link, pair
     integer :: length = 0                    !< of the vectors so far
     type(structural_vectors_type) :: vectors
@@ -48,10 +48,9 @@ contains
 
   !> Second set of structural data from the first one, which must be without findings.
   pure subroutine transform(structure, vectors, operations)
-    type(structure_type), intent(in) :: structure
-    type(structural_vectors_type), intent(out) :: vectors
-    !> Pairs looked at and items taken in or out of queues: a measure of the work done.
-    integer(long), intent(out), optional :: operations
+    type(structure_type), intent(in) :: structure   !< the first set of data, without findings
+    type(structural_vectors_type), intent(out) :: vectors   !< the second set of data
+    integer(long), intent(out), optional :: operations   !< pairs examined and items queued or taken out: a measure of the work
     type(work_type) :: work
 
     work%graph = graph_from_structure(structure)
@@ -70,17 +69,17 @@ contains
 
   !> Every chain has a start and a step at least, so 2M positions are enough.
   pure subroutine reserve(vectors, length)
-    type(structural_vectors_type), intent(inout) :: vectors
-    integer, intent(in) :: length
+    type(structural_vectors_type), intent(inout) :: vectors   !< gets room
+    integer, intent(in) :: length                             !< positions
 
     allocate (vectors%nrg(length), vectors%nws(length), vectors%rdw(length), source=0)
   end subroutine reserve
 
-  !> For each link the nearest closed chain that is reached from it over bridges, away from link 1.
+  !> Find for each link the nearest closed chain that is reached from it over bridges, away from link 1.
   pure subroutine measure_reach(graph, reach, onward)
-    type(link_graph_type), intent(in) :: graph
-    integer(long), allocatable, intent(out) :: reach(:)
-    integer, allocatable, intent(out) :: onward(:)
+    type(link_graph_type), intent(in) :: graph            !< links and pairs of the mechanism
+    integer(long), allocatable, intent(out) :: reach(:)   !< (N) cost of the walk to it; out_of_reach where there is none
+    integer, allocatable, intent(out) :: onward(:)        !< (N) first bridge of the walk; 0 where the link lies on a closed chain
     logical :: done(graph%n_links)
     integer(long) :: cost
     integer :: i, j, link
@@ -109,9 +108,9 @@ contains
     end do
   end subroutine measure_reach
 
-  !> Rules 1 and 2.
+  !> Append the closed chains by rules 1 and 2.
   pure subroutine take_closed_chains(work)
-    type(work_type), intent(inout) :: work
+    type(work_type), intent(inout) :: work   !< the state of the transformation
     type(walk_type) :: chain, approach
     logical :: found
 
@@ -134,9 +133,9 @@ contains
 
   !> The cheapest walk over bridges from a known link to a link of a closed chain.
   pure subroutine next_approach(work, approach, found)
-    type(work_type), intent(inout) :: work
-    type(walk_type), intent(out) :: approach
-    logical, intent(out) :: found
+    type(work_type), intent(inout) :: work     !< the state of the transformation
+    type(walk_type), intent(out) :: approach   !< the walk
+    logical, intent(out) :: found              !< whether there is one
     type(queue_item_type) :: item
     integer :: n
 
@@ -157,9 +156,10 @@ contains
   !> Walk from a link through a bridge, and on to the nearest link of a closed chain. Counts the
   !> pairs, and notes the walk if there is room allocated for it.
   pure subroutine walk_onward(work, start, bridge, walk, n)
-    type(work_type), intent(in) :: work
-    integer, intent(in) :: start, bridge
-    type(walk_type), intent(inout) :: walk
+    type(work_type), intent(in) :: work      !< the state of the transformation
+    integer, intent(in) :: start             !< link at which the walk starts
+    integer, intent(in) :: bridge            !< its first pair
+    type(walk_type), intent(inout) :: walk   !< gets the walk, if its parts are allocated
     integer, intent(out) :: n                !< pairs walked
     integer :: link, pair
 
@@ -178,10 +178,10 @@ contains
     end do
   end subroutine walk_onward
 
-  !> Rule 3.
+  !> Append the open chains by rule 3.
   pure subroutine take_open_chains(work)
-    type(work_type), intent(inout) :: work
-    integer :: next(work%graph%n_links)      ! where to go on among the pairs of each link
+    type(work_type), intent(inout) :: work   !< the state of the transformation
+    integer :: next(work%graph%n_links)      ! position from which the pairs of each link are examined next
     type(priority_queue_type) :: starts
     type(queue_item_type) :: start
     integer :: link, pair
@@ -210,13 +210,14 @@ contains
     end do
   end subroutine take_open_chains
 
-  !> The unused pair of a link with an independent coordinate and the least number, or else just the least
-  !> number, or 0. Positions run over the pairs of the link twice, for the one kind and the other.
+  !> The unused pair of a link with an independent coordinate and the least number; without one, the unused pair of the
+  !> least number; without any, 0. Positions run over the pairs of the link twice: first for independent, then for
+  !> dependent coordinates.
   pure subroutine next_open_pair(work, position, link, pair)
-    type(work_type), intent(inout) :: work
-    integer, intent(inout) :: position       !< where to go on; 1 at first
-    integer, intent(in) :: link
-    integer, intent(out) :: pair
+    type(work_type), intent(inout) :: work   !< the state of the transformation
+    integer, intent(inout) :: position       !< position from which pairs are examined; 1 at first
+    integer, intent(in) :: link              !< number of the link
+    integer, intent(out) :: pair             !< number of the pair; 0: none is left
     integer :: degree
 
     degree = work%graph%first(link + 1) - work%graph%first(link)
@@ -231,8 +232,8 @@ contains
 
   !> Write a chain into the vectors and make its links known.
   pure subroutine take_chain(work, chain)
-    type(work_type), intent(inout) :: work
-    type(walk_type), intent(in) :: chain
+    type(work_type), intent(inout) :: work   !< the state of the transformation
+    type(walk_type), intent(in) :: chain     !< an open or closed chain as a walk
     integer :: i
 
     call append(work, chain%links(1), 0)
@@ -244,8 +245,8 @@ contains
 
   !> Mark the pairs of a walk as used, then its links as known.
   pure subroutine mark(work, walk)
-    type(work_type), intent(inout) :: work
-    type(walk_type), intent(in) :: walk
+    type(work_type), intent(inout) :: work   !< the state of the transformation
+    type(walk_type), intent(in) :: walk      !< a walk from a known link
     integer :: i
 
     work%search%used(walk%pairs) = .true.
@@ -254,10 +255,10 @@ contains
     end do
   end subroutine mark
 
-  !> Make a link known, and queue the bridges by which closed chains hang on it.
+  !> Make a link known, and queue the bridges that lead from it to closed chains.
   pure subroutine make_known(work, link)
-    type(work_type), intent(inout) :: work
-    integer, intent(in) :: link
+    type(work_type), intent(inout) :: work   !< the state of the transformation
+    integer, intent(in) :: link              !< number of the link
     integer :: i
 
     call work%search%make_known(work%graph, link)
@@ -274,8 +275,8 @@ contains
 
   !> Append a position to the vectors.
   pure subroutine append(work, link, pair)
-    type(work_type), intent(inout) :: work
-    integer, intent(in) :: link
+    type(work_type), intent(inout) :: work   !< the state of the transformation
+    integer, intent(in) :: link              !< number of the link
     integer, intent(in) :: pair              !< 0 at the start of a chain
 
     work%length = work%length + 1
