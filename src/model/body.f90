@@ -6,19 +6,20 @@ module mech9_body
   private
   public :: body_type
 
+  !> Mass and inertia of one link.
   type :: body_type
-    integer :: link = 0
-    real(wp) :: mass = 0.0_wp              !< [kg]
-    real(wp) :: centre(3) = 0.0_wp         !< mass centre in the link's system [m]
-    real(wp) :: inertia(3, 3) = 0.0_wp     !< tensor about the centre, link axes [kg m^2]
-    type(place_type) :: place              !< of its group in the data file
+    integer :: link = 0                  !< number of the link
+    real(wp) :: mass = 0.0_wp            !< [kg]
+    real(wp) :: centre(3) = 0.0_wp       !< mass centre in the link's system [m]
+    real(wp) :: inertia(3, 3) = 0.0_wp   !< tensor about the centre, link axes [kg m^2]
+    type(place_type) :: place            !< place of its group in the data file
   contains
     procedure :: has_inertia
   end type body_type
 
 contains
 
-  !> Whether it resists any motion; a link may have inertia about its axis and no mass.
+  !> Whether the body resists any motion; a link may have inertia about its axis and no mass.
   pure logical function has_inertia(self)
     class(body_type), intent(in) :: self   !< the body
 

@@ -7,10 +7,10 @@ module mech9_call_fault
   !> The first fault of the calls that share it.
   type :: call_fault_type
     logical :: found = .false.
-    character(len=21) :: procedure = ' '   !< what was called, such as loads%add_force
+    character(len=21) :: procedure = ' '   !< name of the procedure called, such as loads%add_force
     character(len=10) :: counted = ' '     !< 'link' or 'coordinate'
-    integer :: number = 0                  !< the one that was given
-    integer :: greatest = 0                !< the numbers that there are: 1 to this one
+    integer :: number = 0     !< the number given
+    integer :: greatest = 0   !< the greatest number that exists; the least is 1
   contains
     procedure :: note
   end type call_fault_type
@@ -19,11 +19,11 @@ contains
 
   !> Keep this fault, unless another one came before it.
   pure subroutine note(self, procedure, counted, number, greatest)
-    class(call_fault_type), intent(inout) :: self   !< the call fault
-    character(len=*), intent(in) :: procedure   !< what was called
-    character(len=*), intent(in) :: counted     !< 'link' or 'coordinate'
-    integer, intent(in) :: number               !< that does not exist
-    integer, intent(in) :: greatest             !< number that exists
+    class(call_fault_type), intent(inout) :: self   !< keeps the first fault
+    character(len=*), intent(in) :: procedure       !< name of the procedure called
+    character(len=*), intent(in) :: counted         !< 'link' or 'coordinate'
+    integer, intent(in) :: number                   !< the number given, which does not exist
+    integer, intent(in) :: greatest                 !< the greatest number that exists
 
     if (self%found) return
     self%found = .true.

@@ -11,7 +11,7 @@ module mech9_coordinate_load
 
   !> -stiffness (q - rest) - damping dq/dt + force, on q.
   type, extends(load_type) :: coordinate_load_type
-    integer :: coordinate = 0
+    integer :: coordinate = 0        !< number of the coordinate
     real(wp) :: stiffness = 0.0_wp   !< [N m/rad, N/m]
     real(wp) :: rest = 0.0_wp        !< [rad, m]
     real(wp) :: damping = 0.0_wp     !< [N m s/rad, N s/m]
@@ -26,29 +26,32 @@ module mech9_coordinate_load
 
 contains
 
+  !> Whether all its numbers are zero.
   pure logical function is_idle(self)
     class(coordinate_load_type), intent(in) :: self   !< the coordinate load
 
     is_idle = .not. (abs(self%stiffness) > 0.0_wp .or. abs(self%damping) > 0.0_wp .or. abs(self%force) > 0.0_wp)
   end function is_idle
 
-  !> It acts on a coordinate and asks for no link.
+  !> The load acts on a coordinate and requests no link.
   pure subroutine mark_links(self, needed)
     class(coordinate_load_type), intent(in) :: self   !< the coordinate load
-    logical, intent(inout) :: needed(:)
+    logical, intent(inout) :: needed(:)               !< (N) unchanged
   end subroutine mark_links
 
+  !> Mark its coordinate.
   pure subroutine mark_coordinates(self, needed)
     class(coordinate_load_type), intent(in) :: self   !< the coordinate load
-    logical, intent(inout) :: needed(:)
+    logical, intent(inout) :: needed(:)               !< (M) becomes true for the coordinate
 
     needed(self%coordinate) = .true.
   end subroutine mark_coordinates
 
+  !> Add the generalized force on the coordinate.
   subroutine apply(self, state, sum, err)
-    class(coordinate_load_type), intent(in) :: self   !< the coordinate load
-    type(motion_view_type), intent(in) :: state
-    type(force_sum_type), intent(inout) :: sum
+    class(coordinate_load_type), intent(in) :: self     !< the coordinate load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     associate (k => self%coordinate)
@@ -56,9 +59,10 @@ contains
     end associate
   end subroutine apply
 
+  !> Energy of the spring [J]; the work of the actuator counts as put in.
   pure real(wp) function potential(self, state)
     class(coordinate_load_type), intent(in) :: self   !< the coordinate load
-    type(motion_view_type), intent(in) :: state
+    type(motion_view_type), intent(in) :: state       !< present motion of links and coordinates
 
     potential = 0.5_wp*self%stiffness*(state%q(self%coordinate) - self%rest)**2
   end function potential

@@ -6,9 +6,10 @@ module mech9_drive
   private
   public :: drive_type, drive_slot_type
 
+  !> A given function of time for one coordinate.
   type, abstract :: drive_type
-    integer :: coordinate = 0     !< number of the coordinate it drives
-    type(place_type) :: place     !< of its group in the data file
+    integer :: coordinate = 0   !< number of the coordinate it drives
+    type(place_type) :: place   !< place of its group in the data file
   contains
     procedure(evaluate_interface), deferred :: evaluate
     procedure :: greatest_rate
@@ -23,9 +24,11 @@ module mech9_drive
     !> q(t) and its first two derivatives in time; fails where the drive has no value.
     subroutine evaluate_interface(self, t, q, dq, ddq, err)
       import :: drive_type, error_type, wp
-      class(drive_type), intent(in) :: self   !< the drive
-      real(wp), intent(in) :: t                  !< time [s]
-      real(wp), intent(out) :: q, dq, ddq        !< [rad or m], per s, per s^2
+      class(drive_type), intent(in) :: self               !< the drive
+      real(wp), intent(in) :: t                           !< time [s]
+      real(wp), intent(out) :: q                          !< the coordinate [rad, m]
+      real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
+      real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine evaluate_interface
   end interface
@@ -33,11 +36,12 @@ module mech9_drive
 contains
 
   !> A bound of |dq/dt| between t and t + h, so that no movement between two times is overlooked. Drives
-  !> whose formula is known bound it for certain; this one, for all others, looks at uneven times
-  !> between and leaves room. Times at which the drive has no value do not count.
+  !> whose formula is known give a proven bound. This procedure, for all others, evaluates the drive at unevenly spaced
+  !> times of the interval and adds a margin by the acceleration. Times at which the drive has no value do not count.
   function greatest_rate(self, t, h) result(rate)
     class(drive_type), intent(in) :: self   !< the drive
-    real(wp), intent(in) :: t, h      !< [s]; h may be negative
+    real(wp), intent(in) :: t               !< beginning of the interval [s]
+    real(wp), intent(in) :: h               !< length of the interval [s]; may be negative
     real(wp) :: rate
     real(wp), parameter :: between(4) = [0.0_wp, 0.29_wp, 0.62_wp, 1.0_wp]
     type(error_type), allocatable :: err

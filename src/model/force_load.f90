@@ -9,13 +9,13 @@ module mech9_force_load
   private
   public :: force_load_type
 
-  !> Its components are in fixed axes, or in those of the link and turn with it.
+  !> A force and a torque with components in fixed axes, or in the axes of the link, with which they turn.
   type, extends(load_type) :: force_load_type
-    integer :: link = 0
-    real(wp) :: position(3) = 0.0_wp   !< where the force acts, in the link's system [m]
-    real(wp) :: force(3) = 0.0_wp      !< [N]
-    real(wp) :: torque(3) = 0.0_wp     !< [N m]
-    logical :: turns_with_link = .false.
+    integer :: link = 0                    !< number of the link
+    real(wp) :: position(3) = 0.0_wp       !< point at which the force acts, in the link's system [m]
+    real(wp) :: force(3) = 0.0_wp          !< [N]
+    real(wp) :: torque(3) = 0.0_wp         !< [N m]
+    logical :: turns_with_link = .false.   !< components in the axes of the link, not fixed ones
   contains
     procedure :: mark_links
     procedure :: is_idle
@@ -25,23 +25,26 @@ module mech9_force_load
 
 contains
 
+  !> Whether it acts on link 1, which does not move, or is zero.
   pure logical function is_idle(self)
     class(force_load_type), intent(in) :: self   !< the force load
 
     is_idle = self%link == 1 .or. .not. (any(abs(self%force) > 0.0_wp) .or. any(abs(self%torque) > 0.0_wp))
   end function is_idle
 
+  !> Mark its link.
   pure subroutine mark_links(self, needed)
     class(force_load_type), intent(in) :: self   !< the force load
-    logical, intent(inout) :: needed(:)
+    logical, intent(inout) :: needed(:)          !< (N) becomes true for the link
 
     needed(self%link) = .true.
   end subroutine mark_links
 
+  !> Add force and torque on the link.
   subroutine apply(self, state, sum, err)
-    class(force_load_type), intent(in) :: self   !< the force load
-    type(motion_view_type), intent(in) :: state
-    type(force_sum_type), intent(inout) :: sum
+    class(force_load_type), intent(in) :: self          !< the force load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%turns_with_link) then
@@ -53,10 +56,10 @@ contains
     end if
   end subroutine apply
 
-  !> None is stated: the work of a given force counts as put in.
+  !> Zero: the work of a given force counts as put in.
   pure real(wp) function potential(self, state)
-    class(force_load_type), intent(in) :: self   !< the force load
-    type(motion_view_type), intent(in) :: state
+    class(force_load_type), intent(in) :: self    !< the force load
+    type(motion_view_type), intent(in) :: state   !< present motion of links and coordinates
 
     potential = 0.0_wp
   end function potential

@@ -1,4 +1,4 @@
-!> What loads collect: forces and torques on links, generalized forces on coordinates.
+!> The sums of all loads as forces and torques on links and generalized forces on coordinates.
 module mech9_force_sum
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, cross
@@ -8,14 +8,14 @@ module mech9_force_sum
   private
   public :: force_sum_type, new_force_sum
 
-  !> Resultants, fixed axes. The torque of each link is about the origin of its own system.
+  !> Resultants with components in fixed axes. The torque on each link is about the origin of the link's own system.
   type :: force_sum_type
-    real(wp), allocatable :: force(:, :)       !< (3,N) [N]
-    real(wp), allocatable :: torque(:, :)      !< (3,N) [N m]
-    real(wp), allocatable :: generalized(:)    !< (M) [N m or N]
-    logical :: any_generalized = .false.       !< since the last `clear`
-    logical :: unanswered = .false.            !< no user's procedure is linked
-    type(call_fault_type) :: fault             !< the first call with a number that does not exist, since the last `clear`
+    real(wp), allocatable :: force(:, :)      !< (3,N) [N]
+    real(wp), allocatable :: torque(:, :)     !< (3,N) [N m]
+    real(wp), allocatable :: generalized(:)   !< (M) [N m or N]
+    logical :: any_generalized = .false.      !< a generalized force was added since the last `clear`
+    logical :: unanswered = .false.           !< no user's procedure is linked
+    type(call_fault_type) :: fault            !< the first call with a number that does not exist, since the last `clear`
   contains
     procedure :: clear
     procedure :: add_force
@@ -26,7 +26,7 @@ module mech9_force_sum
 
 contains
 
-  !> Nothing yet, for a mechanism with so many links and coordinates.
+  !> Sums that are zero, for a mechanism with a given number of links and coordinates.
   pure function new_force_sum(n_links, n_coordinates) result(sum)
     integer, intent(in) :: n_links         !< N
     integer, intent(in) :: n_coordinates   !< M
@@ -36,7 +36,7 @@ contains
     allocate (sum%generalized(n_coordinates), source=0.0_wp)
   end function new_force_sum
 
-  !> Nothing again.
+  !> Make the sums zero again.
   pure subroutine clear(self)
     class(force_sum_type), intent(inout) :: self   !< the force sum
 
@@ -47,10 +47,10 @@ contains
     self%fault%found = .false.
   end subroutine clear
 
-  ! Of known shape: no strides.
+  !> Make numbers zero. The shape is explicit, so that the loop needs no strides.
   pure subroutine make_zero(n, numbers)
-    integer, intent(in) :: n               !< how many
-    real(wp), intent(out) :: numbers(n)    !< all zero afterwards
+    integer, intent(in) :: n              !< number of elements
+    real(wp), intent(out) :: numbers(n)   !< all zero afterwards
     integer :: i
 
     do i = 1, n
@@ -61,10 +61,10 @@ contains
   !> A force at a point of a link. A number that no link has is noted in `fault`, and nothing is added.
   pure subroutine add_force(self, state, link, point, force)
     class(force_sum_type), intent(inout) :: self   !< the force sum
-    type(motion_view_type), intent(in) :: state   !< in which the force acts
-    integer, intent(in) :: link                   !< its number
-    real(wp), intent(in) :: point(3)              !< in the link's system [m]
-    real(wp), intent(in) :: force(3)              !< fixed axes [N]
+    type(motion_view_type), intent(in) :: state    !< in which the force acts
+    integer, intent(in) :: link                    !< its number
+    real(wp), intent(in) :: point(3)               !< in the link's system [m]
+    real(wp), intent(in) :: force(3)               !< fixed axes [N]
     real(wp) :: arm(3)
     logical :: exists
 
@@ -78,8 +78,8 @@ contains
   !> A torque on a link. A number that no link has is noted in `fault`, and nothing is added.
   pure subroutine add_torque(self, link, torque)
     class(force_sum_type), intent(inout) :: self   !< the force sum
-    integer, intent(in) :: link           !< its number
-    real(wp), intent(in) :: torque(3)     !< fixed axes [N m]
+    integer, intent(in) :: link                    !< its number
+    real(wp), intent(in) :: torque(3)              !< fixed axes [N m]
     logical :: exists
 
     call self%has_link(link, 'loads%add_torque', exists)
@@ -91,8 +91,8 @@ contains
   !> coordinate has is noted in `fault`, and nothing is added.
   pure subroutine add_generalized(self, coordinate, value)
     class(force_sum_type), intent(inout) :: self   !< the force sum
-    integer, intent(in) :: coordinate     !< its number
-    real(wp), intent(in) :: value         !< [N m, N]
+    integer, intent(in) :: coordinate              !< its number
+    real(wp), intent(in) :: value                  !< [N m, N]
 
     if (coordinate < 1 .or. coordinate > size(self%generalized)) then
       call self%fault%note('loads%add_generalized', 'coordinate', coordinate, size(self%generalized))
@@ -105,9 +105,9 @@ contains
   !> Whether a link exists. If not, the call is noted.
   pure subroutine has_link(self, link, procedure, exists)
     class(force_sum_type), intent(inout) :: self   !< the force sum
-    integer, intent(in) :: link                  !< its number
-    character(len=*), intent(in) :: procedure    !< that was given the number
-    logical, intent(out) :: exists               !< there is a link of this number
+    integer, intent(in) :: link                    !< its number
+    character(len=*), intent(in) :: procedure      !< that was given the number
+    logical, intent(out) :: exists                 !< there is a link of this number
 
     exists = link >= 1 .and. link <= size(self%force, 2)
     if (.not. exists) call self%fault%note(procedure, 'link', link, size(self%force, 2))

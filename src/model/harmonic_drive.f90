@@ -1,4 +1,4 @@
-!> Drive q = mean + amplitude sin(angular_frequency t + phase).
+!> A drive with the function q = mean + amplitude sin(angular_frequency t + phase).
 module mech9_harmonic_drive
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -7,6 +7,7 @@ module mech9_harmonic_drive
   private
   public :: harmonic_drive_type
 
+  !> A harmonic drive by its four numbers.
   type, extends(drive_type) :: harmonic_drive_type
     real(wp) :: mean = 0.0_wp                !< [rad or m]
     real(wp) :: amplitude = 0.0_wp           !< [rad or m]
@@ -19,10 +20,13 @@ module mech9_harmonic_drive
 
 contains
 
+  !> The harmonic and its derivatives; it has values at all times.
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(harmonic_drive_type), intent(in) :: self   !< the harmonic drive
-    real(wp), intent(in) :: t
-    real(wp), intent(out) :: q, dq, ddq
+    class(harmonic_drive_type), intent(in) :: self      !< the harmonic drive
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(out) :: q                          !< the coordinate [rad, m]
+    real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: angle, swing
 
@@ -33,10 +37,11 @@ contains
     ddq = -self%angular_frequency**2*swing
   end subroutine evaluate
 
-  !> That of the whole swing.
+  !> The greatest rate of the whole period.
   function greatest_rate(self, t, h) result(rate)
     class(harmonic_drive_type), intent(in) :: self   !< the harmonic drive
-    real(wp), intent(in) :: t, h
+    real(wp), intent(in) :: t                        !< beginning of the interval [s]; unused
+    real(wp), intent(in) :: h                        !< length of the interval [s]; unused
     real(wp) :: rate
 
     rate = abs(self%amplitude*self%angular_frequency)

@@ -1,4 +1,4 @@
-!> The dimensions of links: how far apart and at which angle the axes of two pairs lie on a link.
+!> The dimensions of links, which are the distance and the angle between the axes of two pairs of a link.
 module mech9_link_dimensions
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
@@ -9,29 +9,29 @@ module mech9_link_dimensions
   private
   public :: link_dimension_type, link_dimensions, dimension_between
 
-  !> Of a link with so many pairs each is held against each; of one with more, each against the next.
+  !> On a link with up to so many pairs each pair is compared with each other; on a link with more, each with the next.
   integer, parameter :: most_pairs = 4
-  !> Axes that are parallel up to this angle [rad] have a distance that does not depend on it.
+  !> Axes with an angle up to this one [rad] count as parallel: their distance is taken between parallel lines.
   real(wp), parameter :: parallel = 1.0e-9_wp
 
-  !> Two pairs of one link.
+  !> The dimensions between two pairs of one link.
   type :: link_dimension_type
-    integer :: link = 0
-    integer :: pairs(2) = 0              !< their coordinates
-    logical :: has_angle = .false.       !< both pairs have axes
-    real(wp) :: angle = 0.0_wp           !< between the directions of the axes, 0 to pi [rad]
-    logical :: has_distance = .false.    !< the axes are lines, not both of them directions alone
-    real(wp) :: distance = 0.0_wp        !< between the axes, along their common normal [m]
-    logical :: has_points = .false.      !< the points of both pairs keep their places in both of their links
-    real(wp) :: between_points = 0.0_wp  !< the distance of these points [m]
+    integer :: link = 0                   !< number of the link
+    integer :: pairs(2) = 0               !< their coordinates
+    logical :: has_angle = .false.        !< both pairs have axes
+    real(wp) :: angle = 0.0_wp            !< between the directions of the axes, 0 to pi [rad]
+    logical :: has_distance = .false.     !< the axes are lines, not both of them directions alone
+    real(wp) :: distance = 0.0_wp         !< between the axes, along their common normal [m]
+    logical :: has_points = .false.       !< the points of both pairs keep their places in both of their links
+    real(wp) :: between_points = 0.0_wp   !< the distance of these points [m]
   end type link_dimension_type
 
 contains
 
   !> The dimensions of all links, in the order of links and coordinates.
   pure subroutine link_dimensions(mechanism, dimensions)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(link_dimension_type), allocatable, intent(out) :: dimensions(:)
+    type(mechanism_type), intent(in) :: mechanism                          !< the mechanism
+    type(link_dimension_type), allocatable, intent(out) :: dimensions(:)   !< two pairs of a link each
     type(link_graph_type) :: graph
     type(pair_axes_type), allocatable :: axes(:)
     integer :: link, i, j, n
@@ -57,19 +57,20 @@ contains
     end do
   end subroutine link_dimensions
 
-  !> How many dimensions are told of a link.
+  !> Number of pairs of pairs that are compared on a link.
   pure integer function number_of_dimensions(n_pairs) result(n)
-    integer, intent(in) :: n_pairs
+    integer, intent(in) :: n_pairs   !< number of pairs of the link
 
     n = n_pairs*(n_pairs - 1)/2
     if (n_pairs > most_pairs) n = n_pairs
   end function number_of_dimensions
 
-  !> Two pairs of a link.
+  !> The dimensions between two pairs of a link.
   pure function dimension_between(axes, link, first, second) result(dimension)
-    type(pair_axes_type), intent(in) :: axes(:)    !< (M) of all pairs
-    integer, intent(in) :: link
-    integer, intent(in) :: first, second           !< coordinates of two pairs of this link
+    type(pair_axes_type), intent(in) :: axes(:)   !< (M) of all pairs
+    integer, intent(in) :: link                   !< number of the link
+    integer, intent(in) :: first                  !< coordinate of one pair of this link
+    integer, intent(in) :: second                 !< coordinate of another pair of this link
     type(link_dimension_type) :: dimension
     real(wp) :: normal(3), apart(3), sine, cosine
     integer :: side_a, side_b
@@ -85,7 +86,7 @@ contains
       sine = norm2(normal)
       cosine = dot_product(a%axes(:, side_a), b%axes(:, side_b))
       dimension%angle = atan2(sine, cosine)
-      ! a slide has a direction, but no place
+      ! the axis of a slide has a direction, but no position
       dimension%has_distance = .not. (a%kind == sliding .and. b%kind == sliding)
       dimension%has_points = a%kind == turning .and. b%kind == turning
       apart = b%points(:, side_b) - a%points(:, side_a)

@@ -1,4 +1,4 @@
-!> A load: whatever pulls, pushes or turns, as all loads are seen from above.
+!> A load pulls, pushes or turns links or coordinates; all kinds of loads have this interface.
 module mech9_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type
@@ -8,8 +8,9 @@ module mech9_load
   private
   public :: load_type, load_slot_type
 
+  !> A load of any kind.
   type, abstract :: load_type
-    type(place_type) :: place       !< of its group in the data file
+    type(place_type) :: place       !< place of its group in the data file
   contains
     procedure(mark_interface), deferred :: mark_links
     procedure :: mark_coordinates
@@ -24,39 +25,40 @@ module mech9_load
   end type load_slot_type
 
   abstract interface
-    !> Mark the links whose motion the load asks for or on which it acts.
+    !> Mark the links whose motion the load depends on or on which it acts.
     pure subroutine mark_interface(self, needed)
       import :: load_type
       class(load_type), intent(in) :: self   !< the load
-      logical, intent(inout) :: needed(:)      !< (N)
+      logical, intent(inout) :: needed(:)    !< (N) becomes true for these links; others stay
     end subroutine mark_interface
 
-    !> Add what the load exerts in this state. Fails where it has no value.
+    !> Add the forces of the load in the present state. Fails where it has no value.
     subroutine apply_interface(self, state, sum, err)
       import :: load_type, motion_view_type, force_sum_type, error_type
-      class(load_type), intent(in) :: self   !< the load
-      type(motion_view_type), intent(in) :: state
-      type(force_sum_type), intent(inout) :: sum
+      class(load_type), intent(in) :: self                !< the load
+      type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+      type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine apply_interface
 
-    !> Potential energy [J]: that of springs; zero for all loads whose work is counted as put in.
+    !> Potential energy [J]: the energy of springs; zero for all loads whose work counts as put in.
     pure real(wp) function potential_interface(self, state)
       import :: load_type, motion_view_type, wp
-      class(load_type), intent(in) :: self   !< the load
-      type(motion_view_type), intent(in) :: state
+      class(load_type), intent(in) :: self          !< the load
+      type(motion_view_type), intent(in) :: state   !< present motion of links and coordinates
     end function potential_interface
   end interface
 
 contains
 
-  !> Mark the coordinates that the load asks for beside the motion of links: none, unless a kind says otherwise.
+  !> Mark the coordinates that the load depends on or acts on. This procedure, for loads on links alone, marks none.
   pure subroutine mark_coordinates(self, needed)
     class(load_type), intent(in) :: self   !< the load
-    logical, intent(inout) :: needed(:)      !< (M)
+    logical, intent(inout) :: needed(:)    !< (M) becomes true for these coordinates; others stay
   end subroutine mark_coordinates
 
-  !> Whether it never moves anything: it is zero, or acts on link 1 alone. Not, unless a kind says otherwise.
+  !> Whether the load never moves anything, because it is zero or acts on link 1 alone. This procedure, for kinds that do
+  !> not tell, answers that it may.
   pure logical function is_idle(self)
     class(load_type), intent(in) :: self   !< the load
 

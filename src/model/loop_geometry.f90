@@ -1,8 +1,8 @@
-!> What is odd about the geometry of closed chains that do not close or do not move: one axis that is not parallel to the
-!> others, or does not meet them in their common point, heights that do not fit, a link that is too long.
+!> A search for oddities in the geometry of closed chains that do not close or do not move: one axis that is not parallel to
+!> the others, or does not meet them in their common point, heights that do not fit, a link that is too long.
 !>
-!> All pairs of a chain are laid out from one of its links with all coordinates zero. Turns about parallel axes keep
-!> their directions, turns about axes through one point keep this point, whatever the coordinates are.
+!> All pairs of a chain are laid out from one of its links with all coordinates zero. For all values of the coordinates,
+!> turns about parallel axes keep their directions, and turns about axes through one point keep this point.
 module mech9_loop_geometry
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
@@ -17,23 +17,23 @@ module mech9_loop_geometry
 
   !> Kinds of oddities.
   integer, parameter :: none_found = 0
-  integer, parameter :: not_parallel = 1     !< the axis of a pair that turns, to the others
-  integer, parameter :: not_across = 2       !< the direction of a slide, to the parallel axes
+  integer, parameter :: not_parallel = 1     !< the axis of a pair that turns is not parallel to the others
+  integer, parameter :: not_across = 2       !< the direction of a slide is not perpendicular to the parallel axes
   integer, parameter :: not_concurrent = 3   !< an axis does not meet the point in which the others meet
   integer, parameter :: other_height = 4     !< the chain stays open along its parallel axes
-  integer, parameter :: too_long = 5         !< a link, against all others together
+  integer, parameter :: too_long = 5         !< a link is longer than all others together
   integer, parameter :: bent_link = 6        !< the axes of two pairs are not parallel on one link alone
 
-  !> Angles and parts of the chain's size that count as none: round-off of data with 16 digits.
+  !> Angles [rad] and parts of the chain's size that count as zero: round-off of data with 16 digits.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
   !> The first oddity that was found.
   type :: oddity_type
     integer :: kind = none_found
-    integer, allocatable :: pairs(:)        !< all pairs of the closed chain, in its order
-    integer, allocatable :: odd(:)          !< the odd ones of them; of an odd link its two pairs
-    integer :: link = 0                     !< that is too long or bent
-    real(wp) :: angle = 0.0_wp              !< by which the odd axes are not parallel, or the slide not across [rad]
+    integer, allocatable :: pairs(:)   !< all pairs of the closed chain, in its order
+    integer, allocatable :: odd(:)     !< the odd ones of them; the two pairs of an odd link
+    integer :: link = 0                !< the link that is too long or bent
+    real(wp) :: angle = 0.0_wp         !< between the odd axes, or between the slide and the plane across the axes [rad]
     !> The distance of the axis from the point, the difference of heights, or the length of the link [m].
     real(wp) :: distance = 0.0_wp
     real(wp) :: others = 0.0_wp             !< length of all other links together [m]
@@ -41,14 +41,14 @@ module mech9_loop_geometry
 
   !> A closed chain laid out from its first link, all coordinates zero.
   type :: loop_type
-    integer, allocatable :: pairs(:)        !< (n) in order
-    integer, allocatable :: links(:)        !< (n): links(i) lies before pair i
-    type(pair_axes_type), allocatable :: axes(:)   !< (n)
-    real(wp), allocatable :: direction(:, :)       !< (3,n) of the axes, in the first link
-    real(wp), allocatable :: point(:, :)           !< (3,n) of them, in the first link [m]
-    type(pose_type) :: end                         !< of the first link, come to through all pairs
+    integer, allocatable :: pairs(:)               !< (n) in order
+    integer, allocatable :: links(:)               !< (n): links(i) lies before pair i
+    type(pair_axes_type), allocatable :: axes(:)   !< (n) axes of the pairs in their own links
+    real(wp), allocatable :: direction(:, :)       !< (3,n) directions of the axes, in the first link
+    real(wp), allocatable :: point(:, :)           !< (3,n) points of the axes, in the first link [m]
+    type(pose_type) :: end                         !< pose of the first link in itself, reached through all pairs
     real(wp) :: length = 0.0_wp                    !< the largest distance of a point from the first one [m]
-    real(wp) :: slack = round_off                  !< angles and parts of the length that count as none
+    real(wp) :: slack = round_off                  !< angles [rad] and parts of the length that count as zero
   end type loop_type
 
 contains
@@ -56,7 +56,7 @@ contains
   !> Search the closed chains of a mechanism; `kind` is none_found where nothing is odd.
   pure subroutine find_oddity(mechanism, oddity)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(oddity_type), intent(out) :: oddity
+    type(oddity_type), intent(out) :: oddity        !< the first one found
     type(link_graph_type) :: graph
     type(pair_axes_type), allocatable :: axes(:)
     type(loop_type) :: loop
@@ -75,11 +75,11 @@ contains
     end do
   end subroutine find_oddity
 
-  !> A spanning tree from link 1, breadth first: the pair by which each link is reached, and how many lead there.
+  !> A spanning tree from link 1, breadth first: the pair by which each link is reached, and the number of pairs to it.
   pure subroutine span(graph, through, depth)
-    type(link_graph_type), intent(in) :: graph
-    integer, allocatable, intent(out) :: through(:)    !< (N) coordinate; 0 of link 1
-    integer, allocatable, intent(out) :: depth(:)      !< (N)
+    type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
+    integer, allocatable, intent(out) :: through(:)   !< (N) pair that leads to each link; 0 for link 1
+    integer, allocatable, intent(out) :: depth(:)     !< (N) number of pairs from link 1 to each link
     integer :: queue(graph%n_links), next, n, i, other
 
     allocate (through(graph%n_links), source=0)
@@ -101,17 +101,18 @@ contains
     end do
   end subroutine span
 
-  !> The chain that a pair outside the tree closes.
+  !> Lay out the chain that a pair outside the tree closes.
   pure subroutine lay_out(graph, axes, through, depth, closing, loop)
-    type(link_graph_type), intent(in) :: graph
-    type(pair_axes_type), intent(in) :: axes(:)        !< (M)
-    integer, intent(in) :: through(:), depth(:)        !< (N) see span
-    integer, intent(in) :: closing                     !< the pair
-    type(loop_type), intent(out) :: loop
+    type(link_graph_type), intent(in) :: graph    !< links and pairs of the mechanism
+    type(pair_axes_type), intent(in) :: axes(:)   !< (M)
+    integer, intent(in) :: through(:)             !< (N) pair that leads to each link in the tree; 0 for link 1
+    integer, intent(in) :: depth(:)               !< (N) number of pairs from link 1 to each link
+    integer, intent(in) :: closing                !< coordinate of the pair
+    type(loop_type), intent(out) :: loop          !< the chain
     integer :: ends(2), down(size(depth)), up(size(depth)), n_down, n_up, side, link, i
     type(pose_type) :: pose
 
-    ! from both ends of the pair up the tree until the two ways meet
+    ! walk from both ends of the pair up the tree until the two walks meet
     ends = graph%ends(:, closing)
     n_down = 0
     n_up = 0
@@ -148,11 +149,11 @@ contains
     end do
   end subroutine lay_out
 
-  !> What is odd about one chain.
+  !> Search one chain for an oddity.
   pure subroutine judge(all_axes, loop, oddity)
-    type(pair_axes_type), intent(in) :: all_axes(:)    !< (M)
-    type(loop_type), intent(in) :: loop
-    type(oddity_type), intent(inout) :: oddity
+    type(pair_axes_type), intent(in) :: all_axes(:)   !< (M)
+    type(loop_type), intent(in) :: loop               !< the chain, laid out
+    type(oddity_type), intent(inout) :: oddity        !< gets what is found
     type(link_dimension_type) :: dimensions(size(loop%pairs))
     logical :: planar
     integer :: i, n
@@ -170,11 +171,12 @@ contains
     if (oddity%kind == none_found .and. all(loop%axes%kind == turning)) call judge_lengths(dimensions, planar, oddity)
   end subroutine judge
 
-  !> One link on which the axes are not parallel as on all others: the two ends of one axis have different directions.
+  !> Search for one link on which the axes are not parallel, as they are on all others: the two ends of one axis have
+  !> different directions.
   pure subroutine judge_links(dimensions, slack, oddity)
     type(link_dimension_type), intent(in) :: dimensions(:)   !< of the links of a chain whose pairs turn
-    real(wp), intent(in) :: slack                            !< angle that counts as none [rad]
-    type(oddity_type), intent(inout) :: oddity
+    real(wp), intent(in) :: slack                            !< angle that counts as zero [rad]
+    type(oddity_type), intent(inout) :: oddity               !< gets what is found
     logical :: bent(size(dimensions))
     integer :: i
 
@@ -187,11 +189,12 @@ contains
     oddity%angle = asin(abs(sin(dimensions(i)%angle)))
   end subroutine judge_links
 
-  !> Parallel axes but few, and slides across them; where all are so, the heights.
+  !> Search for a few axes that are not parallel to the others, or slides not perpendicular to them; where there are none,
+  !> for heights that do not fit.
   pure subroutine judge_directions(loop, oddity, planar)
-    type(loop_type), intent(in) :: loop
-    type(oddity_type), intent(inout) :: oddity
-    logical, intent(out) :: planar                     !< all turn about one direction or slide across it
+    type(loop_type), intent(in) :: loop          !< the chain, laid out
+    type(oddity_type), intent(inout) :: oddity   !< gets what is found
+    logical, intent(out) :: planar               !< all turn about one direction or slide across it
     logical, dimension(size(loop%pairs)) :: fits, best, turns
     real(wp) :: normal(3), sine, gap
     integer :: i, k, chosen
@@ -227,11 +230,11 @@ contains
     end if
   end subroutine judge_directions
 
-  !> Sine of the angle by which a turning axis is not parallel to a direction, or a slide not across it.
+  !> Sine of the angle between a turning axis and a direction, or between a slide and the plane across the direction.
   pure real(wp) function deviation(loop, i, normal)
-    type(loop_type), intent(in) :: loop
-    integer, intent(in) :: i                           !< place of the pair in the chain
-    real(wp), intent(in) :: normal(3)                  !< of length 1, in the first link
+    type(loop_type), intent(in) :: loop   !< the chain, laid out
+    integer, intent(in) :: i              !< place of the pair in the chain
+    real(wp), intent(in) :: normal(3)     !< of length 1, in the first link
 
     if (loop%axes(i)%kind == sliding) then
       deviation = abs(dot_product(loop%direction(:, i), normal))
@@ -240,7 +243,7 @@ contains
     end if
   end function deviation
 
-  !> Whether so few pairs do not fit that they seem to be mistaken. Longer chains can move with any axes.
+  !> Whether so few pairs do not fit that they are likely to be errors. Chains of more than six pairs can move with any axes.
   pure logical function few(fits)
     logical, intent(in) :: fits(:)                     !< (n) of the pairs of a chain
 
@@ -249,8 +252,8 @@ contains
 
   !> Pairs that join points of different heights in the systems of their links.
   pure function steps_up(loop, normal) result(steps)
-    type(loop_type), intent(in) :: loop
-    real(wp), intent(in) :: normal(3)                  !< of length 1, in the first link
+    type(loop_type), intent(in) :: loop   !< the chain, laid out
+    real(wp), intent(in) :: normal(3)     !< of length 1, in the first link
     logical :: steps(size(loop%pairs))
     real(wp) :: rise
     type(pose_type) :: pose
@@ -270,10 +273,10 @@ contains
     end do
   end function steps_up
 
-  !> Axes that meet in one point but few.
+  !> Search for a few axes that do not meet the common point of the others.
   pure subroutine judge_centre(loop, oddity)
-    type(loop_type), intent(in) :: loop
-    type(oddity_type), intent(inout) :: oddity
+    type(loop_type), intent(in) :: loop          !< the chain, laid out
+    type(oddity_type), intent(inout) :: oddity   !< gets what is found
     logical, dimension(size(loop%pairs)) :: fits, best
     real(wp) :: centre(3), best_centre(3)
     logical :: meet
@@ -303,10 +306,11 @@ contains
 
   !> The point in which two axes meet, if they do.
   pure subroutine meeting_point(loop, i, j, centre, meet)
-    type(loop_type), intent(in) :: loop
-    integer, intent(in) :: i, j                        !< places of the pairs in the chain
-    real(wp), intent(out) :: centre(3)                 !< in the first link [m]
-    logical, intent(out) :: meet
+    type(loop_type), intent(in) :: loop   !< the chain, laid out
+    integer, intent(in) :: i              !< place of one pair in the chain
+    integer, intent(in) :: j              !< place of the other pair in the chain
+    real(wp), intent(out) :: centre(3)    !< in the first link [m]
+    logical, intent(out) :: meet          !< whether the axes meet in one point
     real(wp) :: normal(3), apart(3), sine
 
     centre = 0.0_wp
@@ -319,21 +323,21 @@ contains
     centre = loop%point(:, i) + loop%direction(:, i)*dot_product(cross(apart, loop%direction(:, j)), normal)/sine**2
   end subroutine meeting_point
 
-  !> How far a point lies from an axis [m].
+  !> Distance of a point from an axis [m].
   pure real(wp) function distance_from_axis(loop, i, centre) result(distance)
-    type(loop_type), intent(in) :: loop
-    integer, intent(in) :: i                           !< place of the pair in the chain
-    real(wp), intent(in) :: centre(3)                  !< in the first link [m]
+    type(loop_type), intent(in) :: loop   !< the chain, laid out
+    integer, intent(in) :: i              !< place of the pair in the chain
+    real(wp), intent(in) :: centre(3)     !< in the first link [m]
 
     distance = norm2(cross(loop%direction(:, i), centre - loop%point(:, i)))
   end function distance_from_axis
 
-  !> A chain of pairs that turn is a polygon of the points of its pairs, in a plane of its axes. It cannot close where one
-  !> side is longer than all others together.
+  !> Search for a link that is too long. The points of pairs that turn form a polygon; with parallel axes their projections
+  !> across the axes do. It cannot close where one side is longer than all others together.
   pure subroutine judge_lengths(dimensions, planar, oddity)
     type(link_dimension_type), intent(in) :: dimensions(:)   !< of the links of a chain whose pairs turn
-    logical, intent(in) :: planar                            !< about parallel axes
-    type(oddity_type), intent(inout) :: oddity
+    logical, intent(in) :: planar                            !< the axes of all pairs are parallel
+    type(oddity_type), intent(inout) :: oddity               !< gets what is found
     real(wp) :: lengths(size(dimensions))
     integer :: i
 

@@ -1,4 +1,4 @@
-!> A mechanism: everything a data file says, checked. It never changes once it is read.
+!> A mechanism holds all data of a data file, checked. It never changes once it is read.
 module mech9_mechanism
   use mech9_kinds, only: wp
   use mech9_structure, only: structure_type
@@ -18,21 +18,21 @@ module mech9_mechanism
     character(len=:), allocatable :: title
     !> Radians in one unit of angle of the data file and of the results: 1, or pi/180.
     real(wp) :: angle_unit = 1.0_wp
-    !> How far redundant equations may stay open: of the mechanism's size, and rad. For dimensions of few digits.
+    !> Allowed residual of redundant equations, for dimensions of few digits: a part of the mechanism's size, and rad.
     real(wp) :: data_tolerance = 0.0_wp
     type(structure_type) :: structure
-    !> The order of computation: from the data file, or made from the structure.
+    !> The order of computation, from the data file or made from the structure.
     type(structural_vectors_type) :: vectors
-    type(pair_slot_type), allocatable :: pairs(:)           !< pair k has coordinate k
-    type(drive_slot_type), allocatable :: drives(:)         !< in the order of the data file
-    real(wp), allocatable :: initial_position(:)            !< (M): guesses of dependent, values of independent ones
-    real(wp), allocatable :: initial_velocity(:)            !< (M): of independent ones
-    logical, allocatable :: position_given(:)               !< (M)
-    logical, allocatable :: velocity_given(:)               !< (M)
+    type(pair_slot_type), allocatable :: pairs(:)     !< pair k has coordinate k
+    type(drive_slot_type), allocatable :: drives(:)   !< in the order of the data file
+    real(wp), allocatable :: initial_position(:)      !< (M) values of independent, guesses of dependent ones [rad, m]
+    real(wp), allocatable :: initial_velocity(:)      !< (M) of independent coordinates [rad/s, m/s]
+    logical, allocatable :: position_given(:)         !< (M) the data file gives the position
+    logical, allocatable :: velocity_given(:)         !< (M) the data file gives the velocity
     type(point_type), allocatable :: points(:)
     type(body_type), allocatable :: bodies(:)
-    type(load_slot_type), allocatable :: loads(:)           !< in the order of the data file
-    real(wp) :: gravity(3) = 0.0_wp                         !< [m/s^2]
+    type(load_slot_type), allocatable :: loads(:)   !< in the order of the data file
+    real(wp) :: gravity(3) = 0.0_wp                 !< in the axes of link 1 [m/s^2]
     type(time_grid_type) :: time
     type(solver_settings_type) :: solver
     type(output_settings_type) :: output

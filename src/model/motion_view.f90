@@ -1,4 +1,4 @@
-!> The motion of links and coordinates as loads see it.
+!> The motion of links and coordinates as it is given to loads.
 module mech9_motion_view
   use mech9_kinds, only: wp
   use mech9_rotation, only: identity, turn, cross
@@ -7,12 +7,12 @@ module mech9_motion_view
   private
   public :: motion_view_type, link_motion_type
 
-  !> One link: its own system in the system of link 1.
+  !> Motion of one link: of its own system in the system of link 1.
   type :: link_motion_type
-    real(wp) :: r(3, 3) = identity      !< turns components in the link's axes into fixed ones
-    real(wp) :: p(3) = 0.0_wp           !< the link's origin [m]
-    real(wp) :: omega(3) = 0.0_wp       !< angular velocity, fixed axes [rad/s]
-    real(wp) :: v(3) = 0.0_wp           !< velocity of the origin [m/s]
+    real(wp) :: r(3, 3) = identity   !< turns components in the link's axes into fixed ones
+    real(wp) :: p(3) = 0.0_wp        !< the link's origin [m]
+    real(wp) :: omega(3) = 0.0_wp    !< angular velocity, fixed axes [rad/s]
+    real(wp) :: v(3) = 0.0_wp        !< velocity of the origin [m/s]
   contains
     procedure :: point_position
     procedure :: point_velocity
@@ -21,11 +21,11 @@ module mech9_motion_view
 
   !> All that a load may depend on. Its procedures are for users: they check the number of the link.
   type :: motion_view_type
-    real(wp) :: t = 0.0_wp                               !< [s]
-    type(link_motion_type), allocatable :: links(:)      !< (N); only those that a load asked for are kept
-    real(wp), allocatable :: q(:)                        !< (M) coordinates [rad, m]
-    real(wp), allocatable :: dq(:)                       !< (M) their rates
-    !> Where wrong numbers of links are noted while loads are collected: `state` cannot be changed by its readers.
+    real(wp) :: t = 0.0_wp                            !< [s]
+    type(link_motion_type), allocatable :: links(:)   !< (N); only the links requested by loads are up to date
+    real(wp), allocatable :: q(:)                     !< (M) coordinates [rad, m]
+    real(wp), allocatable :: dq(:)                    !< (M) their rates [rad/s, m/s]
+    !> Keeps wrong numbers of links while loads are added. It is a pointer because loads may not change the motion.
     type(call_fault_type), pointer :: fault => null()
   contains
     procedure :: note_faults_in
@@ -38,10 +38,10 @@ module mech9_motion_view
 
 contains
 
-  !> Where a point of the link is, in the system of link 1 [m].
+  !> Position of a point of the link, in the system of link 1 [m].
   pure function point_position(self, point)
-    class(link_motion_type), intent(in) :: self   !< the link motion
-    real(wp), intent(in) :: point(3)      !< in the link's system [m]
+    class(link_motion_type), intent(in) :: self   !< motion of the link
+    real(wp), intent(in) :: point(3)              !< in the link's system [m]
     real(wp) :: point_position(3)
 
     point_position = self%p + turn(self%r, point)
@@ -49,8 +49,8 @@ contains
 
   !> Velocity of a point of the link, fixed axes [m/s].
   pure function point_velocity(self, point)
-    class(link_motion_type), intent(in) :: self   !< the link motion
-    real(wp), intent(in) :: point(3)      !< in the link's system [m]
+    class(link_motion_type), intent(in) :: self   !< motion of the link
+    real(wp), intent(in) :: point(3)              !< in the link's system [m]
     real(wp) :: point_velocity(3)
 
     point_velocity = self%v + cross(self%omega, turn(self%r, point))
@@ -58,18 +58,18 @@ contains
 
   !> A vector given in the axes of the link, in fixed axes.
   pure function fixed_components(self, vector)
-    class(link_motion_type), intent(in) :: self   !< the link motion
-    real(wp), intent(in) :: vector(3)     !< in the link's axes, of any unit
+    class(link_motion_type), intent(in) :: self   !< motion of the link
+    real(wp), intent(in) :: vector(3)             !< in the link's axes, of any unit
     real(wp) :: fixed_components(3)
 
     fixed_components = turn(self%r, vector)
   end function fixed_components
 
-  !> Where a point of a link is, in the system of link 1 [m]; zero where there is no such link, which is noted.
+  !> Position of a point of a link, in the system of link 1 [m]; zero where there is no such link, which is noted.
   function position(self, link, point)
-    class(motion_view_type), intent(in) :: self   !< the motion view
-    integer, intent(in) :: link           !< its number
-    real(wp), intent(in) :: point(3)      !< in the link's system [m]
+    class(motion_view_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: link                   !< its number
+    real(wp), intent(in) :: point(3)              !< in the link's system [m]
     real(wp) :: position(3)
 
     position = 0.0_wp
@@ -78,9 +78,9 @@ contains
 
   !> Velocity of a point of a link, fixed axes [m/s]; zero where there is no such link, which is noted.
   function velocity(self, link, point)
-    class(motion_view_type), intent(in) :: self   !< the motion view
-    integer, intent(in) :: link           !< its number
-    real(wp), intent(in) :: point(3)      !< in the link's system [m]
+    class(motion_view_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: link                   !< its number
+    real(wp), intent(in) :: point(3)              !< in the link's system [m]
     real(wp) :: velocity(3)
 
     velocity = 0.0_wp
@@ -89,9 +89,9 @@ contains
 
   !> A vector given in the axes of a link, in fixed axes; zero where there is no such link, which is noted.
   function turned(self, link, vector)
-    class(motion_view_type), intent(in) :: self   !< the motion view
-    integer, intent(in) :: link           !< its number
-    real(wp), intent(in) :: vector(3)     !< in the link's axes, of any unit
+    class(motion_view_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: link                   !< its number
+    real(wp), intent(in) :: vector(3)             !< in the link's axes, of any unit
     real(wp) :: turned(3)
 
     turned = 0.0_wp
@@ -100,24 +100,24 @@ contains
 
   !> From now on, until `note_no_faults`, wrong numbers of links are noted in `fault`, which must live as long.
   subroutine note_faults_in(self, fault)
-    class(motion_view_type), intent(inout) :: self   !< the motion view
-    type(call_fault_type), intent(inout), target :: fault
+    class(motion_view_type), intent(inout) :: self          !< the motion
+    type(call_fault_type), intent(inout), target :: fault   !< keeps the first wrong number
 
     self%fault => fault
   end subroutine note_faults_in
 
   !> Wrong numbers of links are not noted any more.
   subroutine note_no_faults(self)
-    class(motion_view_type), intent(inout) :: self   !< the motion view
+    class(motion_view_type), intent(inout) :: self   !< the motion
 
     self%fault => null()
   end subroutine note_no_faults
 
   !> Whether a link exists. If not, the call is noted where faults are kept.
   logical function has_link(self, link, procedure)
-    class(motion_view_type), intent(in) :: self   !< the motion view
-    integer, intent(in) :: link                  !< its number
-    character(len=*), intent(in) :: procedure    !< that asks for it
+    class(motion_view_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: link                   !< its number
+    character(len=*), intent(in) :: procedure     !< name of the procedure that was given the number
 
     has_link = link >= 1 .and. link <= size(self%links)
     if (has_link .or. .not. associated(self%fault)) return

@@ -1,7 +1,7 @@
-!> A pair: the one-degree-of-freedom joint of two links, as every pair is seen from above.
+!> A pair is a joint of two links with one degree of freedom; all kinds of pairs have this interface.
 !>
 !> A pair is any one-parameter motion of its moving link in its reference link. Most pairs turn
-!> about or slide along one fixed axis, or both in proportion: they say so through `as_screw`,
+!> about or slide along one fixed axis, or both in proportion: `as_screw` tells their axis,
 !> and the plan then never calls `evaluate` for them.
 module mech9_pair
   use mech9_kinds, only: wp
@@ -12,10 +12,10 @@ module mech9_pair
   private
   public :: pair_type, pair_slot_type, pair_motion_type, screw_factors_type, kind_name_length, reversed_motion
 
-  integer, parameter :: kind_name_length = 9   !< of the longest, prismatic
+  integer, parameter :: kind_name_length = 9   !< letters of the longest name of a kind, prismatic
 
-  !> Where a pair puts its moving link at one value of q, and how that changes with q.
-  !> All vectors in the axes of the reference link.
+  !> The pose that a pair gives its moving link at one value of q, and its derivatives in q.
+  !> All vectors are in the axes of the reference link.
   type :: pair_motion_type
     type(pose_type) :: pose          !< of the moving link in the reference link
     real(wp) :: w(3) = 0.0_wp        !< angular rate: vee(A' A^T)
@@ -27,19 +27,20 @@ module mech9_pair
   !> A pair with a fixed axis as factors: pose = before * (turn by `turn`*(q + offset) about z and
   !> slide by `slide`*(q + offset) along z) * after.
   type :: screw_factors_type
-    type(pose_type) :: before
-    type(pose_type) :: after
+    type(pose_type) :: before     !< pose of the axis (its z) in the reference link
+    type(pose_type) :: after      !< pose of the moving link in the frame of the axis, where q + offset is zero
     real(wp) :: turn = 0.0_wp     !< 1, or 0 for a prismatic pair
-    real(wp) :: slide = 0.0_wp    !< length per unit of q
-    real(wp) :: offset = 0.0_wp
+    real(wp) :: slide = 0.0_wp    !< length per unit of q [m/rad, 1]
+    real(wp) :: offset = 0.0_wp   !< added to q [rad, m]
   end type screw_factors_type
 
+  !> A pair of any kind.
   type, abstract :: pair_type
-    integer :: coordinate = 0         !< number k of its coordinate q_k
-    integer :: reference = 0          !< the link in which its motion is described
-    integer :: moving = 0             !< the link that moves
-    logical :: angular = .true.       !< its coordinate is an angle [rad]; else a length or the user's own
-    type(place_type) :: place         !< of its group in the data file
+    integer :: coordinate = 0     !< number k of its coordinate q_k
+    integer :: reference = 0      !< the link in which its motion is described
+    integer :: moving = 0         !< the link that moves
+    logical :: angular = .true.   !< its coordinate is an angle [rad]; else a length or the user's own
+    type(place_type) :: place     !< place of its group in the data file
   contains
     procedure(evaluate_interface), deferred :: evaluate
     procedure(as_screw_interface), deferred :: as_screw
@@ -57,18 +58,18 @@ module mech9_pair
     !> Fails where the pair has no pose: collinear characteristic points, values that are not finite.
     subroutine evaluate_interface(self, q, motion, err)
       import :: pair_type, pair_motion_type, error_type, wp
-      class(pair_type), intent(in) :: self   !< the pair
-      real(wp), intent(in) :: q
-      type(pair_motion_type), intent(out) :: motion
+      class(pair_type), intent(in) :: self                !< the pair
+      real(wp), intent(in) :: q                           !< value of the coordinate [rad, m, or the user's own unit]
+      type(pair_motion_type), intent(out) :: motion       !< pose of the moving link and its derivatives in q
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine evaluate_interface
 
     !> The factors of a pair with a fixed axis; `is_screw` is false for any other pair.
     pure subroutine as_screw_interface(self, factors, is_screw)
       import :: pair_type, screw_factors_type
-      class(pair_type), intent(in) :: self   !< the pair
-      type(screw_factors_type), intent(out) :: factors
-      logical, intent(out) :: is_screw
+      class(pair_type), intent(in) :: self               !< the pair
+      type(screw_factors_type), intent(out) :: factors   !< the factors of the pair
+      logical, intent(out) :: is_screw                   !< whether the pair has a fixed axis
     end subroutine as_screw_interface
 
     !> The name of its kind as in the data file, for reports.
@@ -78,7 +79,7 @@ module mech9_pair
       character(len=kind_name_length) :: name
     end function kind_name_interface
 
-    !> How often one evaluation calls a user's procedure; 0 for built-in pairs.
+    !> Number of calls of a user's procedure in one evaluation; 0 for built-in pairs.
     pure integer function calls_interface(self)
       import :: pair_type
       class(pair_type), intent(in) :: self   !< the pair
@@ -89,7 +90,7 @@ contains
 
   !> The motion of the reference link in the moving link, from that of the moving in the reference link.
   pure function reversed_motion(motion) result(back)
-    type(pair_motion_type), intent(in) :: motion
+    type(pair_motion_type), intent(in) :: motion   !< motion of the moving link in the reference link
     type(pair_motion_type) :: back
     real(wp) :: g(3), r_back(3, 3)
 

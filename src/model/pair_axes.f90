@@ -17,15 +17,15 @@ module mech9_pair_axes
     integer :: links(2) = 0             !< numbers of the reference link and of the moving link; 0 for a pair that is missing
     real(wp) :: points(3, 2) = 0.0_wp   !< of the axis [m]; of a free pair the moving link's origin (side 2)
     real(wp) :: axes(3, 2) = 0.0_wp     !< its direction, of length 1; zero for a free pair
-    type(pose_type) :: home             !< of the moving link in the reference link at q = 0; not known for a free pair
+    type(pose_type) :: home             !< pose of the moving link in the reference link at q = 0; not known for a free pair
   end type pair_axes_type
 
 contains
 
   !> The axes of all pairs. A pair that is missing is a free one without links.
   pure function pair_axes(pairs) result(all)
-    type(pair_slot_type), intent(in) :: pairs(:)    !< (M)
-    type(pair_axes_type), allocatable :: all(:)     !< (M)
+    type(pair_slot_type), intent(in) :: pairs(:)   !< (M)
+    type(pair_axes_type), allocatable :: all(:)    !< (M)
     type(screw_factors_type) :: factors
     type(pose_type) :: in_moving
     logical :: is_screw

@@ -1,4 +1,4 @@
-!> Drive q = c0 + c1 t + c2 t^2 + ...
+!> A drive with the function q = c0 + c1 t + c2 t^2 + ...
 module mech9_polynomial_drive
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
@@ -9,9 +9,10 @@ module mech9_polynomial_drive
   private
   public :: polynomial_drive_type
 
-  !> Terms of the Taylor series about a time, up to this power of the time from there, are worked out one by one.
+  !> Terms of the Taylor series about a time are computed one by one up to this power.
   integer, parameter :: highest = 12
 
+  !> A polynomial drive by its coefficients.
   type, extends(drive_type) :: polynomial_drive_type
     real(wp), allocatable :: coefficients(:)   !< c0, c1, ... [rad or m, per s^i]
   contains
@@ -21,11 +22,13 @@ module mech9_polynomial_drive
 
 contains
 
-  !> By Horner's rule, for the value and its derivatives at once.
+  !> Horner's rule gives the value and its derivatives at once.
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(polynomial_drive_type), intent(in) :: self   !< the polynomial drive
-    real(wp), intent(in) :: t              !< [s]
-    real(wp), intent(out) :: q, dq, ddq    !< [rad or m], per s, per s^2
+    class(polynomial_drive_type), intent(in) :: self    !< the polynomial drive
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(out) :: q                          !< the coordinate [rad, m]
+    real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
@@ -44,13 +47,14 @@ contains
                  self%place)
   end subroutine evaluate
 
-  !> By the sizes of the terms of the Taylor series of the rate at t, k |q^(k)|/k! |h|^(k-1) for k up to `highest`, and
-  !> for the rest by a bound of the next derivative over the whole interval, to which each coefficient adds its size.
-  !> Never too small, exact for a constant rate, and close for small h. The work is linear in the number of coefficients.
+  !> The bound is the sum of the sizes of the terms of the Taylor series of the rate at t, k |q^(k)|/k! |h|^(k-1) for k up
+  !> to `highest`, and of a bound of the remainder, from the next derivative of the polynomial with the sizes of the
+  !> coefficients. It is never too small, exact for a constant rate, and close for small h. The work is linear in the
+  !> number of coefficients.
   function greatest_rate(self, t, h) result(rate)
     class(polynomial_drive_type), intent(in) :: self   !< the polynomial drive
-    real(wp), intent(in) :: t        !< [s]
-    real(wp), intent(in) :: h        !< [s], may be negative
+    real(wp), intent(in) :: t   !< beginning of the interval [s]
+    real(wp), intent(in) :: h   !< length of the interval [s]; may be negative
     real(wp) :: rate                 !< [rad/s or m/s]
     real(wp) :: terms(0:highest), sizes(0:highest + 1)
     integer :: k, last
@@ -70,10 +74,10 @@ contains
   !> Value and derivatives of a polynomial, divided by the factorials of their orders, by Horner's rule.
   pure subroutine find_terms(coefficients, of_sizes, t, last, terms)
     real(wp), intent(in) :: coefficients(:)   !< of 1, t, t^2, ...
-    logical, intent(in) :: of_sizes           !< of the polynomial whose coefficients are the sizes of these
+    logical, intent(in) :: of_sizes           !< take the sizes of the coefficients instead of the coefficients
     real(wp), intent(in) :: t                 !< [s]
     integer, intent(in) :: last               !< highest order
-    real(wp), intent(out) :: terms(0:last)
+    real(wp), intent(out) :: terms(0:last)    !< k-th derivative at t over k!
     real(wp) :: c
     integer :: i, k
 

@@ -11,16 +11,16 @@ contains
   !> One unit of coordinate k of the results, in rad or m.
   pure real(wp) function unit_of(mechanism, k)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: k
+    integer, intent(in) :: k                        !< number of the coordinate
 
     unit_of = 1.0_wp
     if (mechanism%pairs(k)%pair%angular) unit_of = mechanism%angle_unit
   end function unit_of
 
-  !> Its name; '1' where only the user's own pair knows it.
+  !> Name of the unit of coordinate k; '1' for a user's own pair, whose unit is not known.
   pure character(len=3) function unit_name(mechanism, k)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: k
+    integer, intent(in) :: k                        !< number of the coordinate
 
     if (mechanism%pairs(k)%pair%kind_name() == 'user') then
       unit_name = '1'

@@ -1,6 +1,6 @@
-!> Revolute, prismatic and helical pairs: motion along one fixed screw axis.
+!> Revolute, prismatic and helical pairs, which move along one fixed screw axis.
 !>
-!> T(q) = F * motion(q + offset) * G^-1, where F stands in the reference link, G in the moving one,
+!> T(q) = F * motion(q + offset) * G^-1, where F is the pose of the axis in the reference link, G that in the moving one,
 !> and the motion turns about z, slides along z, or does both.
 module mech9_screw_pair
   use mech9_kinds, only: wp, pi
@@ -13,6 +13,7 @@ module mech9_screw_pair
   public :: screw_pair_type, revolute_pair, prismatic_pair, helical_pair
   public :: revolute_pair_dh, prismatic_pair_dh, helical_pair_dh
 
+  !> A pair with a fixed axis by its factors.
   type, extends(pair_type) :: screw_pair_type
     type(screw_factors_type) :: factors
   contains
@@ -24,28 +25,31 @@ module mech9_screw_pair
 
 contains
 
-  !> Turns by q [rad] about the common z axis of its two frames.
+  !> A pair that turns by q [rad] about the common z axis of its two frames.
   pure function revolute_pair(frame_in_reference, frame_in_moving) result(pair)
-    type(pose_type), intent(in) :: frame_in_reference, frame_in_moving
+    type(pose_type), intent(in) :: frame_in_reference   !< F, pose of the axis (its z) in the reference link
+    type(pose_type), intent(in) :: frame_in_moving      !< G, pose of the axis (its z) in the moving link
     type(screw_pair_type) :: pair
 
     pair%angular = .true.
     pair%factors = screw_factors_type(before=frame_in_reference, after=inverse(frame_in_moving), turn=1.0_wp)
   end function revolute_pair
 
-  !> Slides by q [m] along the common z axis of its two frames.
+  !> A pair that slides by q [m] along the common z axis of its two frames.
   pure function prismatic_pair(frame_in_reference, frame_in_moving) result(pair)
-    type(pose_type), intent(in) :: frame_in_reference, frame_in_moving
+    type(pose_type), intent(in) :: frame_in_reference   !< F, pose of the axis (its z) in the reference link
+    type(pose_type), intent(in) :: frame_in_moving      !< G, pose of the axis (its z) in the moving link
     type(screw_pair_type) :: pair
 
     pair%angular = .false.
     pair%factors = screw_factors_type(before=frame_in_reference, after=inverse(frame_in_moving), slide=1.0_wp)
   end function prismatic_pair
 
-  !> Turns by q [rad] and advances by `pitch` [m] per turn.
+  !> A pair that turns by q [rad] and advances by `pitch` [m] per turn.
   pure function helical_pair(frame_in_reference, frame_in_moving, pitch) result(pair)
-    type(pose_type), intent(in) :: frame_in_reference, frame_in_moving
-    real(wp), intent(in) :: pitch
+    type(pose_type), intent(in) :: frame_in_reference   !< F, pose of the axis (its z) in the reference link
+    type(pose_type), intent(in) :: frame_in_moving      !< G, pose of the axis (its z) in the moving link
+    real(wp), intent(in) :: pitch                       !< advance per turn [m]
     type(screw_pair_type) :: pair
 
     pair%angular = .true.
@@ -55,7 +59,10 @@ contains
 
   !> Revolute pair in Denavit-Hartenberg form, q added to theta.
   pure function revolute_pair_dh(a, alpha, d, theta) result(pair)
-    real(wp), intent(in) :: a, alpha, d, theta   !< lengths [m], angles [rad]
+    real(wp), intent(in) :: a       !< length of the link [m]
+    real(wp), intent(in) :: alpha   !< twist of the link [rad]
+    real(wp), intent(in) :: d       !< offset of the joint [m]
+    real(wp), intent(in) :: theta   !< angle of the joint at q = 0 [rad]
     type(screw_pair_type) :: pair
 
     pair%angular = .true.
@@ -65,7 +72,10 @@ contains
 
   !> Prismatic pair in Denavit-Hartenberg form, q added to d.
   pure function prismatic_pair_dh(a, alpha, d, theta) result(pair)
-    real(wp), intent(in) :: a, alpha, d, theta   !< lengths [m], angles [rad]
+    real(wp), intent(in) :: a       !< length of the link [m]
+    real(wp), intent(in) :: alpha   !< twist of the link [rad]
+    real(wp), intent(in) :: d       !< offset of the joint at q = 0 [m]
+    real(wp), intent(in) :: theta   !< angle of the joint [rad]
     type(screw_pair_type) :: pair
 
     pair%angular = .false.
@@ -75,8 +85,11 @@ contains
 
   !> Helical pair in Denavit-Hartenberg form, q added to theta.
   pure function helical_pair_dh(a, alpha, d, theta, pitch) result(pair)
-    real(wp), intent(in) :: a, alpha, d, theta   !< lengths [m], angles [rad]
-    real(wp), intent(in) :: pitch                !< advance per turn [m]
+    real(wp), intent(in) :: a       !< length of the link [m]
+    real(wp), intent(in) :: alpha   !< twist of the link [rad]
+    real(wp), intent(in) :: d       !< offset of the joint at q = 0 [m]
+    real(wp), intent(in) :: theta   !< angle of the joint at q = 0 [rad]
+    real(wp), intent(in) :: pitch   !< advance per turn [m]
     type(screw_pair_type) :: pair
 
     pair%angular = .true.
@@ -85,10 +98,11 @@ contains
                                       turn=1.0_wp, slide=pitch/(2.0_wp*pi))
   end function helical_pair_dh
 
+  !> The motion along the axis; it has values for all q.
   subroutine evaluate(self, q, motion, err)
-    class(screw_pair_type), intent(in) :: self   !< the screw pair
-    real(wp), intent(in) :: q
-    type(pair_motion_type), intent(out) :: motion
+    class(screw_pair_type), intent(in) :: self          !< the screw pair
+    real(wp), intent(in) :: q                           !< value of the coordinate [rad, m]
+    type(pair_motion_type), intent(out) :: motion       !< pose of the moving link and its derivatives in q
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(pose_type) :: step
     real(wp) :: x, axis(3), arm(3)
@@ -105,15 +119,17 @@ contains
     end associate
   end subroutine evaluate
 
+  !> The pair is given by these factors.
   pure subroutine as_screw(self, factors, is_screw)
-    class(screw_pair_type), intent(in) :: self   !< the screw pair
-    type(screw_factors_type), intent(out) :: factors
-    logical, intent(out) :: is_screw
+    class(screw_pair_type), intent(in) :: self         !< the screw pair
+    type(screw_factors_type), intent(out) :: factors   !< the factors of the pair
+    logical, intent(out) :: is_screw                   !< true
 
     factors = self%factors
     is_screw = .true.
   end subroutine as_screw
 
+  !> The kind follows from the factors.
   pure function kind_name(self) result(name)
     class(screw_pair_type), intent(in) :: self   !< the screw pair
     character(len=kind_name_length) :: name
@@ -127,6 +143,7 @@ contains
     end if
   end function kind_name
 
+  !> No user's procedure is called.
   pure integer function user_calls(self)
     class(screw_pair_type), intent(in) :: self   !< the screw pair
 

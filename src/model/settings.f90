@@ -1,4 +1,4 @@
-!> How to compute and what to record.
+!> Settings of a run for the times of outputs, the solver and the results.
 module mech9_settings
   use mech9_kinds, only: wp
   implicit none
@@ -7,44 +7,44 @@ module mech9_settings
 
   !> Results are given at start + (end - start) i/intervals, i = 0 .. intervals.
   type :: time_grid_type
-    real(wp) :: start = 0.0_wp    !< [s]
-    real(wp) :: end = 1.0_wp      !< [s]
-    integer :: intervals = 100
+    real(wp) :: start = 0.0_wp   !< [s]
+    real(wp) :: end = 1.0_wp     !< [s]
+    integer :: intervals = 100   !< equal intervals between outputs
   contains
     procedure :: time
   end type time_grid_type
 
-  !> Of &solver. An empty method means the program's default.
+  !> The settings of &solver.
   type :: solver_settings_type
-    character(len=:), allocatable :: method
-    real(wp) :: relative_tolerance = 1.0e-8_wp
-    real(wp) :: absolute_tolerance = 1.0e-10_wp
-    integer :: maximum_steps = 1000000        !< between two outputs
+    character(len=:), allocatable :: method       !< of integration; empty: the program's default
+    real(wp) :: relative_tolerance = 1.0e-8_wp    !< of each coordinate and rate, in a step
+    real(wp) :: absolute_tolerance = 1.0e-10_wp   !< of each coordinate and rate, in its unit
+    integer :: maximum_steps = 1000000            !< between two outputs
   end type solver_settings_type
 
-  !> Of &output. An empty name means: not written.
+  !> The settings of &output. A file whose name is empty is not written.
   type :: output_settings_type
-    character(len=:), allocatable :: table
-    character(len=:), allocatable :: hdf5
-    character(len=:), allocatable :: sketch
-    character(len=:), allocatable :: animation
-    character(len=:), allocatable :: view     !< of both; empty: the best one
-    logical :: poses = .false.                !< the HDF5 file holds the poses of links
-    integer :: compression = 0                !< of the HDF5 file: 0 none to 9 most
-    logical :: conditioning = .false.         !< a column of the least singular value
-    integer, allocatable :: coordinates(:)    !< that have columns; none listed: all
-    integer :: derivatives = 2                !< the highest in time that is recorded
-    logical :: energies = .true.              !< columns of the energies
+    character(len=:), allocatable :: table       !< name of the table's file
+    character(len=:), allocatable :: hdf5        !< name of the HDF5 file
+    character(len=:), allocatable :: sketch      !< name of the drawing's file
+    character(len=:), allocatable :: animation   !< name of the film's file
+    character(len=:), allocatable :: view        !< direction of view of both; empty: the best one
+    logical :: poses = .false.                   !< the HDF5 file holds the poses of links
+    integer :: compression = 0                   !< of the HDF5 file, from 0 (none) to 9 (most)
+    logical :: conditioning = .false.            !< the least singular value has a column
+    integer, allocatable :: coordinates(:)       !< coordinates that have columns; none listed: all
+    integer :: derivatives = 2                   !< order of the highest derivative in time that is recorded
+    logical :: energies = .true.                 !< the energies have columns
   contains
     procedure :: recorded
   end type output_settings_type
 
 contains
 
-  !> Whether each of so many coordinates is recorded: all are, unless some are named.
+  !> Whether each coordinate is recorded: all are, unless some are listed.
   pure function recorded(self, n_coordinates)
     class(output_settings_type), intent(in) :: self   !< the output settings
-    integer, intent(in) :: n_coordinates
+    integer, intent(in) :: n_coordinates              !< M
     logical :: recorded(n_coordinates)
 
     recorded = .true.
@@ -57,7 +57,7 @@ contains
   !> Time of output i; the last one is exactly the end.
   pure real(wp) function time(self, i)
     class(time_grid_type), intent(in) :: self   !< the time grid
-    integer, intent(in) :: i
+    integer, intent(in) :: i                    !< number of the output, 0 .. intervals
 
     if (i == self%intervals) then
       time = self%end

@@ -1,4 +1,4 @@
-!> Drive through the points of a table, smooth: a cubic spline with continuous second derivative.
+!> A drive through the points of a table by a cubic spline with continuous second derivative.
 module mech9_table_drive
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
@@ -9,8 +9,9 @@ module mech9_table_drive
   private
   public :: table_drive_type
 
+  !> A drive by a table, as a spline.
   type, extends(drive_type) :: table_drive_type
-    type(spline_type) :: spline   !< q over t
+    type(spline_type) :: spline   !< the coordinate [rad, m] over time [s]
   contains
     procedure :: evaluate
     procedure :: greatest_rate
@@ -18,10 +19,13 @@ module mech9_table_drive
 
 contains
 
+  !> The spline and its derivatives. Fails outside the times of the table.
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(table_drive_type), intent(in) :: self   !< the table drive
-    real(wp), intent(in) :: t
-    real(wp), intent(out) :: q, dq, ddq
+    class(table_drive_type), intent(in) :: self         !< the table drive
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(out) :: q                          !< the coordinate [rad, m]
+    real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: slack
 
@@ -37,10 +41,11 @@ contains
     call self%spline%evaluate(t, q, dq, ddq)
   end subroutine evaluate
 
-  !> That of the pieces of the curve between the two times.
+  !> The bound is that of the spline between the two times.
   function greatest_rate(self, t, h) result(rate)
     class(table_drive_type), intent(in) :: self   !< the table drive
-    real(wp), intent(in) :: t, h
+    real(wp), intent(in) :: t                     !< beginning of the interval [s]
+    real(wp), intent(in) :: h                     !< length of the interval [s]; may be negative
     real(wp) :: rate
 
     rate = self%spline%steepest(min(t, t + h), max(t, t + h))

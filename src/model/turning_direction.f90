@@ -1,7 +1,7 @@
-!> Whether a link can turn about one direction only, as all links of a planar mechanism do.
+!> A search that tells whether a link can turn about one direction only, as all links of a planar mechanism do.
 !>
-!> A path of pairs leads from the link to link 1. Where each of them slides, or turns about the direction, every
-!> other path lets the link turn no further. The search takes every such pair until it comes to link 1.
+!> A path of pairs leads from the link to link 1. Where each of its pairs slides, or turns about the direction, no
+!> other path lets the link turn otherwise. The search goes through all such pairs until it reaches link 1.
 module mech9_turning_direction
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
@@ -13,7 +13,7 @@ module mech9_turning_direction
   private
   public :: turning_search_type, new_turning_search
 
-  !> The search, with what earlier searches found.
+  !> The search, with the results of earlier searches.
   type :: turning_search_type
     private
     type(link_graph_type) :: graph
@@ -28,9 +28,9 @@ contains
 
   !> A search among the links of a structure without findings; it may be without links.
   pure subroutine new_turning_search(structure, pairs, search)
-    type(structure_type), intent(in) :: structure
-    type(pair_slot_type), intent(in) :: pairs(:)        !< (M); some may be missing
-    type(turning_search_type), intent(out) :: search
+    type(structure_type), intent(in) :: structure      !< links and pairs
+    type(pair_slot_type), intent(in) :: pairs(:)       !< (M); some may be missing
+    type(turning_search_type), intent(out) :: search   !< the search, which has found nothing yet
 
     search%graph = graph_from_structure(structure)
     search%axes = pair_axes(pairs)
@@ -38,13 +38,13 @@ contains
     allocate (search%direction(3, structure%n_links), source=0.0_wp)
   end subroutine new_turning_search
 
-  !> Whether a link can turn about a direction only.
+  !> Tell whether a link can turn about a direction only.
   pure subroutine turns_only_about(self, link, direction, slack, answer, barrier)
     class(turning_search_type), intent(inout) :: self   !< the turning search
-    integer, intent(in) :: link
+    integer, intent(in) :: link   !< number of the link
     real(wp), intent(in) :: direction(3)       !< of length 1, in the axes of the link
-    real(wp), intent(in) :: slack              !< angle that counts as none [rad]
-    logical, intent(out) :: answer
+    real(wp), intent(in) :: slack   !< angle that counts as zero [rad]
+    logical, intent(out) :: answer   !< whether the link turns about the direction only, as far as the search can tell
     integer, intent(out) :: barrier            !< a pair by which the link may turn otherwise; 0: none, or none is known
     logical :: reached(self%graph%n_links)
     integer :: queue(self%graph%n_links), n, next, i, other
@@ -79,14 +79,14 @@ contains
     if (answer) barrier = 0
   end subroutine turns_only_about
 
-  !> The direction in the link at the other end of a pair, if the pair keeps it.
+  !> Find the direction in the link at the other end of a pair, if the pair keeps it.
   pure subroutine cross_pair(axes, from, slack, direction, to, passes)
-    type(pair_axes_type), intent(in) :: axes
-    integer, intent(in) :: from                      !< link in which the direction is known
-    real(wp), intent(in) :: slack                    !< angle that counts as none [rad]
-    real(wp), intent(inout) :: direction(:, :)       !< (3,N) in the axes of each link
-    integer, intent(in) :: to                        !< link in which it is found
-    logical, intent(out) :: passes
+    type(pair_axes_type), intent(in) :: axes     !< of the pair, in both of its links
+    integer, intent(in) :: from                  !< link in which the direction is known
+    real(wp), intent(in) :: slack                !< angle that counts as zero [rad]
+    real(wp), intent(inout) :: direction(:, :)   !< (3,N) in the axes of each link
+    integer, intent(in) :: to                    !< link in which it is found
+    logical, intent(out) :: passes               !< whether the pair keeps the direction
     integer :: near, far
     real(wp) :: along
 
