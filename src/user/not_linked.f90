@@ -1,4 +1,4 @@
-!> What the default answers to the hooks return, so that a missing procedure is noticed.
+!> The number that the default procedures of the hooks return, so that a missing user's procedure is noticed.
 module mech9_not_linked
   use mech9_kinds, only: wp
   implicit none

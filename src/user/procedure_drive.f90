@@ -14,8 +14,9 @@ module mech9_procedure_drive
   private
   public :: procedure_drive_type, make_procedure_drive
 
+  !> A drive by a user's procedure.
   type, extends(drive_type) :: procedure_drive_type
-    real(wp), allocatable :: parameters(:)   !< handed to the user's procedure
+    real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
     logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
   contains
     procedure :: evaluate
@@ -25,10 +26,10 @@ contains
 
   !> Make the drive and find out which form of procedure is linked. Fails where none is.
   subroutine make_procedure_drive(coordinate, start, parameters, drive, err)
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: start             !< a time at which the procedure may be called [s]
-    real(wp), intent(in) :: parameters(:)
-    type(procedure_drive_type), intent(out) :: drive
+    integer, intent(in) :: coordinate                   !< number of the coordinate that is driven
+    real(wp), intent(in) :: start                       !< a time at which the procedure may be called [s]
+    real(wp), intent(in) :: parameters(:)               !< numbers for the user's procedure
+    type(procedure_drive_type), intent(out) :: drive    !< the drive
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: q
     real(wp) :: value
@@ -44,10 +45,13 @@ contains
                  'but none is linked; see docs/user-procedures.md for how to write user_drive and link it')
   end subroutine make_procedure_drive
 
+  !> The procedure's value and derivatives. Fails where they are not finite.
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(procedure_drive_type), intent(in) :: self   !< the procedure drive
-    real(wp), intent(in) :: t
-    real(wp), intent(out) :: q, dq, ddq
+    class(procedure_drive_type), intent(in) :: self     !< the procedure drive
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(out) :: q                          !< the coordinate [rad, m]
+    real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: x
     logical :: ok
@@ -66,13 +70,13 @@ contains
                  ' gives numbers that are not finite at t = '//to_text(t, 12), self%place)
   end subroutine evaluate
 
-  !> Value and derivatives from the form in plain reals: the widest stencil that is at round-off is
-  !> taken, or the best of all. `ok` is false where no stencil has finite values.
+  !> Value and derivatives from the form in plain reals. The widest stencil whose error is round-off is
+  !> taken, or else the one with the least error. `ok` is false where no stencil has finite values.
   subroutine differentiate(self, t, x, ok)
     type(procedure_drive_type), intent(in) :: self   !< the procedure drive
-    real(wp), intent(in) :: t
-    type(taylor), intent(out) :: x
-    logical, intent(out) :: ok
+    real(wp), intent(in) :: t                        !< time [s]
+    type(taylor), intent(out) :: x                   !< the coordinate with its derivatives in time
+    logical, intent(out) :: ok                       !< whether there are finite values
     real(wp) :: values(-half_width:half_width), h, first, second, error, best
     integer :: number, i
 
@@ -88,7 +92,7 @@ contains
         best = error
         x = taylor(values(0), first, second)
       end if
-      ! good enough, or truncation is below round-off, which only grows as steps get narrower
+      ! the error is small, or mere round-off, which only grows as stencils get narrower
       if (error <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))) exit
     end do
     ok = best < huge(best)

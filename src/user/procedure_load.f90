@@ -13,8 +13,9 @@ module mech9_procedure_load
   private
   public :: procedure_load_type
 
+  !> A load by a user's procedure.
   type, extends(load_type) :: procedure_load_type
-    real(wp), allocatable :: parameters(:)   !< handed to the user's procedure
+    real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
   contains
     procedure :: mark_links
     procedure :: mark_coordinates
@@ -24,26 +25,27 @@ module mech9_procedure_load
 
 contains
 
-  !> The procedure may ask for any link.
+  !> The procedure may use the motion of any link.
   pure subroutine mark_links(self, needed)
     class(procedure_load_type), intent(in) :: self   !< the procedure load
-    logical, intent(inout) :: needed(:)
+    logical, intent(inout) :: needed(:)              !< (N) all true afterwards
 
     needed = .true.
   end subroutine mark_links
 
-  !> Or for any coordinate.
+  !> The procedure may use any coordinate.
   pure subroutine mark_coordinates(self, needed)
     class(procedure_load_type), intent(in) :: self   !< the procedure load
-    logical, intent(inout) :: needed(:)
+    logical, intent(inout) :: needed(:)              !< (M) all true afterwards
 
     needed = .true.
   end subroutine mark_coordinates
 
+  !> Call the procedure, which adds its forces. Fails where none is linked, or its numbers are of no use.
   subroutine apply(self, state, sum, err)
-    class(procedure_load_type), intent(in) :: self   !< the procedure load
-    type(motion_view_type), intent(in) :: state
-    type(force_sum_type), intent(inout) :: sum
+    class(procedure_load_type), intent(in) :: self      !< the procedure load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call user_force(state%t, state, self%parameters, sum)
@@ -63,8 +65,8 @@ contains
 
   !> Fails where the procedure gave a number that no link or coordinate has.
   pure subroutine must_exist(self, fault, err)
-    class(procedure_load_type), intent(in) :: self   !< the procedure load
-    type(call_fault_type), intent(in) :: fault                !< what was noted during the call
+    class(procedure_load_type), intent(in) :: self        !< the procedure load
+    type(call_fault_type), intent(in) :: fault            !< a wrong number that was noted during the call, or none
     type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
 
     if (.not. fault%found) return
@@ -73,10 +75,10 @@ contains
                to_text(fault%greatest)//'; correct the number in the procedure', self%place)
   end subroutine must_exist
 
-  !> None is known: its work counts as put in.
+  !> Zero: the work of the procedure counts as put in.
   pure real(wp) function potential(self, state)
     class(procedure_load_type), intent(in) :: self   !< the procedure load
-    type(motion_view_type), intent(in) :: state
+    type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
 
     potential = 0.0_wp
   end function potential

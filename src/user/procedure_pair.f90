@@ -16,8 +16,9 @@ module mech9_procedure_pair
   private
   public :: procedure_pair_type, make_procedure_pair
 
+  !> A pair by a user's procedure.
   type, extends(pair_type) :: procedure_pair_type
-    real(wp), allocatable :: parameters(:)   !< handed to the user's procedure
+    real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
     logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
   contains
     procedure :: evaluate
@@ -30,9 +31,9 @@ contains
 
   !> Make the pair and find out which form of procedure is linked. Fails where none is.
   subroutine make_procedure_pair(coordinate, parameters, pair, err)
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: parameters(:)
-    type(procedure_pair_type), intent(out) :: pair
+    integer, intent(in) :: coordinate                   !< number of the pair and its coordinate
+    real(wp), intent(in) :: parameters(:)               !< numbers for the user's procedure
+    type(procedure_pair_type), intent(out) :: pair      !< the pair, without its links
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: r1(3), r2(3), r3(3)
     real(wp) :: v1(3), v2(3), v3(3)
@@ -49,16 +50,18 @@ contains
                  'see docs/user-procedures.md for how to write user_pair and link it')
   end subroutine make_procedure_pair
 
+  !> Whether a number is the answer of a default procedure.
   elemental logical function is_missing(x)
-    real(wp), intent(in) :: x
+    real(wp), intent(in) :: x   !< a number from a user's procedure
 
     is_missing = x <= not_linked
   end function is_missing
 
+  !> The motion from the procedure's three points. Fails where they are not finite, or lie on one line.
   subroutine evaluate(self, q, motion, err)
-    class(procedure_pair_type), intent(in) :: self   !< the procedure pair
-    real(wp), intent(in) :: q
-    type(pair_motion_type), intent(out) :: motion
+    class(procedure_pair_type), intent(in) :: self      !< the procedure pair
+    real(wp), intent(in) :: q                           !< value of the coordinate, in the user's unit
+    type(pair_motion_type), intent(out) :: motion       !< pose of the moving link and its derivatives in q
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: r(3, 3)
     type(pose_type) :: pose
@@ -84,10 +87,10 @@ contains
     call motion_from_points(r, motion)
   end subroutine evaluate
 
-  !> (3)-(6) carried with two derivatives, and the screw of the motion from them.
+  !> The pose by (3)-(6) with two derivatives in q, and the angular rates from them.
   pure subroutine motion_from_points(r, motion)
-    type(taylor), intent(in) :: r(3, 3)   !< the three points by columns
-    type(pair_motion_type), intent(out) :: motion
+    type(taylor), intent(in) :: r(3, 3)             !< the three points by columns, with derivatives in q [m]
+    type(pair_motion_type), intent(out) :: motion   !< pose of the moving link and its derivatives in q
     type(taylor) :: d(3), f(3), e(3, 3)
     real(wp) :: a(3, 3), a_first(3, 3), a_second(3, 3)
 
@@ -95,7 +98,7 @@ contains
     f = r(:, 3) - r(:, 1)
     e(:, 1) = unit_taylor(d)
     e(:, 2) = unit_taylor(cross_taylor(d, f))
-    ! close to one line the product stands across d to few digits only
+    ! for points close to one line the product is perpendicular to d to few digits only
     e(:, 2) = unit_taylor(e(:, 2) - dot_taylor(e(:, 2), e(:, 1))*e(:, 1))
     e(:, 3) = cross_taylor(e(:, 1), e(:, 2))
     ! plain copies: gfortran 12 takes wrong strides in matmul with the transpose of a component of an array
@@ -110,8 +113,10 @@ contains
     motion%v_rate = r(:, 1)%second
   end subroutine motion_from_points
 
+  !> Vector product a x b.
   pure function cross_taylor(a, b) result(c)
-    type(taylor), intent(in) :: a(3), b(3)
+    type(taylor), intent(in) :: a(3)   !< left factor
+    type(taylor), intent(in) :: b(3)   !< right factor
     type(taylor) :: c(3)
 
     c(1) = a(2)*b(3) - a(3)*b(2)
@@ -119,26 +124,29 @@ contains
     c(3) = a(1)*b(2) - a(2)*b(1)
   end function cross_taylor
 
+  !> Scalar product of two vectors.
   pure type(taylor) function dot_taylor(a, b)
-    type(taylor), intent(in) :: a(3), b(3)
+    type(taylor), intent(in) :: a(3)   !< one vector
+    type(taylor), intent(in) :: b(3)   !< the other vector
 
     dot_taylor = a(1)*b(1) + a(2)*b(2) + a(3)*b(3)
   end function dot_taylor
 
+  !> The vector at length one.
   pure function unit_taylor(a) result(e)
-    type(taylor), intent(in) :: a(3)
+    type(taylor), intent(in) :: a(3)   !< a vector that is not zero
     type(taylor) :: e(3)
 
     e = a/sqrt(dot_taylor(a, a))
   end function unit_taylor
 
-  !> Points and their derivatives from the form in plain reals: the widest stencil that is at
-  !> round-off is taken, or the best of all. `ok` is false where no stencil has finite values.
+  !> Points and their derivatives from the form in plain reals. The widest stencil whose error is
+  !> round-off is taken, or else the one with the least error. `ok` is false where no stencil has finite values.
   subroutine differentiate(self, q, r, ok)
     type(procedure_pair_type), intent(in) :: self   !< the procedure pair
-    real(wp), intent(in) :: q
-    type(taylor), intent(out) :: r(3, 3)
-    logical, intent(out) :: ok
+    real(wp), intent(in) :: q                       !< value of the coordinate, in the user's unit
+    type(taylor), intent(out) :: r(3, 3)            !< the three points by columns, with derivatives in q [m]
+    logical, intent(out) :: ok                      !< whether there are finite values
     real(wp) :: values(-half_width:half_width, 3, 3), h, worst, best
     type(taylor) :: trial(3, 3)
     integer :: number, i
@@ -156,7 +164,7 @@ contains
         best = worst
         r = trial
       end if
-      ! good enough, or truncation is below round-off, which only grows as steps get narrower
+      ! the error is small, or mere round-off, which only grows as stencils get narrower
       if (worst <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))) exit
     end do
     ok = best < huge(best)
@@ -164,9 +172,10 @@ contains
 
   !> The three points with derivatives from their values on a stencil, and the worst error estimate.
   pure subroutine points_from_stencil(values, h, r, worst)
-    real(wp), intent(in) :: values(-half_width:half_width, 3, 3), h
-    type(taylor), intent(out) :: r(3, 3)
-    real(wp), intent(out) :: worst
+    real(wp), intent(in) :: values(-half_width:half_width, 3, 3)   !< (stencil, components, points) at q + i h [m]
+    real(wp), intent(in) :: h   !< step of the stencil, in the unit of q
+    type(taylor), intent(out) :: r(3, 3)   !< the three points by columns, with derivatives in q [m]
+    real(wp), intent(out) :: worst   !< greatest estimated error of a second derivative
     real(wp) :: error
     integer :: i, j
 
@@ -180,14 +189,16 @@ contains
     end do
   end subroutine points_from_stencil
 
+  !> A user's pair has no fixed axis that the program knows.
   pure subroutine as_screw(self, factors, is_screw)
-    class(procedure_pair_type), intent(in) :: self   !< the procedure pair
-    type(screw_factors_type), intent(out) :: factors
-    logical, intent(out) :: is_screw
+    class(procedure_pair_type), intent(in) :: self     !< the procedure pair
+    type(screw_factors_type), intent(out) :: factors   !< without meaning
+    logical, intent(out) :: is_screw                   !< false
 
     is_screw = .false.
   end subroutine as_screw
 
+  !> The name of the kind in the data file.
   pure function kind_name(self) result(name)
     class(procedure_pair_type), intent(in) :: self   !< the procedure pair
     character(len=kind_name_length) :: name
@@ -195,6 +206,7 @@ contains
     name = 'user'
   end function kind_name
 
+  !> One call, or those of a whole stencil.
   pure integer function user_calls(self)
     class(procedure_pair_type), intent(in) :: self   !< the procedure pair
 

@@ -1,4 +1,4 @@
-!> What answers where no user's drive in plain real numbers is linked.
+!> The default procedure, which answers where no user's drive in plain real numbers is linked.
 submodule (mech9_user_drive_values) mech9_user_drive_values_default
   use mech9_not_linked, only: not_linked
   implicit none
@@ -6,10 +6,10 @@ submodule (mech9_user_drive_values) mech9_user_drive_values_default
 contains
 
   module subroutine user_drive_values(coordinate, t, parameters, q)
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: parameters(:)
-    real(wp), intent(out) :: q
+    integer, intent(in) :: coordinate       !< unused
+    real(wp), intent(in) :: t               !< unused
+    real(wp), intent(in) :: parameters(:)   !< unused
+    real(wp), intent(out) :: q              !< the sign that no procedure is linked
 
     q = not_linked
   end subroutine user_drive_values

@@ -12,14 +12,14 @@ module mech9_user_force
   interface
     !> Forces, torques and generalized forces at a time and state. Read positions and velocities of
     !> points by `state%position(link, point)` and `state%velocity(link, point)`, directions by
-    !> `state%turned(link, vector)`, coordinates in `state%q` and `state%dq`. Collect by
+    !> `state%turned(link, vector)`, coordinates in `state%q` and `state%dq`. Add forces by
     !> `call loads%add_force(state, link, point, force)`, `call loads%add_torque(link, torque)` and
-    !> `call loads%add_generalized(coordinate, value)`. Lengths in m, angles in rad, fixed axes.
+    !> `call loads%add_generalized(coordinate, value)`. Lengths are in m, angles in rad, and vectors in fixed axes.
     module subroutine user_force(t, state, parameters, loads)
-      real(wp), intent(in) :: t                         !< time [s]
-      type(motion_view_type), intent(in) :: state       !< links and coordinates
-      real(wp), intent(in) :: parameters(:)             !< from the group &user; empty when there is none
-      type(force_sum_type), intent(inout) :: loads      !< to be added to
+      real(wp), intent(in) :: t                      !< time [s]
+      type(motion_view_type), intent(in) :: state    !< links and coordinates
+      real(wp), intent(in) :: parameters(:)          !< from the group &user; empty when there is none
+      type(force_sum_type), intent(inout) :: loads   !< sums to which forces are added
     end subroutine user_force
   end interface
 end module mech9_user_force
