@@ -13,8 +13,8 @@ submodule (mech9_user_pair_values) cam_follower
       real(wp), intent(in) :: phi   !< polar angle on the cam [rad]
       real(wp), intent(out) :: x    !< of the point on the edge [m]
       real(wp), intent(out) :: y    !< of the point on the edge [m]
-      real(wp), intent(out) :: tx   !< of the unit tangent at this point
-      real(wp), intent(out) :: ty   !< of the unit tangent at this point
+      real(wp), intent(out) :: tx   !< of the tangent at this point, not of length one
+      real(wp), intent(out) :: ty   !< of the tangent at this point, not of length one
     end subroutine campt
 
     subroutine camset(rb0, h0, n0)

@@ -1,4 +1,4 @@
-!> The plan: everything about a mechanism that can be decided once, laid out for execution.
+!> The plan holds everything about a mechanism that can be decided once, in a form that is ready for execution.
 !>
 !> Each pair is one *step* from a frame to a new frame; frame 0 belongs to link 1, frame s is reached by step s. A frame sits on
 !> the axis of the pair by which it was reached, with that axis as its z, so that a step with a fixed axis is one constant pose
@@ -6,8 +6,8 @@
 !> and a *closure* says at which pose this frame must be. Steps are grouped in *blocks*: the chains whose closures are solved
 !> together; blocks are executed in order.
 !>
-!> How the frames of a block are placed and moved is the affair of an *arithmetic*, in space or in a plane; which equations a
-!> chain must satisfy is that of a *constraint*. Both are abstract here.
+!> An *arithmetic*, in space or in a plane, computes the poses and velocities of the frames of a block; a *constraint* gives
+!> the equations that a chain must satisfy. Both are abstract here.
 module mech9_plan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -22,14 +22,14 @@ module mech9_plan
 
   !> One step: from frame `parent` through pair `coordinate` to the frame of the step's own number.
   type :: step_type
-    integer :: parent = 0
-    integer :: coordinate = 0
-    integer :: link = 0             !< whose frame, or second frame, is reached
+    integer :: parent = 0           !< frame from which the step leads
+    integer :: coordinate = 0       !< number of the pair and its coordinate
+    integer :: link = 0             !< number of the link whose frame, or second frame, is reached
     integer :: chain = 0            !< number of its chain among all chains of the structural vectors
-    logical :: reversed = .false.   !< run through against the pair's own direction
-    logical :: is_screw = .true.    !< fixed axis; otherwise plan%pairs(coordinate) gives its motion
-    logical :: dependent = .true.
-    type(pose_type) :: before       !< axis frame (user pair: departing link) in the parent frame
+    logical :: reversed = .false.   !< the step leads from the moving link of the pair to its reference link
+    logical :: is_screw = .true.    !< the axis is fixed; otherwise plan%pairs(coordinate) gives the motion
+    logical :: dependent = .true.   !< the coordinate is dependent
+    type(pose_type) :: before       !< pose of the axis (of the link before a user pair) in the parent frame
     real(wp) :: turn = 0.0_wp       !< rotation about z per unit of q, sign by direction
     real(wp) :: slide = 0.0_wp      !< advance along z per unit of q, sign by direction
     real(wp) :: offset = 0.0_wp     !< added to q [rad, m]
@@ -37,45 +37,45 @@ module mech9_plan
 
   !> Steps of a loop, in ascending order.
   type :: loop_type
-    integer, allocatable :: steps(:)
-    real(wp), allocatable :: signs(:)   !< +1 towards the closing frame, -1 towards the target
+    integer, allocatable :: steps(:)    !< their numbers
+    real(wp), allocatable :: signs(:)   !< +1 for a step towards the closing frame, -1 for one towards the target
     !> Frames from which these steps lead to the closing frame and to the target; the same in a whole loop.
     integer :: stems(2) = 0
   end type loop_type
 
   !> A closed chain: frame `closing` coincides with `in_target` of frame `target`.
   type :: closure_type
-    integer :: chain = 0              !< number of the closed chain, as in nrw
-    integer :: closing = 0            !< the frame made by the chain's last step
-    integer :: target = 0             !< the other frame of that link
-    type(pose_type) :: in_target      !< pose that the closing frame must have in the target frame
-    integer :: base = 0               !< frame in which the loop starts: nearest common to both ends
-    integer :: rank = 6               !< dimension of the space of motions of the loop: its equations
-    !> How many of the equations are independent while the loop moves: fewer where it is overconstrained.
+    integer :: chain = 0           !< number of the closed chain, as in nrw
+    integer :: closing = 0         !< the frame made by the chain's last step
+    integer :: target = 0          !< the other frame of that link
+    type(pose_type) :: in_target   !< pose that the closing frame must have in the target frame
+    integer :: base = 0            !< frame in which the loop starts, the last that the paths to both ends have in common
+    integer :: rank = 6            !< number of equations, the dimension of the space of motions of the loop
+    !> Number of equations that are independent while the loop moves; less than `rank` where it is overconstrained.
     integer :: offers = 6
-    !> Rows that pick the independent equations out of a screw (w, v/length) at the base frame's origin,
+    !> Rows that select the equations from a screw (w, v/length) at the base frame's origin,
     !> in its axes: orthonormal, constant. Only the first `rank` count.
     real(wp) :: rows(6, 6) = 0.0_wp
-    type(loop_type) :: loop           !< from the base frame
-    type(loop_type) :: part           !< its steps in the block that solves it
+    type(loop_type) :: loop   !< from the base frame
+    type(loop_type) :: part   !< its steps in the block that solves it
   end type closure_type
 
   !> Chains that are solved together (or pieces of open chains: no closures). A step belongs to the
-  !> block that determines its coordinate, an independent one to the first block that needs it.
+  !> block that determines its coordinate, one with an independent coordinate to the first block that needs it.
   type :: block_type
-    integer :: first_step = 0, last_step = 0
-    integer :: last_moved = huge(1)            !< accelerations of later frames serve only the block itself
-    integer :: first_closure = 1, last_closure = 0   !< also its constraints
-    integer, allocatable :: chains(:)          !< numbers of its closed chains, as in nrw
-    integer :: equations = 0                   !< sum of the constraints'
-    integer :: arithmetic = 1                  !< place among the plan's arithmetics
-    logical :: whole_loops = .false.           !< all coordinates of the loops are unknowns, also those of earlier blocks
-    logical :: is_constant = .false.           !< its Jacobian: nothing turns in its loops
-    integer, allocatable :: unknowns(:)        !< steps of its dependent coordinates
-    integer, allocatable :: coordinates(:)     !< these themselves
+    integer :: first_step = 0, last_step = 0         !< its steps
+    integer :: last_moved = huge(1)                  !< last frame whose acceleration is used outside the block
+    integer :: first_closure = 1, last_closure = 0   !< its closures, which are also its constraints
+    integer, allocatable :: chains(:)                !< numbers of its closed chains, as in nrw
+    integer :: equations = 0                         !< number of equations of its constraints
+    integer :: arithmetic = 1                        !< number among the plan's arithmetics
+    logical :: whole_loops = .false.                 !< all coordinates of the loops are unknowns, also those of earlier blocks
+    logical :: is_constant = .false.                 !< its Jacobian is constant, because nothing turns in its loops
+    integer, allocatable :: unknowns(:)              !< steps of its dependent coordinates
+    integer, allocatable :: coordinates(:)           !< its dependent coordinates, in the order of `unknowns`
   end type block_type
 
-  !> How the frames of a block are placed and moved. It has no data of its own.
+  !> An arithmetic for the poses, velocities and accelerations of the frames of a block. It has no data of its own.
   type, abstract :: arithmetic_type
   contains
     procedure(frames_maker), deferred, nopass :: make_frames
@@ -93,9 +93,9 @@ module mech9_plan
     class(arithmetic_type), allocatable :: kind
   end type arithmetic_slot_type
 
-  !> Equations that the coordinates must satisfy: rotations in rad, translations in lengths of the mechanism.
+  !> Equations that the coordinates must satisfy; residuals are in rad for rotations, in parts of plan%length for translations.
   type, abstract :: constraint_type
-    integer :: equations = 0
+    integer :: equations = 0   !< their number
   contains
     procedure(residual_of), deferred :: residual
     procedure(jacobian_of), deferred :: jacobian
@@ -109,24 +109,25 @@ module mech9_plan
     class(constraint_type), allocatable :: item
   end type constraint_slot_type
 
+  !> The plan of a mechanism.
   type :: plan_type
-    integer :: n_links = 0
-    integer :: n_coordinates = 0
-    real(wp) :: length = 1.0_wp                     !< the mechanism's size [m]; weighs rotations against lengths
-    real(wp) :: data_tolerance = 0.0_wp             !< redundant equations may stay open by this: rad, parts of `length`
-    real(wp) :: origin(3) = 0.0_wp                  !< of frame 0 in link 1 [m]
-    type(step_type), allocatable :: steps(:)
-    type(closure_type), allocatable :: closures(:)
+    integer :: n_links = 0                          !< N
+    integer :: n_coordinates = 0                    !< M
+    real(wp) :: length = 1.0_wp                     !< the mechanism's size [m], by which translations are divided
+    real(wp) :: data_tolerance = 0.0_wp             !< allowed residual of redundant equations: rad, parts of `length`
+    real(wp) :: origin(3) = 0.0_wp                  !< origin of frame 0 in link 1 [m]
+    type(step_type), allocatable :: steps(:)        !< (M)
+    type(closure_type), allocatable :: closures(:)  !< in the order of blocks
     type(constraint_slot_type), allocatable :: constraints(:)   !< constraint c is that of closure c
     type(arithmetic_slot_type), allocatable :: arithmetics(:)   !< all that blocks use; links are read by the first
-    type(block_type), allocatable :: blocks(:)
+    type(block_type), allocatable :: blocks(:)      !< in the order of execution
     integer, allocatable :: step_of(:)              !< step of each coordinate
     integer, allocatable :: frame_of(:)             !< first frame of each link
     type(pose_type), allocatable :: link_in_frame(:)  !< each link's own system in its first frame
     real(wp), allocatable :: unit_of(:)             !< unit of each coordinate: 1 rad, or `length`
     integer, allocatable :: independent(:)          !< coordinates, ascending
-    type(pair_slot_type), allocatable :: pairs(:)   !< only those without a fixed axis are set
-    type(planar_plan_type) :: planar                !< the same in planar arithmetic, if that can be used
+    type(pair_slot_type), allocatable :: pairs(:)   !< (M) only pairs without a fixed axis are set
+    type(planar_plan_type) :: planar                !< the plan in planar arithmetic, if that can be used
   end type plan_type
 
   abstract interface
@@ -134,135 +135,136 @@ module mech9_plan
     !> Room in a state for frames 0 .. m, all in the place of frame 0 and at rest.
     pure subroutine frames_maker(m, state)
       import :: state_type
-      integer, intent(in) :: m                      !< steps
-      type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+      integer, intent(in) :: m                   !< steps
+      type(state_type), intent(inout) :: state   !< gets room for the frames
     end subroutine frames_maker
 
     !> Poses of frames and the screws of their steps, from the coordinates in `state`. The frames that they start from must
     !> be in place. Fails only where a user pair has no pose.
     subroutine placing(plan, first, last, state, err)
       import :: plan_type, state_type, error_type
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      integer, intent(in) :: first                  !< frames from this one
-      integer, intent(in) :: last                   !< to this one
-      type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+      type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+      integer, intent(in) :: first                        !< frames from this one
+      integer, intent(in) :: last                         !< to this one
+      type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of these frames out
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine placing
 
-    !> The same after a small change of the coordinates of some steps: their angles are turned on, not computed anew.
+    !> Poses of frames after a small change of the coordinates of some steps. The cosines and sines of their angles are
+    !> corrected to second order and not computed anew.
     subroutine nudging(plan, first, last, changed, change, state, err)
       import :: plan_type, state_type, error_type, wp
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      integer, intent(in) :: first                  !< frames from this one
-      integer, intent(in) :: last                   !< to this one
-      integer, intent(in) :: changed(:)             !< steps
-      real(wp), intent(in) :: change(:)             !< of their coordinates, in units of these
-      type(state_type), intent(inout) :: state      !< its coordinates are changed already
+      type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+      integer, intent(in) :: first                        !< frames from this one
+      integer, intent(in) :: last                         !< to this one
+      integer, intent(in) :: changed(:)                   !< steps
+      real(wp), intent(in) :: change(:)                   !< of their coordinates, in units of these
+      type(state_type), intent(inout) :: state            !< its coordinates are changed already
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine nudging
 
     !> Velocities, or accelerations, of frames from those of the coordinates in `state`.
     pure subroutine spreading(plan, first, last, state)
       import :: plan_type, state_type
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      integer, intent(in) :: first                  !< frames from this one
-      integer, intent(in) :: last                   !< to this one
-      type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+      type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+      integer, intent(in) :: first               !< frames from this one
+      integer, intent(in) :: last                !< to this one
+      type(state_type), intent(inout) :: state   !< coordinates and their rates in; the motion of these frames out
     end subroutine spreading
 
     !> A link's own system, its angular velocity and the velocity of its origin, in the system of link 1.
     pure subroutine link_reader(plan, state, link, r, p, omega, v)
       import :: plan_type, state_type, wp
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      type(state_type), intent(in) :: state   !< position and motion of the mechanism
-      integer, intent(in) :: link
-      real(wp), intent(out) :: r(3, 3)              !< rotation
-      real(wp), intent(out) :: p(3)                 !< origin [m]
-      real(wp), intent(out) :: omega(3)             !< [rad/s]
-      real(wp), intent(out) :: v(3)                 !< of the origin [m/s]
+      type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+      type(state_type), intent(in) :: state   !< with the motion of the frames
+      integer, intent(in) :: link             !< number of the link
+      real(wp), intent(out) :: r(3, 3)        !< rotation
+      real(wp), intent(out) :: p(3)           !< origin [m]
+      real(wp), intent(out) :: omega(3)       !< [rad/s]
+      real(wp), intent(out) :: v(3)           !< of the origin [m/s]
     end subroutine link_reader
 
     !> Position, velocity and acceleration of a point of a link, in the system of link 1.
     pure subroutine point_reader(plan, state, link, place, position, velocity, acceleration)
       import :: plan_type, state_type, wp
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      type(state_type), intent(in) :: state   !< position and motion of the mechanism
-      integer, intent(in) :: link
-      real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
-      real(wp), intent(out) :: position(3)          !< [m]
-      real(wp), intent(out), optional :: velocity(3)      !< [m/s]
-      real(wp), intent(out), optional :: acceleration(3)  !< [m/s^2]
+      type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
+      type(state_type), intent(in) :: state                !< with the motion of the frames
+      integer, intent(in) :: link                          !< number of the link
+      real(wp), intent(in) :: place(3)                     !< of the point, in the link's own system [m]
+      real(wp), intent(out) :: position(3)                 !< [m]
+      real(wp), intent(out), optional :: velocity(3)       !< [m/s]
+      real(wp), intent(out), optional :: acceleration(3)   !< [m/s^2]
     end subroutine point_reader
 
-    !> The angular velocity and the velocity of the new frame's origin that a step gives per unit rate, and that origin; in
-    !> the axes of frame 0, from its origin.
+    !> The angular velocity and the velocity of the new frame's origin that a step gives per unit rate, and the position of
+    !> this origin, in the axes of frame 0, from its origin.
     pure subroutine screw_reader(plan, state, s, w, v, place)
       import :: plan_type, state_type, wp
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      type(state_type), intent(in) :: state   !< position and motion of the mechanism
-      integer, intent(in) :: s                      !< step
-      real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
-      real(wp), intent(out) :: v(3)                 !< [m per unit of q]
-      real(wp), intent(out) :: place(3)             !< [m]
+      type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+      type(state_type), intent(in) :: state   !< with the motion of the frames
+      integer, intent(in) :: s                !< step
+      real(wp), intent(out) :: w(3)           !< [rad per unit of q]
+      real(wp), intent(out) :: v(3)           !< [m per unit of q]
+      real(wp), intent(out) :: place(3)       !< [m]
     end subroutine screw_reader
 
-    !> By how much the equations are not satisfied at the position in `state`.
+    !> The residual of the equations at the position in `state`: rad, parts of plan%length.
     pure subroutine residual_of(self, plan, state, values)
       import :: constraint_type, plan_type, state_type, wp
-      class(constraint_type), intent(in) :: self   !< the constraint
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      type(state_type), intent(in) :: state   !< position and motion of the mechanism
-      real(wp), intent(out), contiguous :: values(:)        !< (equations)
+      class(constraint_type), intent(in) :: self       !< the constraint
+      type(plan_type), intent(in) :: plan              !< the plan of the mechanism
+      type(state_type), intent(in) :: state            !< with the position of the frames
+      real(wp), intent(out), contiguous :: values(:)   !< (equations)
     end subroutine residual_of
 
     !> Derivatives of the equations with respect to the coordinates of steps of a loop, each in its unit, into the rows from
     !> `row` + 1 on. Columns of other coordinates are left as they are.
     pure subroutine jacobian_of(self, plan, loop, first, column_of, state, row, matrix)
       import :: constraint_type, plan_type, loop_type, state_type, wp
-      class(constraint_type), intent(in) :: self   !< the constraint
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+      class(constraint_type), intent(in) :: self            !< the constraint
+      type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       type(loop_type), intent(in) :: loop                   !< the steps
       integer, intent(in) :: first                          !< earlier steps are left out
       integer, intent(in), contiguous :: column_of(:)       !< column of step `first` and each later one; 0: none
-      type(state_type), intent(in) :: state   !< position and motion of the mechanism
-      integer, intent(in) :: row
-      real(wp), intent(inout), contiguous :: matrix(:, :)
+      type(state_type), intent(in) :: state                 !< with the position of the frames
+      integer, intent(in) :: row                            !< number of rows of `matrix` before those of this constraint
+      real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of all constraints of the block
     end subroutine jacobian_of
 
     !> Derivatives of the equations with respect to the coordinate of one step, in its unit.
     pure subroutine column_of_step(self, plan, s, sign, state, values)
       import :: constraint_type, plan_type, state_type, wp
-      class(constraint_type), intent(in) :: self   !< the constraint
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      integer, intent(in) :: s                              !< step
-      real(wp), intent(in) :: sign                          !< of the step in the loop
-      type(state_type), intent(in) :: state   !< position and motion of the mechanism
-      real(wp), intent(out), contiguous :: values(:)        !< (equations)
+      class(constraint_type), intent(in) :: self       !< the constraint
+      type(plan_type), intent(in) :: plan              !< the plan of the mechanism
+      integer, intent(in) :: s                         !< step
+      real(wp), intent(in) :: sign                     !< of the step in the loop
+      type(state_type), intent(in) :: state            !< with the position of the frames
+      real(wp), intent(out), contiguous :: values(:)   !< (equations)
     end subroutine column_of_step
 
     !> First or second time derivatives of the residual at the rates, or rates and accelerations, in `state`.
     pure subroutine rates_of(self, plan, order, state, values)
       import :: constraint_type, plan_type, state_type, wp
-      class(constraint_type), intent(in) :: self   !< the constraint
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      integer, intent(in) :: order                          !< 1 or 2
-      type(state_type), intent(in) :: state   !< position and motion of the mechanism
-      real(wp), intent(out), contiguous :: values(:)        !< (equations)
+      class(constraint_type), intent(in) :: self       !< the constraint
+      type(plan_type), intent(in) :: plan              !< the plan of the mechanism
+      integer, intent(in) :: order                     !< 1 or 2
+      type(state_type), intent(in) :: state            !< with the velocities, or velocities and accelerations, of the frames
+      real(wp), intent(out), contiguous :: values(:)   !< (equations)
     end subroutine rates_of
 
-    !> How far the constraint is from satisfied, redundant equations included: a length [m], rotations times the
+    !> The residual of all equations, redundant ones included, as a length [m]; rotations are multiplied by the
     !> mechanism's size.
     pure real(wp) function gap_of(self, plan, state)
       import :: constraint_type, plan_type, state_type, wp
       class(constraint_type), intent(in) :: self   !< the constraint
-      type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-      type(state_type), intent(in) :: state   !< position and motion of the mechanism
+      type(plan_type), intent(in) :: plan          !< the plan of the mechanism
+      type(state_type), intent(in) :: state        !< with the position of the frames
     end function gap_of
   end interface
 
 contains
 
-  !> A state with room for all frames of a plan, everything zero and nothing known.
+  !> A state with room for all frames of a plan; all its numbers are zero, and nothing is known.
   pure function new_state(plan) result(state)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type) :: state

@@ -1,4 +1,4 @@
-!> What of a motion is asked for, and what need not be worked out for it.
+!> The coordinates and links whose motion is requested, and the blocks of a plan that can be left out.
 module mech9_requested
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
@@ -6,19 +6,20 @@ module mech9_requested
   private
   public :: requested_type, requested_by_results, add_forces, needed_blocks, leave_out, stay_with
 
-  !> What is asked for.
+  !> The requested part of the motion.
   type :: requested_type
-    logical, allocatable :: coordinates(:)   !< (M)
-    logical, allocatable :: links(:)         !< (N) those whose motion is asked for
-    integer :: derivatives = 2               !< in time, at most
+    logical, allocatable :: coordinates(:)   !< (M) coordinates that are requested
+    logical, allocatable :: links(:)         !< (N) links whose motion is requested
+    integer :: derivatives = 2               !< order of the highest derivative in time that is requested
   end type requested_type
 
 contains
 
-  !> What the results of a run show: all, unless the data file asks for less.
+  !> The motion that the results of a run show: of all coordinates, unless the data file lists some; of links with points,
+  !> or of all.
   pure function requested_by_results(mechanism, pictures) result(requested)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    logical, intent(in), optional :: pictures   !< of the mechanism are wanted: they show all links; not unless given
+    logical, intent(in), optional :: pictures       !< there are pictures, which show all links; .false. unless given
     type(requested_type) :: requested
     logical :: whole
 
@@ -30,10 +31,11 @@ contains
     requested%derivatives = merge(2, mechanism%output%derivatives, whole)
   end function requested_by_results
 
-  !> What else the equations of motion ask for: links with mass, and whatever loads depend on.
+  !> Request the motion that the equations of motion need: of links with mass, and of all links and coordinates that loads
+  !> depend on.
   pure subroutine add_forces(mechanism, requested)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(requested_type), intent(inout) :: requested
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(requested_type), intent(inout) :: requested   !< the requested coordinates and links
     integer :: i
 
     do i = 1, size(mechanism%bodies)
@@ -46,10 +48,10 @@ contains
     end do
   end subroutine add_forces
 
-  !> The blocks on which something that is asked for depends.
+  !> The blocks on which a requested coordinate or link depends.
   pure function needed_blocks(plan, requested) result(needed)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(requested_type), intent(in) :: requested   !< the requested coordinates and links
     logical :: needed(size(plan%blocks))
     logical :: frames(0:plan%n_coordinates)
     integer :: b
@@ -63,11 +65,11 @@ contains
     end do
   end function needed_blocks
 
-  !> Leave out the blocks on which nothing depends that is asked for, and accelerations of frames that only serve their
-  !> own block. The chains of such blocks are not followed: whether they could go on is not noticed.
+  !> Leave out the blocks on which no requested coordinate or link depends, and the accelerations of frames that are used
+  !> in their own block only. The chains of blocks left out are not computed, so that their singular positions go unnoticed.
   pure subroutine leave_out(plan, requested)
-    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested
+    type(plan_type), intent(inout) :: plan          !< the plan of the mechanism
+    type(requested_type), intent(in) :: requested   !< the requested coordinates and links
     type(block_type), allocatable :: blocks(:)
     logical :: needed(size(plan%blocks)), frames(0:plan%n_coordinates)
     integer :: b, n
@@ -94,11 +96,11 @@ contains
     end do
   end subroutine leave_out
 
-  !> What a plan follows is asked for from now on, whatever coordinates become independent: were a chain left out
-  !> for a while, its position would not be known when another plan needs it.
+  !> Request from now on all coordinates that a plan computes. When other coordinates become independent, another plan may
+  !> need the position of a chain, which would be unknown if the chain had been left out before.
   pure subroutine stay_with(plan, requested)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(requested_type), intent(inout) :: requested
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(requested_type), intent(inout) :: requested   !< the requested coordinates and links
     integer :: b
 
     requested%coordinates(plan%independent) = .true.
@@ -107,11 +109,11 @@ contains
     end do
   end subroutine stay_with
 
-  !> The frames of some links.
+  !> Mark the frames of some links.
   pure subroutine mark_links(plan, links, frames)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    logical, intent(in) :: links(:)
-    logical, intent(out) :: frames(0:)
+    logical, intent(in) :: links(:)       !< (N) links whose frames are marked
+    logical, intent(out) :: frames(0:)    !< (0:M) the frames of these links
     integer :: i
 
     frames = .false.
@@ -120,11 +122,11 @@ contains
     end do
   end subroutine mark_links
 
-  !> The frames of earlier blocks on which a block stands.
+  !> Mark the frames of earlier blocks from which those of a block are computed.
   pure subroutine mark_departures(plan, block, frames)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
-    logical, intent(inout) :: frames(0:)
+    logical, intent(inout) :: frames(0:)    !< (0:M) becomes true for frames of earlier blocks that the block uses
     integer :: s, c
 
     do s = block%first_step, block%last_step

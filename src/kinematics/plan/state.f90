@@ -5,7 +5,7 @@ module mech9_state
   private
   public :: state_type, planar_motion_type, nothing_known, position_known, velocity_known, acceleration_known
 
-  !> How far a state is worked out.
+  !> Stages of a state: the quantities that belong to its present coordinates.
   integer, parameter :: nothing_known = 0
   integer, parameter :: position_known = 1
   integer, parameter :: velocity_known = 2
@@ -15,30 +15,30 @@ module mech9_state
   !> velocity is the angular velocity about the normal and the velocity of the frame's origin, and accelerations alike.
   type :: planar_motion_type
     real(wp), allocatable :: pose(:, :)           !< (4,0:M) cosine, sine, x, y [m]
-    real(wp), allocatable :: angle(:)             !< (M) that each step turns by [rad]
+    real(wp), allocatable :: angle(:)             !< (M) angle by which each step turns [rad]
     real(wp), allocatable :: turn(:, :)           !< (2,M) its cosine and sine
     real(wp), allocatable :: slide(:, :)          !< (2,M) velocity of the new origin per unit rate
     real(wp), allocatable :: velocity(:, :)       !< (3,0:M) [rad/s, m/s]
     real(wp), allocatable :: acceleration(:, :)   !< (3,0:M) [rad/s^2, m/s^2]
   end type planar_motion_type
 
-  !> All vectors in the axes of frame 0; positions from its origin. Index: the frame, or the step that
-  !> made it. `known` says which of the quantities below belong to the coordinates. In planar arithmetic
-  !> the motion of the frames is in `planar` only, and those of space are not allocated.
+  !> The state of motion. All vectors are in the axes of frame 0, positions from its origin. The last index is the number
+  !> of the frame, or of the step that made it. In planar arithmetic
+  !> the motion of the frames is in `planar` only, and the arrays for space are not allocated.
   type :: state_type
-    real(wp) :: t = 0.0_wp                       !< [s]
-    integer :: known = nothing_known
-    real(wp), allocatable :: q(:)                !< coordinates [rad, m]
-    real(wp), allocatable :: dq(:)               !< rates
-    real(wp), allocatable :: ddq(:)              !< accelerations
-    real(wp), allocatable :: angle(:)            !< (M) that each step turns by [rad]
+    real(wp) :: t = 0.0_wp                       !< time [s]
+    integer :: known = nothing_known             !< stage: the quantities that belong to the present coordinates
+    real(wp), allocatable :: q(:)                !< (M) coordinates [rad, m]
+    real(wp), allocatable :: dq(:)               !< (M) rates [rad/s, m/s]
+    real(wp), allocatable :: ddq(:)              !< (M) accelerations [rad/s^2, m/s^2]
+    real(wp), allocatable :: angle(:)            !< (M) angle by which each step turns [rad]
     real(wp), allocatable :: turn(:, :)          !< (2,M) its cosine and sine
     real(wp), allocatable :: r(:, :, :)          !< (3,3,0:M) rotation of each frame
     real(wp), allocatable :: p(:, :)             !< (3,0:M) origin of each frame [m]
     real(wp), allocatable :: axis_w(:, :)        !< (3,M) angular velocity that each step gives per unit rate
     real(wp), allocatable :: axis_v(:, :)        !< (3,M) velocity of the new origin per unit rate
-    real(wp), allocatable :: axis_w_rate(:, :)   !< (3,M) derivatives of both in q, at fixed departing link;
-    real(wp), allocatable :: axis_v_rate(:, :)   !<       zero but for user pairs
+    real(wp), allocatable :: axis_w_rate(:, :)   !< (3,M) derivative of axis_w in q, with the parent frame fixed
+    real(wp), allocatable :: axis_v_rate(:, :)   !< (3,M) that of axis_v; both are zero but for user pairs
     real(wp), allocatable :: omega(:, :)         !< (3,0:M) angular velocity [rad/s]
     real(wp), allocatable :: v(:, :)             !< (3,0:M) velocity of the origin [m/s]
     real(wp), allocatable :: alpha(:, :)         !< (3,0:M) angular acceleration [rad/s^2]

@@ -1,4 +1,5 @@
-!> Paths in the spanning tree of the steps: frames are numbered outwards, so that the larger of two numbers steps back.
+!> Paths in the spanning tree of the steps. Frames are numbered outwards: walking back to a common frame starts from the
+!> frame with the larger number.
 module mech9_tree_paths
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type, step_type, closure_type, block_type, loop_type
@@ -10,8 +11,8 @@ contains
 
   !> The whole loop of a closure, and its base: both ends are walked back until they meet.
   pure subroutine find_loop(steps, closure)
-    type(step_type), intent(in) :: steps(:)         !< (M)
-    type(closure_type), intent(inout) :: closure    !< its frames `closing` and `target` are set
+    type(step_type), intent(in) :: steps(:)        !< (M)
+    type(closure_type), intent(inout) :: closure   !< its frames `closing` and `target` are set
     integer :: n
 
     n = 0
@@ -25,10 +26,10 @@ contains
   !> Walk both ends of a loop back until they meet in its base, counting the steps, and on a second walk writing them down
   !> from the base outwards.
   pure subroutine walk_back(steps, closure, n, loop)
-    type(step_type), intent(in) :: steps(:)         !< (M)
-    type(closure_type), intent(inout) :: closure    !< gets its base
-    integer, intent(inout) :: n                     !< steps of the loop
-    type(loop_type), intent(inout), optional :: loop  !< of n steps
+    type(step_type), intent(in) :: steps(:)            !< (M)
+    type(closure_type), intent(inout) :: closure       !< gets its base
+    integer, intent(inout) :: n                        !< steps of the loop
+    type(loop_type), intent(inout), optional :: loop   !< of n steps
     integer :: up, down, taken
 
     up = closure%closing
@@ -50,10 +51,10 @@ contains
     n = taken
   end subroutine walk_back
 
-  !> The parts of the loops that a block's own steps make up; earlier steps are those of other blocks.
+  !> Find the parts of the loops that consist of a block's own steps; earlier steps belong to other blocks.
   pure subroutine split_loops(block, plan)
-    type(block_type), intent(in) :: block   !< the block
-    type(plan_type), intent(inout) :: plan          !< its closures get their parts
+    type(block_type), intent(in) :: block    !< the block
+    type(plan_type), intent(inout) :: plan   !< its closures get their parts
     logical, allocatable :: own(:)
     integer :: c
 
@@ -68,12 +69,12 @@ contains
     end do
   end subroutine split_loops
 
-  !> The frame before step `first` from which a frame is reached; not beyond the base of its loop.
+  !> The last frame before step `first` on the path to a frame, but not before the base of its loop.
   pure integer function frame_before(steps, frame, first, base) result(before)
-    type(step_type), intent(in) :: steps(:)         !< (M)
-    integer, intent(in) :: frame
-    integer, intent(in) :: first                    !< step
-    integer, intent(in) :: base                     !< frame
+    type(step_type), intent(in) :: steps(:)   !< (M)
+    integer, intent(in) :: frame              !< number of the frame
+    integer, intent(in) :: first              !< step
+    integer, intent(in) :: base               !< frame
 
     before = frame
     do while (before >= first .and. before /= base)
@@ -81,12 +82,12 @@ contains
     end do
   end function frame_before
 
-  !> Steps between two frames, counted up to `most`.
+  !> Number of steps between two frames, counted up to `most`.
   pure integer function distance_between(steps, frame_a, frame_b, most) result(distance)
-    type(step_type), intent(in) :: steps(:)         !< (M)
-    integer, intent(in) :: frame_a
-    integer, intent(in) :: frame_b
-    integer, intent(in) :: most
+    type(step_type), intent(in) :: steps(:)   !< (M)
+    integer, intent(in) :: frame_a            !< one frame
+    integer, intent(in) :: frame_b            !< the other frame
+    integer, intent(in) :: most               !< the count ends here
     integer :: a, b
 
     a = frame_a
@@ -104,9 +105,9 @@ contains
 
   !> Mark the steps that lead from frame 0 to a frame.
   pure subroutine mark_path(steps, frame, marked)
-    type(step_type), intent(in) :: steps(:)         !< (M)
-    integer, intent(in) :: frame
-    logical, intent(inout) :: marked(:)             !< (M)
+    type(step_type), intent(in) :: steps(:)   !< (M)
+    integer, intent(in) :: frame              !< number of the frame
+    logical, intent(inout) :: marked(:)       !< (M)
     integer :: s
 
     s = frame
