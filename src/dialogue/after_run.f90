@@ -36,7 +36,7 @@ contains
   !> Commands about a finished run are heard and carried out, until one of them asks for more than a look at results.
   subroutine look_back(conversation, kept, earlier, changed, next)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    type(kept_rows_type), intent(in) :: kept                 !< results of the last run; none where it did not come that far
+    type(kept_rows_type), intent(in) :: kept                 !< results of the last run; none where it gave none
     type(kept_rows_type), intent(in) :: earlier              !< results of the run before the last one
     logical, intent(in) :: changed                           !< an answer was changed since the last run, so that Enter runs again
     integer, intent(out) :: next                             !< over, again or changing

@@ -28,7 +28,7 @@ contains
   !> correction.
   subroutine check(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< what the program computes
+    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
     type(question_type) :: question
 
     question = conversation%interview%due()
@@ -62,7 +62,7 @@ contains
   !> The mechanism is assembled at the start, and the user is told the result.
   subroutine judge_start(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< what the program computes
+    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(state_type) :: start

@@ -47,7 +47,7 @@ contains
 
   !> A paragraph is written to the user, indented by two columns.
   subroutine say(self, text)
-    class(conversation_type), intent(in) :: self  !< the conversation
+    class(conversation_type), intent(in) :: self  !< the conversation as it stands
     character(len=*), intent(in) :: text          !< words, any number of lines
 
     call print_paragraph(error_unit, text, 2)
@@ -56,7 +56,7 @@ contains
   !> A prompt is shown, and an answer is heard, without blanks around it. `list` is answered here. `quit` and the end of
   !> the input end the conversation, and the line is then of no use.
   subroutine listen(self, prompt, words, line)
-    class(conversation_type), intent(inout) :: self     !< the conversation
+    class(conversation_type), intent(inout) :: self     !< the conversation as it stands
     character(len=*), intent(in) :: prompt              !< text in front of the answer
     type(string_type), intent(in) :: words(:)           !< words that can be completed
     character(len=:), allocatable, intent(out) :: line  !< the answer, without blanks around it
@@ -92,7 +92,7 @@ contains
 
   !> The answers so far are kept in the file of the draft. If that fails the user is told once.
   subroutine keep(self)
-    class(conversation_type), intent(inout) :: self  !< the conversation
+    class(conversation_type), intent(inout) :: self  !< the conversation as it stands
     type(error_type), allocatable :: err
 
     if (self%cannot_keep) return
@@ -120,7 +120,7 @@ contains
 
   !> The names of files are settled.
   subroutine name_files(self)
-    class(conversation_type), intent(inout) :: self  !< the conversation
+    class(conversation_type), intent(inout) :: self  !< the conversation as it stands
 
     if (self%stem == '') self%stem = stem_of_title(self%interview%draft%value('mechanism', 1, 'title'))
     if (self%data_path == '') self%data_path = self%stem//'.nml'

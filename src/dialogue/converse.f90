@@ -22,7 +22,7 @@ contains
 
   !> A conversation is led, and its decision to save or to run is carried out. `code` is the exit code of the program.
   subroutine converse(task, options, code)
-    class(task_type), intent(in) :: task            !< what the program computes
+    class(task_type), intent(in) :: task            !< computation of the program: kinematics or dynamics
     type(command_line_type), intent(in) :: options  !< options of the command line
     integer, intent(out) :: code                    !< exit code of the program
     type(conversation_type) :: conversation
@@ -47,7 +47,7 @@ contains
   !> The conversation begins: its files are read, and the user is greeted.
   subroutine begin(conversation, task, options, code)
     type(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                    !< what the program computes
+    class(task_type), intent(in) :: task                    !< computation of the program: kinematics or dynamics
     type(command_line_type), intent(in) :: options          !< options of the command line
     integer, intent(out) :: code                            !< exit code of the program
     character(len=:), allocatable :: path, bookmark

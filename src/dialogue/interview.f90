@@ -51,7 +51,7 @@ contains
 
   !> The interview begins with a draft, which is empty or was read from a file.
   pure subroutine start(self, program_name, draft)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     type(draft_type), intent(in) :: draft         !< draft to begin with
 
@@ -71,7 +71,7 @@ contains
 
   !> The question that is due.
   pure type(question_type) function due(self)
-    class(interview_type), intent(in) :: self  !< the interview
+    class(interview_type), intent(in) :: self  !< draft, questions and the question that is due
 
     due = self%questions(self%at)
   end function due
@@ -79,7 +79,7 @@ contains
   !> The structure, groups and questions that follow from the draft are made anew. The question with this label becomes
   !> due; if there is none, the number of the question stays.
   pure subroutine refresh(self, label)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     character(len=*), intent(in) :: label         !< label of the question that is due then; empty: the number of the question stays
     integer :: found
 
@@ -100,7 +100,7 @@ contains
 
   !> Whether the structure has so few parts that a conversation can ask about them one by one.
   pure logical function counts_agree(self)
-    type(interview_type), intent(in) :: self  !< the interview
+    type(interview_type), intent(in) :: self  !< draft, questions and the question that is due
 
     counts_agree = .false.
     if (allocated(self%structure%links)) counts_agree = size(self%structure%links, 2) <= most_parts
@@ -109,7 +109,7 @@ contains
   !> The next question becomes due. During a correction this is the first question that lacks its answer, and after these
   !> the question at which the correction began.
   pure subroutine step(self)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     integer :: i, goal
 
     if (self%return_to == '') then
@@ -145,7 +145,7 @@ contains
 
   !> The question before becomes due; checks are passed over. `done` is false at the first question.
   pure subroutine back(self, done)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     logical, intent(out) :: done                  !< false at the first question
     integer :: i
 
@@ -161,7 +161,7 @@ contains
   !> Whether the question that is due is the first of a group that can be left out and still lacks answers. Such a group
   !> may have been begun by mistake.
   pure logical function is_begun(self)
-    class(interview_type), intent(in) :: self  !< the interview
+    class(interview_type), intent(in) :: self  !< draft, questions and the question that is due
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -181,7 +181,7 @@ contains
 
   !> The load, point or body of the question that is due is taken away. The next question is whether there is another one.
   pure subroutine leave_out(self, done)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     logical, intent(out) :: done                  !< false where the question belongs to no group that can be left out
     type(question_type) :: question
     character(len=:), allocatable :: group
@@ -201,7 +201,7 @@ contains
   !> The question about an entry of the draft becomes due, and the conversation will return to the present question.
   !> `found` is false if this program has no question about it.
   pure subroutine correct(self, group, place, name, found)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     character(len=*), intent(in) :: group         !< name of the group
     character(len=*), intent(in) :: name          !< name with its subscript
     integer, intent(in) :: place                  !< place among the groups of that name, from 1
@@ -229,7 +229,7 @@ contains
   !> is none. Each closed chain makes at least one coordinate dependent, and at least three unless its pairs are of a
   !> special kind.
   pure subroutine miscount(self, answer, problem, certain)
-    class(interview_type), intent(in) :: self              !< the interview
+    class(interview_type), intent(in) :: self              !< draft, questions and the question that is due
     character(len=*), intent(in) :: answer                 !< the answer as a data file writes it
     character(len=:), allocatable, intent(out) :: problem  !< the reason against the answer; empty: none
     logical, intent(out) :: certain                        !< the answer is wrong whatever the pairs are
@@ -263,7 +263,7 @@ contains
 
   !> An answer to the question that is due is noted. Other questions may follow from it.
   pure subroutine note(self, text)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     character(len=*), intent(in) :: text          !< the answer as a data file writes it
     type(question_type) :: question
 
@@ -274,7 +274,7 @@ contains
 
   !> The answer to the question that is due is taken back.
   pure subroutine unnote(self)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     type(question_type) :: question
 
     question = self%due()
@@ -284,7 +284,7 @@ contains
   !> The facts that are needed beside the draft to resume a conversation: the question that is due, the way of giving the
   !> structure, and the rarely used names that the user wants, such as "pair(1).axis; pairs; pair.zero pair.moving_point".
   pure function bookmark(self) result(text)
-    class(interview_type), intent(in) :: self  !< the interview
+    class(interview_type), intent(in) :: self  !< draft, questions and the question that is due
     character(len=:), allocatable :: text
     integer :: row
 
@@ -297,7 +297,7 @@ contains
 
   !> The interview is resumed at a bookmark. Unknown parts of a bookmark are ignored.
   pure subroutine open_at(self, text)
-    class(interview_type), intent(inout) :: self  !< the interview
+    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     character(len=*), intent(in) :: text          !< the bookmark, in the form of `bookmark`
     integer :: first, second, row
 

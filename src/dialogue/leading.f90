@@ -14,7 +14,7 @@ contains
   !> Questions are asked and checks are made until every question is answered or the user leaves.
   subroutine lead(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< what the program computes
+    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
 
     do while (conversation%state == going)
       associate (question => conversation%interview%due())

@@ -16,7 +16,7 @@ contains
 
   !> The whole program is run. There is no return from it.
   subroutine run_program(task)
-    class(task_type), intent(in) :: task  !< what the program computes
+    class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
     integer :: code
 
     call leave_quit_alone()
@@ -26,7 +26,7 @@ contains
 
   !> The command line is carried out. Its words are deallocated before the program ends.
   subroutine run_command_line(task, code)
-    class(task_type), intent(in) :: task  !< what the program computes
+    class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
     integer, intent(out) :: code          !< exit code of the program
     type(string_type), allocatable :: words(:)
 
@@ -36,7 +36,7 @@ contains
 
   !> The words of a command line are carried out. `code` is the exit code of the program.
   subroutine run_words(task, words, code)
-    class(task_type), intent(in) :: task       !< what the program computes
+    class(task_type), intent(in) :: task       !< computation of the program: kinematics or dynamics
     type(string_type), intent(in) :: words(:)  !< words of the command line without the program's name
     integer, intent(out) :: code               !< exit code of the program
     type(command_line_type) :: options

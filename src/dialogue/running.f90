@@ -19,7 +19,7 @@ contains
   !> A data file is run, and run again as often as the user wants. `code` is that of the last run.
   subroutine run_by_turns(conversation, task, options, path, code)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< what the program computes
+    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
     type(command_line_type), intent(in) :: options           !< options of the command line
     character(len=*), intent(in) :: path                     !< the data file of the conversation, or its draft
     integer, intent(out) :: code                             !< exit code of the last run

@@ -45,7 +45,7 @@ contains
 
   !> The draft becomes empty.
   pure subroutine clear(self)
-    class(draft_type), intent(inout) :: self  !< the draft
+    class(draft_type), intent(inout) :: self  !< groups and names with their values as text
 
     self%head = ''
     self%comments_left_out = 0
@@ -55,7 +55,7 @@ contains
 
   !> The index of a group in the draft; 0 if there is none.
   pure integer function find(self, group, place) result(index)
-    class(draft_type), intent(in) :: self  !< the draft
+    class(draft_type), intent(in) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group  !< name of the group
     integer, intent(in) :: place           !< place among the groups of that name, from 1
     integer :: n
@@ -70,7 +70,7 @@ contains
 
   !> The place of the group in which the name `key` has a given number; 0 if there is none.
   pure integer function with_number(self, group, key, number) result(place)
-    class(draft_type), intent(in) :: self  !< the draft
+    class(draft_type), intent(in) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group  !< name of the group
     character(len=*), intent(in) :: key    !< name whose value is the number
     integer, intent(in) :: number          !< the number that is looked for
@@ -87,7 +87,7 @@ contains
 
   !> The number of groups of a name.
   pure integer function count_of(self, group) result(n)
-    class(draft_type), intent(in) :: self  !< the draft
+    class(draft_type), intent(in) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group  !< name of the group
     integer :: i
 
@@ -99,7 +99,7 @@ contains
 
   !> The place of the group with this index among the groups of its name.
   pure integer function place_of(self, index) result(place)
-    class(draft_type), intent(in) :: self  !< the draft
+    class(draft_type), intent(in) :: self  !< groups and names with their values as text
     integer, intent(in) :: index           !< index of the group in the draft
     integer :: i
 
@@ -111,7 +111,7 @@ contains
 
   !> The number of an entry in its group; 0 if the group does not have it.
   pure integer function find_entry(self, group, place, name) result(number)
-    class(draft_type), intent(in) :: self  !< the draft
+    class(draft_type), intent(in) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group  !< name of the group
     character(len=*), intent(in) :: name   !< name with its subscript
     integer, intent(in) :: place           !< place among the groups of that name, from 1
@@ -146,7 +146,7 @@ contains
 
   !> The values of a name as text; empty if the name is not given.
   pure function value(self, group, place, name) result(text)
-    class(draft_type), intent(in) :: self  !< the draft
+    class(draft_type), intent(in) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group  !< name of the group
     character(len=*), intent(in) :: name   !< name with its subscript
     integer, intent(in) :: place           !< place among the groups of that name, from 1
@@ -160,7 +160,7 @@ contains
 
   !> The value of a name as a whole number; 0 if it is none.
   pure integer function number(self, group, place, name)
-    class(draft_type), intent(in) :: self  !< the draft
+    class(draft_type), intent(in) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group  !< name of the group
     character(len=*), intent(in) :: name   !< name with its subscript
     integer, intent(in) :: place           !< place among the groups of that name, from 1
@@ -170,7 +170,7 @@ contains
 
   !> Whether a name is given.
   pure logical function has(self, group, place, name)
-    class(draft_type), intent(in) :: self  !< the draft
+    class(draft_type), intent(in) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group  !< name of the group
     character(len=*), intent(in) :: name   !< name with its subscript
     integer, intent(in) :: place           !< place among the groups of that name, from 1
@@ -180,7 +180,7 @@ contains
 
   !> An empty group is added behind the groups of its name, or at the place that the table of groups gives it.
   pure subroutine add(self, group)
-    class(draft_type), intent(inout) :: self  !< the draft
+    class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group
     type(draft_group_type), allocatable :: longer(:)
     integer :: i, at
@@ -219,7 +219,7 @@ contains
 
   !> A name gets a value, in the place of an earlier one. A group that is not there yet is added.
   pure subroutine give(self, group, place, name, text)
-    class(draft_type), intent(inout) :: self  !< the draft
+    class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group
     character(len=*), intent(in) :: name      !< name with its subscript
     character(len=*), intent(in) :: text      !< values as a data file writes them
@@ -284,7 +284,7 @@ contains
 
   !> The entry of a name is taken away.
   pure subroutine take_away(self, group, place, name)
-    class(draft_type), intent(inout) :: self  !< the draft
+    class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group
     character(len=*), intent(in) :: name      !< name with its subscript
     integer, intent(in) :: place              !< place among the groups of that name, from 1
@@ -307,7 +307,7 @@ contains
 
   !> A group is removed with its entries.
   pure subroutine remove(self, group, place)
-    class(draft_type), intent(inout) :: self  !< the draft
+    class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group
     integer, intent(in) :: place              !< place among the groups of that name, from 1
     type(draft_group_type), allocatable :: shorter(:)

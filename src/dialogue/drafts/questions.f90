@@ -240,7 +240,7 @@ contains
   !> Whether a structural name belongs to the way in which the structure is given. The second set takes the place of cq;
   !> other names belong to every way.
   pure logical function has_place_in(way, name)
-    character(len=*), intent(in) :: way   !< how the structure is given, one of `ways` of mech9_outline
+    character(len=*), intent(in) :: way   !< way in which the structure is given, one of `ways` of mech9_outline
     character(len=*), intent(in) :: name  !< the name, without a subscript
 
     select case (name)

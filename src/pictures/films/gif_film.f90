@@ -166,7 +166,7 @@ contains
 
   !> A polygon is drawn. It is not filled if the colour of its inside is empty.
   subroutine polygon(self, corners, fill, line, width)
-    class(script_type), intent(inout) :: self  !< the script
+    class(script_type), intent(inout) :: self  !< script to which the commands are appended
     real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the polygon [px]
     character(len=*), intent(in) :: fill       !< colour of the inside; empty: not filled
     character(len=*), intent(in) :: line       !< colour of the line
@@ -190,7 +190,7 @@ contains
 
   !> A line from corner to corner is drawn, as a polygon that runs forth and back.
   subroutine polyline(self, corners, line, width)
-    class(script_type), intent(inout) :: self  !< the script
+    class(script_type), intent(inout) :: self  !< script to which the commands are appended
     real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the line [px]
     character(len=*), intent(in) :: line       !< colour of the line
     real(wp), intent(in) :: width              !< width of the line [px]
@@ -211,7 +211,7 @@ contains
 
   !> A filled circle is drawn.
   subroutine circle(self, centre, radius, fill, line, width)
-    class(script_type), intent(inout) :: self  !< the script
+    class(script_type), intent(inout) :: self  !< script to which the commands are appended
     real(wp), intent(in) :: centre(2)          !< centre of the circle [px]
     real(wp), intent(in) :: radius             !< radius of the circle [px]
     character(len=*), intent(in) :: fill       !< colour of the inside; empty: not filled
@@ -255,7 +255,7 @@ contains
 
   !> One segment of an item is drawn: a line, or a band with cut or round ends.
   subroutine put_segment(style, ends, light, dark, script)
-    type(style_type), intent(in) :: style       !< how the item is drawn
+    type(style_type), intent(in) :: style       !< style of the item
     real(wp), intent(in) :: ends(2, 2)          !< (2,2) the two ends [px]
     character(len=*), intent(in) :: light       !< colour of the inside
     character(len=*), intent(in) :: dark        !< colour of the edge

@@ -94,7 +94,7 @@ contains
   subroutine put_moving(item, number, drawings, symbol, duration, page)
     type(item_type), intent(in) :: item            !< one thing to draw
     integer, intent(in) :: number                  !< number of the item in the scene
-    type(drawing_type), intent(in) :: drawings(:)  !< (frames) where the nodes stand on the page in each frame
+    type(drawing_type), intent(in) :: drawings(:)  !< (frames) places of the nodes on the page in each frame
     real(wp), intent(in) :: symbol                 !< scale of symbols, 1 at full size
     real(wp), intent(in) :: duration               !< time that the film takes to play [s]
     type(page_type), intent(inout) :: page         !< text to which the page is appended
@@ -122,7 +122,7 @@ contains
   !> A path is appended with its form in each frame.
   subroutine put_moving_path(item, drawings, symbol, duration, class, page)
     type(item_type), intent(in) :: item            !< one thing to draw
-    type(drawing_type), intent(in) :: drawings(:)  !< (frames) where the nodes stand on the page in each frame
+    type(drawing_type), intent(in) :: drawings(:)  !< (frames) places of the nodes on the page in each frame
     real(wp), intent(in) :: symbol                 !< scale of symbols, 1 at full size
     real(wp), intent(in) :: duration               !< time that the film takes to play [s]
     character(len=*), intent(in) :: class          !< attribute with the class of the path; empty: none
@@ -146,7 +146,7 @@ contains
   !> The forms of an item in all frames are appended, with semicolons between them.
   subroutine put_values(item, drawings, symbol, page)
     type(item_type), intent(in) :: item            !< one thing to draw
-    type(drawing_type), intent(in) :: drawings(:)  !< (frames) where the nodes stand on the page in each frame
+    type(drawing_type), intent(in) :: drawings(:)  !< (frames) places of the nodes on the page in each frame
     real(wp), intent(in) :: symbol                 !< scale of symbols, 1 at full size
     type(page_type), intent(inout) :: page         !< text to which the page is appended
     integer :: i
@@ -164,7 +164,7 @@ contains
   !> The path of an item in a frame. An animation needs a path even where the item is not seen; it then has no length.
   pure function path_in(item, drawing, symbol) result(path)
     type(item_type), intent(in) :: item        !< one thing to draw
-    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing  !< places of the nodes on the page
     real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
     character(len=:), allocatable :: path
 

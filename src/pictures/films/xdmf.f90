@@ -64,7 +64,7 @@ contains
 
   !> Rows of results are counted.
   subroutine write_rows(self, rows, err)
-    class(xdmf_type), intent(inout) :: self            !< the description in XDMF
+    class(xdmf_type), intent(inout) :: self            !< names, counts and times for the description
     real(wp), intent(in) :: rows(:, :)                 !< (columns,rows) rows of the results, which are only counted
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
@@ -73,7 +73,7 @@ contains
 
   !> The description is written when the results are complete. Errors are exit_file.
   subroutine save_description(self, err)
-    class(xdmf_type), intent(inout) :: self            !< the description in XDMF
+    class(xdmf_type), intent(inout) :: self            !< names, counts and times for the description
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(page_type) :: page
     integer :: i
@@ -95,7 +95,7 @@ contains
 
   !> One output is appended: lines between vertices, and the link of each line.
   subroutine put_step(self, row, page)
-    type(xdmf_type), intent(in) :: self     !< the description in XDMF
+    type(xdmf_type), intent(in) :: self     !< names, counts and times for the description
     integer, intent(in) :: row              !< number of the row in the HDF5 file, from 0
     type(page_type), intent(inout) :: page  !< text to which the page is appended
     character(len=:), allocatable :: vertices, lines
@@ -115,7 +115,7 @@ contains
 
   !> A reference to numbers in the HDF5 file.
   pure function item(self, dimensions, type, data_set) result(text)
-    type(xdmf_type), intent(in) :: self         !< the description in XDMF
+    type(xdmf_type), intent(in) :: self         !< names, counts and times for the description
     character(len=*), intent(in) :: dimensions  !< numbers of entries along each dimension
     character(len=*), intent(in) :: type        !< Int or Float
     character(len=*), intent(in) :: data_set    !< path of the data set in the HDF5 file
@@ -127,7 +127,7 @@ contains
 
   !> The line for the user after the description is written.
   function words(self)
-    class(xdmf_type), intent(in) :: self  !< the description in XDMF
+    class(xdmf_type), intent(in) :: self  !< names, counts and times for the description
     character(len=:), allocatable :: words
 
     words = 'for ParaView: '//self%path

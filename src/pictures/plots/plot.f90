@@ -40,7 +40,7 @@ contains
 
   !> The request is read before the run, so that a wrong name costs no time (exit_usage).
   subroutine open_plot(self, text, title, names, units, expected, picture, table, err)
-    class(plot_type), intent(inout) :: self            !< the plot
+    class(plot_type), intent(inout) :: self            !< request and rows of the plot
     character(len=*), intent(in) :: text               !< the argument of --plot
     character(len=*), intent(in) :: title              !< title of the mechanism
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
@@ -63,7 +63,7 @@ contains
 
   !> Rows of results are taken.
   subroutine write_rows(self, rows, err)
-    class(plot_type), intent(inout) :: self            !< the plot
+    class(plot_type), intent(inout) :: self            !< request and rows of the plot
     real(wp), intent(in) :: rows(:, :)                 !< (columns,rows) rows of the results
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: i
@@ -76,7 +76,7 @@ contains
   !> The rows that were taken are drawn, either in the terminal or as a picture with its script beside it. If gnuplot is
   !> not installed the script of a picture is kept all the same.
   subroutine close_plot(self, err)
-    class(plot_type), intent(inout) :: self            !< the plot
+    class(plot_type), intent(inout) :: self            !< request and rows of the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     if (self%is_open .and. self%data%count > 0) then
@@ -91,7 +91,7 @@ contains
 
   !> The line for the user after the plot is closed.
   function words(self)
-    class(plot_type), intent(in) :: self  !< the plot
+    class(plot_type), intent(in) :: self  !< request and rows of the plot
     character(len=:), allocatable :: words
 
     words = ''
@@ -100,7 +100,7 @@ contains
 
   !> The plot is drawn in the terminal.
   subroutine draw_in_terminal(self, err)
-    class(plot_type), intent(in) :: self               !< the plot
+    class(plot_type), intent(in) :: self               !< request and rows of the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: columns, rows
     logical :: found
@@ -116,7 +116,7 @@ contains
 
   !> The script of a picture is written, and gnuplot draws the picture.
   subroutine draw_picture(self, err)
-    class(plot_type), intent(inout) :: self            !< the plot
+    class(plot_type), intent(inout) :: self            !< request and rows of the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: script_path, script, source, folder
     logical :: found
@@ -180,7 +180,7 @@ contains
 
   !> Rows in memory are plotted.
   subroutine plot_columns(text, title, names, units, rows, picture, said, err)
-    character(len=*), intent(in) :: text                !< what to plot, as the argument of --plot
+    character(len=*), intent(in) :: text                !< request in the form of the argument of --plot
     character(len=*), intent(in) :: title               !< title of the mechanism
     type(string_type), intent(in) :: names(:)           !< names of the columns of the results, the time first
     type(string_type), intent(in) :: units(:)           !< units of the columns of the results

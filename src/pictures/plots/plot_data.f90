@@ -44,7 +44,7 @@ contains
 
   !> The needed columns of the next row are kept, if it is the turn of this row.
   pure subroutine take(self, row)
-    class(plot_data_type), intent(inout) :: self  !< the plot data
+    class(plot_data_type), intent(inout) :: self  !< rows and columns that are plotted
     real(wp), intent(in) :: row(:)                !< all columns of the results
 
     if (modulo(self%seen, self%stride) == 0 .and. self%count < size(self%values, 2)) then
@@ -56,7 +56,7 @@ contains
 
   !> The place of a column of the results among the columns that are kept.
   pure integer function place_of(self, column)
-    class(plot_data_type), intent(in) :: self  !< the plot data
+    class(plot_data_type), intent(in) :: self  !< rows and columns that are plotted
     integer, intent(in) :: column              !< number of the column in the results, one that is kept
 
     place_of = count(self%columns <= column)
@@ -64,7 +64,7 @@ contains
 
   !> The least and greatest finite value of some columns; [0, 0] if there is none.
   pure function extent(self, columns) result(ends)
-    class(plot_data_type), intent(in) :: self  !< the plot data
+    class(plot_data_type), intent(in) :: self  !< rows and columns that are plotted
     integer, intent(in) :: columns(:)          !< numbers of the columns in the results, all of them kept
     real(wp) :: ends(2), value
     integer :: i, j

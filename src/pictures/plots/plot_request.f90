@@ -37,7 +37,7 @@ contains
   pure subroutine read_plot_request(text, names, request, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
-    type(plot_request_type), intent(out) :: request    !< what is to be plotted
+    type(plot_request_type), intent(out) :: request    !< request for the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(curve_type) :: curve
     integer :: at
@@ -88,7 +88,7 @@ contains
   !> The target before the names is read: a picture or the terminal. `at` is the place where the names begin.
   pure subroutine take_target(text, request, at)
     character(len=*), intent(in) :: text               !< the argument of --plot
-    type(plot_request_type), intent(inout) :: request  !< what is to be plotted
+    type(plot_request_type), intent(inout) :: request  !< request for the plot
     integer, intent(out) :: at                         !< place in `text` where the names begin
     integer :: colon
 
@@ -113,7 +113,7 @@ contains
   !> The coordinates q1, q2 and so on are requested, up to the number of colours.
   pure subroutine take_coordinates(names, request)
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
-    type(plot_request_type), intent(inout) :: request  !< what is to be plotted
+    type(plot_request_type), intent(inout) :: request  !< request for the plot
     integer :: i
 
     do i = 1, size(names)

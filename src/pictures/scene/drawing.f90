@@ -42,7 +42,7 @@ contains
   !> each by the mean depth of its nodes, but no body before those that it lies upon.
   pure function drawing_order(scene, drawing) result(order)
     type(scene_type), intent(in) :: scene      !< nodes and items of the picture
-    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing  !< places of the nodes on the page
     integer, allocatable :: order(:)
     integer :: keys(scene%n_items), i, j
 
@@ -96,7 +96,7 @@ contains
   !> path shows its back.
   pure function outline_of(item, drawing, symbol) result(corners)
     type(item_type), intent(in) :: item        !< one thing to draw
-    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing  !< places of the nodes on the page
     real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
     real(wp), allocatable :: corners(:, :)     !< (2,n)
 
@@ -152,7 +152,7 @@ contains
     real(wp), intent(in) :: from(2)         !< first end [px]
     real(wp), intent(in) :: to(2)           !< second end [px]
     logical, intent(in) :: is_thread        !< it is the thread of a helical pair, not a spring
-    real(wp), intent(in) :: aside           !< how far it lies to the side of the line between them [px]
+    real(wp), intent(in) :: aside           !< distance from the line between the ends [px]
     real(wp), intent(in) :: symbol          !< scale of symbols, 1 at full size
     real(wp), allocatable :: corners(:, :)  !< (2,n)
     real(wp) :: along(2), across(2), length, lead, at, side
@@ -178,7 +178,7 @@ contains
   pure function damper(from, to, aside, symbol) result(corners)
     real(wp), intent(in) :: from(2)  !< first end [px]
     real(wp), intent(in) :: to(2)    !< second end [px]
-    real(wp), intent(in) :: aside    !< how far it lies to the side of the line between them [px]
+    real(wp), intent(in) :: aside    !< distance from the line between the ends [px]
     real(wp), intent(in) :: symbol   !< scale of symbols, 1 at full size
     real(wp) :: corners(2, 12)
     !> Places of the bottom and the rim of the cup and of the piston along the line, as parts of its length.

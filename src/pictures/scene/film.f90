@@ -78,7 +78,7 @@ contains
 
   !> The next output of the run is kept if its turn has come or if it is the last one.
   pure subroutine take(self, mechanism, plan, state, row)
-    class(film_type), intent(inout) :: self        !< the film
+    class(film_type), intent(inout) :: self        !< poses and values at the outputs of the run
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: state          !< positions known
@@ -94,7 +94,7 @@ contains
 
   !> The paths of the points are continued to the present output.
   pure subroutine take_points(self, mechanism, plan, state)
-    class(film_type), intent(inout) :: self        !< the film
+    class(film_type), intent(inout) :: self        !< poses and values at the outputs of the run
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: state          !< position and motion of the mechanism
@@ -147,7 +147,7 @@ contains
 
   !> The present position and the values of the columns are kept as a frame.
   pure subroutine take_frame(self, plan, state, row)
-    class(film_type), intent(inout) :: self  !< the film
+    class(film_type), intent(inout) :: self  !< poses and values at the outputs of the run
     type(plan_type), intent(in) :: plan      !< the plan of the mechanism
     type(state_type), intent(in) :: state    !< position and motion of the mechanism
     real(wp), intent(in) :: row(:)           !< (columns) values of the columns at this output, the time first
@@ -164,7 +164,7 @@ contains
 
   !> The place of a point of a link in a frame of the film, in the system of link 1 [m].
   pure function position(self, frame, link, point)
-    class(film_type), intent(in) :: self  !< the film
+    class(film_type), intent(in) :: self  !< poses and values at the outputs of the run
     integer, intent(in) :: frame          !< number of the frame in the film
     integer, intent(in) :: link           !< number of the link
     real(wp), intent(in) :: point(3)      !< the point, in the system of the link [m]
@@ -175,7 +175,7 @@ contains
 
   !> A direction of a link in a frame of the film, in the axes of link 1.
   pure function direction(self, frame, link, vector)
-    class(film_type), intent(in) :: self  !< the film
+    class(film_type), intent(in) :: self  !< poses and values at the outputs of the run
     integer, intent(in) :: frame          !< number of the frame in the film
     integer, intent(in) :: link           !< number of the link
     real(wp), intent(in) :: vector(3)     !< the direction, in the axes of the link
@@ -186,7 +186,7 @@ contains
 
   !> The point of a link that is at a given place in a frame of the film, in the system of the link [m].
   pure function local(self, frame, link, place)
-    class(film_type), intent(in) :: self  !< the film
+    class(film_type), intent(in) :: self  !< poses and values at the outputs of the run
     integer, intent(in) :: frame          !< number of the frame in the film
     integer, intent(in) :: link           !< number of the link
     real(wp), intent(in) :: place(3)      !< the place, in the system of link 1 [m]

@@ -27,7 +27,7 @@ contains
   !> The obstacles of all lines and marks of a scene, of the title, the foot and the axes.
   pure subroutine find_obstacles(scene, drawing, projection, obstacles)
     type(scene_type), intent(in) :: scene            !< without labels
-    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page of the first frame
+    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page of the first frame
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(obstacles_type), intent(out) :: obstacles   !< lines that labels should not cover
     real(wp) :: foot(2), tip(2)
@@ -49,7 +49,7 @@ contains
   !> The obstacles of one item are added.
   pure subroutine add_item(item, drawing, symbol, obstacles)
     type(item_type), intent(in) :: item               !< one thing to draw
-    type(drawing_type), intent(in) :: drawing         !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing         !< places of the nodes on the page
     real(wp), intent(in) :: symbol                    !< scale of symbols, 1 at full size
     type(obstacles_type), intent(inout) :: obstacles  !< lines that labels should not cover
     real(wp) :: half, across(2)
@@ -91,7 +91,7 @@ contains
     type(item_type), intent(in) :: item               !< one thing to draw
     real(wp), intent(in) :: from(2)                   !< first end of the line [px]
     real(wp), intent(in) :: to(2)                     !< second end of the line [px]
-    real(wp), intent(in) :: half                      !< how far it reaches to each side [px]
+    real(wp), intent(in) :: half                      !< distance to which it reaches on each side [px]
     type(obstacles_type), intent(inout) :: obstacles  !< lines that labels should not cover
     integer :: owner
 
@@ -117,7 +117,7 @@ contains
   !> The radius of the largest symbol at a place [px].
   pure real(wp) function clear_radius(scene, drawing, symbol, at) result(radius)
     type(scene_type), intent(in) :: scene      !< without labels
-    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page of the first frame
+    type(drawing_type), intent(in) :: drawing  !< places of the nodes on the page of the first frame
     real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
     real(wp), intent(in) :: at(2)              !< the place on the page [px]
     integer, parameter :: solid(*) = [in_block, in_pin, in_cross, as_ring, as_ball, as_dot, as_centre, as_free, &

@@ -10,7 +10,7 @@ module mech9_label_places
   type :: obstacles_type
     integer :: n_lines = 0
     real(wp), allocatable :: ends(:, :, :)      !< (2,2,n) ends of the lines [px]
-    real(wp), allocatable :: half(:)            !< (n) how far a line reaches to each side [px]
+    real(wp), allocatable :: half(:)            !< (n) distance to which a line reaches on each side [px]
     real(wp), allocatable :: weight(:)          !< (n) cost of covering the line; 1 for a bar
     integer, allocatable :: owner(:)            !< (n) link whose number may stand on it; 0: none
   contains
@@ -47,10 +47,10 @@ contains
 
   !> One more line is added that labels should not cover.
   pure subroutine add_obstacle(self, from, to, half, weight, owner)
-    class(obstacles_type), intent(inout) :: self  !< the obstacles
+    class(obstacles_type), intent(inout) :: self  !< lines that labels should not cover
     real(wp), intent(in) :: from(2)               !< first end of the line [px]
     real(wp), intent(in) :: to(2)                 !< second end of the line [px]
-    real(wp), intent(in) :: half                  !< how far it reaches to each side [px]
+    real(wp), intent(in) :: half                  !< distance to which it reaches on each side [px]
     real(wp), intent(in) :: weight                !< cost of covering the line; 1 for a bar
     integer, intent(in), optional :: owner        !< link whose number may stand on the line
     type(obstacles_type) :: grown

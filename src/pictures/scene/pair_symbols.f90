@@ -40,7 +40,7 @@ contains
   !> The nodes of all pairs are added to the scene, and the joints that they make are found.
   subroutine prepare_symbols(film, skeleton, projection, planar, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
@@ -78,7 +78,7 @@ contains
   !> it.
   pure function joints_of(film, skeleton) result(joint)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     integer, allocatable :: joint(:)
     real(wp) :: at(3, size(skeleton%places))
     integer :: link, i, j, a, b, k
@@ -106,7 +106,7 @@ contains
 
   !> Whether a link only guides the pair, so that the pair is no fixed place of it.
   pure logical function at_guide(place, link)
-    type(place_type), intent(in) :: place  !< where the pair is drawn
+    type(place_type), intent(in) :: place  !< place and axes of the pair
     integer, intent(in) :: link            !< number of the link
 
     at_guide = (place%kind == sliding .or. place%kind == screwing .or. place%kind == free) &
@@ -115,7 +115,7 @@ contains
 
   !> The guides on the frame are added: a centre line, and hatched ground beside it.
   subroutine add_guides(skeleton, projection, scene, symbols)
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
@@ -168,7 +168,7 @@ contains
   !> The stands of the joints that turn on the frame are added. A stand is below its joint, unless the links hang from it.
   subroutine add_stands(film, skeleton, projection, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     type(symbols_type), intent(inout) :: symbols     !< nodes and joints of the pairs
@@ -192,7 +192,7 @@ contains
   !> Whether the links at a joint of the frame are below it in all frames.
   pure logical function hangs(film, skeleton, projection, k)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     integer, intent(in) :: k                         !< number of the pair
     real(wp) :: below, apart(3)
@@ -222,7 +222,7 @@ contains
   !> The symbols of all joints are added.
   subroutine add_symbols(film, skeleton, projection, shapes, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     integer, intent(in) :: shapes(:)                 !< (links) number of the item that shows each link; 0: none
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
@@ -240,7 +240,7 @@ contains
   !> The symbols of one joint are added.
   subroutine add_joint(film, skeleton, projection, shapes, pairs, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     integer, intent(in) :: shapes(:)                 !< (links) number of the item that shows each link; 0: none
     integer, intent(in) :: pairs(:)                  !< numbers of the pairs of the joint
@@ -290,7 +290,7 @@ contains
   !> of a sliding one.
   pure function turning_axes(film, skeleton, pairs) result(chosen)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     integer, intent(in) :: pairs(:)              !< numbers of the pairs of the joint
     integer, allocatable :: chosen(:)
     real(wp) :: axes(3, size(pairs))
@@ -316,7 +316,7 @@ contains
 
   !> The block of a sliding pair is added, or the nut of a helical one with the thread on which it runs.
   subroutine add_block(place, k, projection, above, names, scene, symbols)
-    type(place_type), intent(in) :: place            !< where the pair is drawn
+    type(place_type), intent(in) :: place            !< place and axes of the pair
     integer, intent(in) :: k                         !< number of the pair
     type(projection_type), intent(in) :: projection  !< from space to the page
     integer, intent(in) :: above(4)                  !< numbers of the items that the symbol lies upon; 0: none
@@ -337,7 +337,7 @@ contains
 
   !> A pin is added: a short cylinder along the axis. Only the end that is turned to the viewer is drawn.
   subroutine add_pin(place, px, crossed, above, names, scene)
-    type(place_type), intent(in) :: place     !< where the pair is drawn
+    type(place_type), intent(in) :: place     !< place and axes of the pair
     real(wp), intent(in) :: px                !< length of 1 px in the mechanism [m]
     logical, intent(in) :: crossed            !< the pin is one of two, a bar of the cross that they make
     integer, intent(in) :: above(4)           !< numbers of the items that the symbol lies upon; 0: none

@@ -91,7 +91,7 @@ contains
 
   !> The rule of one style. A band has two lines: the edge, which is drawn first, and the inside.
   pure function rule_of(style, symbol) result(rule)
-    type(style_type), intent(in) :: style  !< how items of one kind are drawn
+    type(style_type), intent(in) :: style  !< style of the items of one kind
     real(wp), intent(in) :: symbol         !< scale of symbols, 1 at full size
     character(len=:), allocatable :: rule
 

@@ -47,7 +47,7 @@ contains
   subroutine fit_projection(mechanism, film, skeleton, view, turned, projection)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(film_type), intent(in) :: film               !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton       !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton       !< places at which the pairs are drawn
     type(view_type), intent(in) :: view               !< direction from which the mechanism is seen
     logical, intent(in) :: turned                     !< the reader of the picture can turn the mechanism
     type(projection_type), intent(out) :: projection  !< from space to the page
@@ -79,7 +79,7 @@ contains
   subroutine enclose_motion(mechanism, film, skeleton, view, box)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton    !< places at which the pairs are drawn
     type(view_type), intent(in) :: view            !< direction from which the mechanism is seen
     type(box_type), intent(out) :: box             !< bounds of what is seen, in the directions of the view [m]
     integer :: frame, k, side, i
@@ -148,7 +148,7 @@ contains
   !> The usual extent of a link: the median of the largest distances between pairs of one link, as seen [m].
   pure real(wp) function usual_distance(film, skeleton, view)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     type(view_type), intent(in) :: view          !< direction from which the mechanism is seen
     real(wp), allocatable :: largest(:)
     real(wp) :: apart(3)
@@ -181,7 +181,7 @@ contains
   !> The place of a pair in the first frame, in the system of link 1 [m].
   pure function place_of(film, place) result(at)
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
-    class(place_type), intent(in) :: place  !< where the pair is drawn
+    class(place_type), intent(in) :: place  !< place and axes of the pair
     real(wp) :: at(3)
 
     at = film%position(1, place%links(place%carrier), place%points(:, place%carrier))
@@ -189,7 +189,7 @@ contains
 
   !> The place on the page [px] of a place in the system of link 1, and its distance towards the viewer [m].
   pure subroutine on_page(self, place, xy, depth)
-    class(projection_type), intent(in) :: self  !< the projection
+    class(projection_type), intent(in) :: self  !< from space to the page
     real(wp), intent(in) :: place(3)            !< place in the system of link 1 [m]
     real(wp), intent(out) :: xy(2)              !< place on the page, to the right and down [px]
     real(wp), intent(out) :: depth              !< distance from the centre towards the viewer [m]
@@ -202,7 +202,7 @@ contains
 
   !> The length in the mechanism of a symbol that has a given length on the page [m].
   pure real(wp) function metres(self, length)
-    class(projection_type), intent(in) :: self  !< the projection
+    class(projection_type), intent(in) :: self  !< from space to the page
     real(wp), intent(in) :: length              !< length on the page at full size of symbols [px]
 
     metres = length*self%symbol/self%scale

@@ -61,7 +61,7 @@ contains
 
   !> One more point of a link is added.
   pure subroutine add_node(self, link, at, node)
-    class(scene_type), intent(inout) :: self  !< the scene
+    class(scene_type), intent(inout) :: self  !< nodes and items of the picture
     integer, intent(in) :: link               !< number of the link that carries the point
     real(wp), intent(in) :: at(3)             !< the point, in the system of the link [m]
     integer, intent(out) :: node              !< number of the new node
@@ -84,9 +84,9 @@ contains
 
   !> One more thing to draw is added, above those that are there.
   pure subroutine add_item(self, shape, style, nodes, link, above, text, shift)
-    class(scene_type), intent(inout) :: self        !< the scene
-    integer, intent(in) :: shape                    !< what the item is made of, one of the numbers from open_path to label
-    integer, intent(in) :: style                    !< what the item stands for, one of the in_ and as_ numbers
+    class(scene_type), intent(inout) :: self        !< nodes and items of the picture
+    integer, intent(in) :: shape                    !< shape of the item, one of the numbers from open_path to label
+    integer, intent(in) :: style                    !< style of the item, one of the in_ and as_ numbers
     integer, intent(in) :: nodes(:)                 !< numbers of the nodes
     integer, intent(in), optional :: link           !< number of the link whose colour the item has; none unless given
     integer, intent(in), optional :: above(:)       !< numbers of items below this one; the first four count, and zeros do not
@@ -131,7 +131,7 @@ contains
 
   !> The places of all nodes in a frame of the film, in the system of link 1 [m].
   pure function places_at(self, film, frame) result(places)
-    class(scene_type), intent(in) :: self  !< the scene
+    class(scene_type), intent(in) :: self  !< nodes and items of the picture
     type(film_type), intent(in) :: film    !< poses and values at the outputs of the run
     integer, intent(in) :: frame           !< number of the frame in the film
     real(wp), allocatable :: places(:, :)  !< (3,n)

@@ -88,9 +88,9 @@ contains
     character(len=*), intent(in) :: name             !< name of the point
     integer, intent(in) :: node                      !< number of the node of the point
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
-    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
-    type(entry_type), intent(out) :: entry           !< what the label says and where its node is
+    type(entry_type), intent(out) :: entry           !< text and node of the label
     type(label_type), intent(out) :: label           !< spots where the label can stand
 
     entry%style = as_name
@@ -109,9 +109,9 @@ contains
     logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
     type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
-    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
-    type(entry_type), intent(out) :: entry           !< what the label says and where its node is
+    type(entry_type), intent(out) :: entry           !< text and node of the label
     type(label_type), intent(out) :: label           !< spots where the label can stand
     type(spot_type), allocatable :: stacked(:)
     real(wp), parameter :: dislike = 2.0_wp
@@ -147,9 +147,9 @@ contains
     integer, intent(in) :: shape(2)                  !< number of the item that shows the link, and of a node of the link; 0: none
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
-    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
-    type(entry_type), intent(out) :: entry           !< what the label says and where its node is
+    type(entry_type), intent(out) :: entry           !< text and node of the label
     type(label_type), intent(out) :: label           !< spots where the label can stand
     real(wp) :: size_of_box(2)
     real(wp), allocatable :: places(:, :)
@@ -272,11 +272,11 @@ contains
 
   !> A label is added at its chosen spot, with its leading line.
   subroutine add_entry(entry, placed, independent, film, drawing, projection, scene)
-    type(entry_type), intent(in) :: entry            !< what the label says and where its node is
+    type(entry_type), intent(in) :: entry            !< text and node of the label
     type(label_type), intent(in) :: placed           !< the label with its chosen spot
     logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(drawing_type), intent(in) :: drawing        !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     real(wp) :: at(2), depth
@@ -306,7 +306,7 @@ contains
   !> The names of coordinates are added within their common box, each as a label of its own, since only independent
   !> coordinates have a colour.
   subroutine add_coordinates(entry, node, spot, stacked, at, independent, scene)
-    type(entry_type), intent(in) :: entry     !< what the label says and where its node is
+    type(entry_type), intent(in) :: entry     !< text and node of the label
     integer, intent(in) :: node               !< number of the node at the joint
     type(spot_type), intent(in) :: spot       !< box and leading line of the label
     logical, intent(in) :: stacked            !< the names stand one below the other

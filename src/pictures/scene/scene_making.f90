@@ -34,7 +34,7 @@ contains
   subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, scene)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     logical, intent(in) :: with_masses               !< mark the mass centres
@@ -72,7 +72,7 @@ contains
   !> only.
   subroutine find_outline(mechanism, skeleton, symbols, link, scene, outline)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
-    type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton    !< places at which the pairs are drawn
     type(symbols_type), intent(in) :: symbols      !< nodes and joints of the pairs
     integer, intent(in) :: link                    !< number of the link
     type(scene_type), intent(inout) :: scene       !< nodes and items of the picture
@@ -147,7 +147,7 @@ contains
 
   !> The plate of a link is added, or its bars.
   subroutine add_shape(skeleton, symbols, link, plates, scene, outline, shape)
-    type(skeleton_type), intent(in) :: skeleton   !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn
     type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
     integer, intent(in) :: link                   !< number of the link
     logical, intent(in) :: plates                 !< draw a plate and no bars, else bars and no plate
@@ -171,7 +171,7 @@ contains
 
   !> The numbers of the points of an outline that are the ends of a guide of the link.
   pure function rails_of(skeleton, symbols, link, outline) result(rails)
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     type(symbols_type), intent(in) :: symbols    !< nodes and joints of the pairs
     integer, intent(in) :: link                  !< number of the link
     type(outline_type), intent(in) :: outline    !< points that give the link its shape
@@ -192,7 +192,7 @@ contains
 
   !> The lines from a link to the pairs that move along it are added.
   subroutine add_reach(skeleton, symbols, cams, link, scene, outline, shape)
-    type(skeleton_type), intent(in) :: skeleton   !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn
     type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
     logical, intent(in) :: cams(:)                !< (M) the pair runs around a cam
     integer, intent(in) :: link                   !< number of the link

@@ -80,7 +80,7 @@ contains
   !> cam.
   subroutine add_curves(film, skeleton, scene, cams)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     type(scene_type), intent(inout) :: scene     !< nodes and items of the picture
     logical, intent(out) :: cams(:)              !< (M) the pair runs around a cam
     integer :: nodes(film%n_frames), k, frame

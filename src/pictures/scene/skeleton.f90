@@ -44,7 +44,7 @@ contains
   subroutine make_skeleton(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses of the run; only the first frame is used
-    type(skeleton_type), intent(out) :: skeleton   !< where each pair is drawn
+    type(skeleton_type), intent(out) :: skeleton   !< places at which the pairs are drawn
     type(pair_axes_type), allocatable :: axes(:)
 
     axes = pair_axes(mechanism%pairs)
@@ -59,7 +59,7 @@ contains
   !> Points that are far from everything else are moved along their axes.
   subroutine draw_near(film, skeleton)
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
-    type(skeleton_type), intent(inout) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(inout) :: skeleton  !< places at which the pairs are drawn
     real(wp), dimension(3, size(skeleton%places)) :: given, directions
     real(wp) :: shift(size(skeleton%places)), widest, allowed
     integer :: k
@@ -86,7 +86,7 @@ contains
   !> The signed distance along the axis of a turning pair to the nearest pair of its links. `widest` grows to the largest
   !> distance of such a pair from the axis.
   pure subroutine look_along(skeleton, given, axis, k, along, widest)
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     real(wp), intent(in) :: given(:, :)          !< (3,M) given point of each axis, in the system of link 1 [m]
     real(wp), intent(in) :: axis(3)              !< direction of the axis of the pair, in the axes of link 1
     integer, intent(in) :: k                     !< number of the pair
@@ -129,7 +129,7 @@ contains
   pure real(wp) function size_of(mechanism, film, places)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
-    type(place_type), intent(in) :: places(:)      !< (M) where each pair is drawn
+    type(place_type), intent(in) :: places(:)      !< (M) places at which the pairs are drawn
     real(wp) :: low(3), high(3)
     integer :: i, side
 

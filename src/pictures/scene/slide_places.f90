@@ -30,7 +30,7 @@ contains
   subroutine place_slides(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
-    type(skeleton_type), intent(inout) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(inout) :: skeleton  !< places at which the pairs are drawn
     type(pins_type) :: pins(2)
     integer :: k, side
 
@@ -52,7 +52,7 @@ contains
   !> points.
   subroutine find_pins(mechanism, skeleton, k, link, pins)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
-    type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton    !< places at which the pairs are drawn
     integer, intent(in) :: k                       !< number of the sliding pair
     integer, intent(in) :: link                    !< number of one of its links
     type(pins_type), intent(out) :: pins           !< places of the other pairs of the link
@@ -90,7 +90,7 @@ contains
 
   !> Whether a link has pins that are all at one place of a line.
   pure logical function all_at_one_place(self, point, axis, tolerance)
-    class(pins_type), intent(in) :: self  !< the pins
+    class(pins_type), intent(in) :: self  !< places of the other pairs of a link
     real(wp), intent(in) :: point(3)      !< a point of the line, in the system of the link [m]
     real(wp), intent(in) :: axis(3)       !< direction of the line, in the axes of the link, of unit length
     real(wp), intent(in) :: tolerance     !< distance up to which places are the same [m]
@@ -120,7 +120,7 @@ contains
     type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
     type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
     real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
-    type(place_type), intent(inout) :: place  !< where the sliding pair is drawn
+    type(place_type), intent(inout) :: place  !< place and travel of the sliding pair
     real(wp) :: apart, least, most
     integer :: frame, side
 
@@ -149,7 +149,7 @@ contains
   subroutine choose_carrier(pins, size, place)
     type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
     real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
-    type(place_type), intent(inout) :: place  !< where the sliding pair is drawn
+    type(place_type), intent(inout) :: place  !< place and travel of the sliding pair
     logical :: is_block(2)
     integer :: side
 
@@ -169,7 +169,7 @@ contains
   subroutine seat_block(pins, size, place)
     type(pins_type), intent(in) :: pins       !< pins of the link that carries the block
     real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
-    type(place_type), intent(inout) :: place  !< where the sliding pair is drawn
+    type(place_type), intent(inout) :: place  !< place and travel of the sliding pair
     real(wp) :: across(3), foot(3), distance, nearest
     integer :: i
 
@@ -193,7 +193,7 @@ contains
   !> The travel of the carrier's point in the other link.
   subroutine find_travel(film, place)
     type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
-    type(place_type), intent(inout) :: place  !< where the sliding pair is drawn
+    type(place_type), intent(inout) :: place  !< place and travel of the sliding pair
     real(wp) :: at(3), along
     integer :: frame, guide
 

@@ -27,7 +27,7 @@ contains
   subroutine add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     integer, intent(in) :: shapes(:)                 !< (links) number of the item that shows each link; 0: none
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
@@ -73,7 +73,7 @@ contains
   subroutine add_on_coordinate(load, film, skeleton, projection, above, scene, symbols)
     type(coordinate_load_type), intent(in) :: load   !< stiffness and damping on the coordinate
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     integer, intent(in) :: above(4)                  !< numbers of the items of the links of the pair; 0: none
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
@@ -130,7 +130,7 @@ contains
   !> first frame. There is no wall where a joint of the frame has a stand already.
   subroutine add_wall(film, skeleton, projection, fixed, other, scene)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton      !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     integer, intent(in) :: fixed                     !< number of the node at the fixed end
     integer, intent(in) :: other                     !< number of the node at the other end

@@ -90,7 +90,7 @@ contains
   subroutine put_item(item, number, drawing, symbol, page)
     type(item_type), intent(in) :: item        !< one thing to draw
     integer, intent(in) :: number              !< number of the item in the scene
-    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing  !< places of the nodes on the page
     real(wp), intent(in) :: symbol             !< scale of symbols, 1 at full size
     type(page_type), intent(inout) :: page     !< text to which the picture is appended
     character(len=:), allocatable :: path
@@ -145,7 +145,7 @@ contains
   !> The place of a mark or a label, as two numbers.
   pure function place_of(item, drawing) result(text)
     type(item_type), intent(in) :: item        !< one thing to draw
-    type(drawing_type), intent(in) :: drawing  !< where the nodes stand on the page
+    type(drawing_type), intent(in) :: drawing  !< places of the nodes on the page
     character(len=:), allocatable :: text
     real(wp) :: at(2)
 

@@ -24,7 +24,7 @@ contains
 
   !> The components of a vector to the right, upwards, and towards the viewer.
   pure function seen(self, vector)
-    class(view_type), intent(in) :: self  !< the view
+    class(view_type), intent(in) :: self  !< direction from which the mechanism is seen
     real(wp), intent(in) :: vector(3)     !< the vector, in the axes of link 1
     real(wp) :: seen(3)
 

@@ -25,7 +25,7 @@ contains
   pure subroutine choose_view(mechanism, film, skeleton, view, planar)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton    !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton    !< places at which the pairs are drawn
     type(view_type), intent(out) :: view           !< direction from which the mechanism is seen
     logical, intent(out) :: planar                 !< all links move parallel to one plane
     real(wp) :: normal(3), upward(3)
@@ -51,7 +51,7 @@ contains
   !> and every user's pair does one of these in all frames of the film.
   pure subroutine is_planar(film, skeleton, planar, normal)
     type(film_type), intent(in) :: film      !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton !< places at which the pairs are drawn
     logical, intent(out) :: planar           !< all links move parallel to one plane
     real(wp), intent(out) :: normal(3)       !< normal of the plane in the axes of link 1, of unit length; zero where none was found
     real(wp) :: axis(3)
@@ -81,7 +81,7 @@ contains
   !> pair turns, or zero.
   pure subroutine find_normal(film, skeleton, normal)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     real(wp), intent(out) :: normal(3)           !< possible normal in the axes of link 1, of unit length; zero where there is none
     real(wp) :: axis(3), first(3)
     integer :: k
@@ -129,7 +129,7 @@ contains
   !> The view with the best score among views from all sides and a little above.
   pure function best_view(film, skeleton, upward) result(best)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     real(wp), intent(in) :: upward(3)            !< direction that points up in the picture, in the axes of link 1, of unit length
     type(view_type) :: best
     type(view_type) :: view
@@ -163,7 +163,7 @@ contains
   !> nearest to each other.
   pure real(wp) function score_of(film, skeleton, view, frame) result(score)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
-    type(skeleton_type), intent(in) :: skeleton  !< where each pair is drawn
+    type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     type(view_type), intent(in) :: view          !< direction from which the mechanism is seen
     integer, intent(in) :: frame                 !< number of the frame in the film
     real(wp) :: at(3, most_looked_at), apart(3), seen(3), length, seen_length, least
