@@ -15,10 +15,11 @@ contains
 
   !> The poses of a pair at q + i h, i = -8 .. 8.
   subroutine poses_around(test, pair, q, h, poses)
-    type(tester_type), intent(inout) :: test
-    class(pair_type), intent(in) :: pair
-    real(wp), intent(in) :: q, h
-    type(pose_type), intent(out) :: poses(-half_width:half_width)
+    type(tester_type), intent(inout) :: test                        !< counts the checks
+    class(pair_type), intent(in) :: pair                            !< the pair
+    real(wp), intent(in) :: q                                       !< coordinate in the middle [rad or m]
+    real(wp), intent(in) :: h                                       !< distance of neighbours [rad or m]
+    type(pose_type), intent(out) :: poses(-half_width:half_width)   !< at q + i h
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
     integer :: i
@@ -32,9 +33,9 @@ contains
 
   !> Pose, screw and its rate at the middle one of poses at distances h of the coordinate.
   pure subroutine motion_from_poses(poses, h, motion)
-    type(pose_type), intent(in) :: poses(-half_width:half_width)
-    real(wp), intent(in) :: h
-    type(pair_motion_type), intent(out) :: motion
+    type(pose_type), intent(in) :: poses(-half_width:half_width)   !< at distances h of the coordinate
+    real(wp), intent(in) :: h                                      !< distance of neighbours [rad or m]
+    type(pair_motion_type), intent(out) :: motion                  !< in the middle
     real(wp) :: first(3, 3), second(3, 3), turned_back(3, 3), error
     integer :: i, j
 
@@ -51,14 +52,14 @@ contains
     motion%w_rate = axial_vector(matmul(second, turned_back))
   end subroutine motion_from_poses
 
-  !> Check that what a pair says of its derivatives is what its poses show. Sixteenth-order differences
+  !> Check that the derivatives of a pair agree with differences of its poses. Sixteenth-order differences
   !> at h = 1/32 leave, for motions that change over a length of one, no truncation (1e-30) but the
   !> round-off of the poses times 2/h and 8/h^2.
   subroutine check_derivatives(test, pair, q, why)
-    type(tester_type), intent(inout) :: test
-    class(pair_type), intent(in) :: pair
-    real(wp), intent(in) :: q
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    class(pair_type), intent(in) :: pair       !< the pair
+    real(wp), intent(in) :: q                  !< coordinate at which it is checked [rad or m]
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp), parameter :: h = 1.0_wp/32.0_wp
     type(pose_type) :: poses(-half_width:half_width)
     type(pair_motion_type) :: motion, expected
@@ -74,10 +75,11 @@ contains
   !> Check that two motions agree: tolerances of the pose, of the first and of the second derivatives,
   !> against the larger of one and the largest number of each.
   subroutine check_same_motion(test, motion, expected, tolerances, why)
-    type(tester_type), intent(inout) :: test
-    type(pair_motion_type), intent(in) :: motion, expected
-    real(wp), intent(in) :: tolerances(3)
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test         !< counts the checks
+    type(pair_motion_type), intent(in) :: motion     !< the motion that is checked
+    type(pair_motion_type), intent(in) :: expected   !< the right motion
+    real(wp), intent(in) :: tolerances(3)            !< of the pose, of the screw, of its rate
+    character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
 
     call check_numbers(test, reshape(motion%pose%r, [9]), reshape(expected%pose%r, [9]), tolerances(1), why//': rotation')
     call check_numbers(test, motion%pose%p, expected%pose%p, tolerances(1), why//': translation')
@@ -88,9 +90,11 @@ contains
   end subroutine check_same_motion
 
   subroutine check_numbers(test, numbers, expected, tolerance, why)
-    type(tester_type), intent(inout) :: test
-    real(wp), intent(in) :: numbers(:), expected(:), tolerance
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: numbers(:)         !< that are checked
+    real(wp), intent(in) :: expected(:)        !< the right numbers, as many
+    real(wp), intent(in) :: tolerance          !< over the larger of one and the largest number
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp) :: scale
 
     scale = max(1.0_wp, maxval(abs(expected)))

@@ -14,7 +14,7 @@ contains
 
   !> Components between -1 and 1.
   function random_vector(random) result(a)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     real(wp) :: a(3)
     integer :: i
 
@@ -23,9 +23,9 @@ contains
     end do
   end function random_vector
 
-  !> A direction, all alike.
+  !> A unit vector, each direction with the same probability.
   function random_unit(random) result(e)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     real(wp) :: e(3), length
 
     do
@@ -38,8 +38,9 @@ contains
 
   !> Entries between -1 and 1.
   function random_matrix(random, m, n) result(a)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: m, n
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    integer, intent(in) :: m                     !< rows
+    integer, intent(in) :: n                     !< columns
     real(wp) :: a(m, n)
     integer :: i, j
 
@@ -52,7 +53,7 @@ contains
 
   !> The rotation of a quaternion of any length but zero, scalar part first.
   pure function rotation_from_quaternion(quaternion) result(r)
-    real(wp), intent(in) :: quaternion(0:3)
+    real(wp), intent(in) :: quaternion(0:3)   !< scalar part first, not zero
     real(wp) :: r(3, 3), q(0:3)
 
     q = quaternion/norm2(quaternion)
@@ -63,7 +64,7 @@ contains
 
   !> Any rotation.
   function random_rotation(random) result(r)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     real(wp) :: r(3, 3), q(0:3)
 
     do
@@ -76,7 +77,7 @@ contains
 
   !> Any rotation, and a translation of components between -1 and 1.
   function random_pose(random) result(pose)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(pose_type) :: pose
 
     pose%r = random_rotation(random)
@@ -85,7 +86,8 @@ contains
 
   !> The largest difference of any two numbers of two poses.
   pure real(wp) function largest_difference(a, b)
-    type(pose_type), intent(in) :: a, b
+    type(pose_type), intent(in) :: a   !< first pose
+    type(pose_type), intent(in) :: b   !< second pose
 
     largest_difference = max(maxval(abs(a%r - b%r)), maxval(abs(a%p - b%p)))
   end function largest_difference
