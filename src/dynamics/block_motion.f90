@@ -2,16 +2,12 @@
 module mech9_block_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_least_squares, only: least_squares_type, nearly_dependent
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, planar_motion_type
-  use mech9_planar_closure, only: planar_bias_rates
-  use mech9_block_solver, only: block_work_type, factorize_block
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type
   use mech9_driven_motion, only: words_of_block
-  use mech9_dynamics_plan, only: dynamics_plan_type
-  use mech9_jacobian, only: jacobian_type, find_jacobian, noise_of_rates
-  use mech9_planar_block, only: planar_block_type, fill_columns, add_earlier, move_frames
-  use mech9_lagrange_work, only: lagrange_work_type
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
+  use mech9_jacobian, only: find_jacobian, noise_of_rates
   use mech9_frame_motion, only: spread_velocities, spread_accelerations
   use mech9_block_equations, only: block_rates
   implicit none
@@ -33,29 +29,24 @@ contains
     type(lagrange_work_type), intent(inout) :: work
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: conditioning
+    logical :: moved
 
     associate (block => plan%blocks(b))
       if (size(block%unknowns) == 0) then
         call move_as_expected(plan, dynamics, b, state, work)
         return
       end if
-      if (plan%planar%used) then
-        call factorize_in_plane(plan, dynamics%planar_blocks(b), state%planar, work%blocks(b)%equations)
-        work%blocks(b)%count%factorizations = work%blocks(b)%count%factorizations + 1
-      else
-        call factorize_block(plan, block, state, work%blocks(b))
-      end if
+      call dynamics%arithmetic%factorize_block(plan, b, state, work)
       conditioning = work%blocks(b)%equations%conditioning()
       if (conditioning < singular) then
         call raise(err, exit_singular, words_of_block(plan, block)// &
                    ' is in a singular position for these independent coordinates')
-      else if (plan%planar%used .and. conditioning >= nearly_dependent) then
-        call move_in_plane(plan, dynamics, block, dynamics%planar_blocks(b), state, work%jacobian, work%sides, &
-                           work%blocks(b))
-      else
-        call expect(state%t, work)
-        call move_as_expected(plan, dynamics, b, state, work)
+        return
       end if
+      call dynamics%arithmetic%move_regular_block(plan, dynamics, b, state, work, moved)
+      if (moved) return
+      call expect(state%t, work)
+      call move_as_expected(plan, dynamics, b, state, work)
     end associate
   end subroutine move_block
 
@@ -68,62 +59,7 @@ contains
     work%expects = .true.
   end subroutine expect
 
-  !> The Jacobian of a block in planar arithmetic, factorized.
-  subroutine factorize_in_plane(plan, flat, motion, equations)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(planar_block_type), intent(in) :: flat
-    type(planar_motion_type), intent(in) :: motion
-    type(least_squares_type), intent(inout) :: equations
 
-    call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, motion%pose, &
-                      motion%slide, plan%length, equations%m, equations%n, equations%a)
-    call equations%factorize()
-  end subroutine factorize_in_plane
-
-  !> In planar arithmetic, where nothing is lost in noise: each frame is moved once, then once more with the
-  !> accelerations of the dependent coordinates.
-  subroutine move_in_plane(plan, dynamics, block, flat, state, jacobian, sides, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block   !< the block
-    type(planar_block_type), intent(in) :: flat
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(jacobian_type), intent(inout) :: jacobian
-    real(wp), intent(inout), contiguous :: sides(:, :)   !< scratch
-    type(block_work_type), intent(inout) :: work
-    real(wp) :: unit
-    integer :: e, i, j, k, m, n_b
-
-    m = plan%n_coordinates
-    n_b = size(jacobian%b)
-    call fill_columns(size(flat%independent), flat%independent, m, plan%planar%steps, state%planar%pose, &
-                      state%planar%slide, plan%length, size(sides, 1), flat%columns, sides)
-    call add_earlier(size(flat%earlier), flat%earlier, m, state%planar%pose, n_b, jacobian%flat, plan%length, &
-                     size(sides, 1), flat%columns, sides)
-    do i = 1, size(block%unknowns)
-      state%dq(block%coordinates(i)) = 0.0_wp
-    end do
-    do j = 1, flat%columns
-      k = plan%independent(dynamics%column(dynamics%first(block%first_step) + j - 1))
-      unit = plan%unit_of(k)
-      call work%equations%solve(sides(:work%equations%m, j), work%change)
-      do i = 1, size(block%unknowns)
-        e = dynamics%first(block%unknowns(i)) + j - 1
-        jacobian%b(e) = -work%change(i)*plan%unit_of(block%coordinates(i))/unit
-        state%dq(block%coordinates(i)) = state%dq(block%coordinates(i)) + jacobian%b(e)*state%dq(k)
-      end do
-    end do
-    call move_frames(m, n_b, plan%planar%steps, block%first_step, block%last_step, dynamics%first, &
-                     dynamics%parent_entry, dynamics%carries, jacobian%b, state%dq, state%planar%pose, &
-                     state%planar%slide, jacobian%flat, state%planar%velocity, state%planar%acceleration)
-    call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, work%right)
-    call work%equations%solve(work%right, work%change)
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%ddq(k) = -work%change(i)*plan%unit_of(k)
-    end do
-    call spread_accelerations(plan, block, block%last_step, state)
-  end subroutine move_in_plane
 
   !> In general: from what is expected, which stays where the equations say no more than noise.
   subroutine move_as_expected(plan, dynamics, b, state, work)

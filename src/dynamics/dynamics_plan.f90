@@ -1,49 +1,16 @@
 !> The plan of dynamics: which links have inertia, and on which independent coordinates each frame depends.
-!>
-!> Columns of Jacobians are kept only where a frame depends on the independent coordinate: frame s has
-!> the entries first(s) .. first(s+1)-1 of one long list. All frames of a closed block share one set of
-!> coordinates; along an open chain the set grows by each coordinate.
 module mech9_dynamics_plan
   use mech9_kinds, only: wp
   use mech9_pose, only: transformed
   use mech9_inertia, only: inertia_in_axes
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_planar_motion, only: to_plane
-  use mech9_planar_lagrange, only: planar_body_type, planar_body
-  use mech9_planar_block, only: planar_block_type, list_loops
-  use mech9_articulated_bodies, only: articulated_type, new_articulated, add_to_frame
+  use mech9_lagrange_types, only: dynamics_plan_type
+  use mech9_spatial_dynamics, only: new_spatial_dynamics
+  use mech9_planar_dynamics, only: new_planar_dynamics
   implicit none
   private
-  public :: dynamics_plan_type, frame_body_type, make_dynamics_plan
-
-  !> A link with mass, in its frame.
-  type :: frame_body_type
-    integer :: link = 0
-    integer :: frame = 0
-    real(wp) :: mass = 0.0_wp             !< [kg]
-    real(wp) :: centre(3) = 0.0_wp        !< in the frame [m]
-    real(wp) :: inertia(3, 3) = 0.0_wp    !< about the centre, frame axes [kg m^2]
-    logical :: is_point = .true.          !< no inertia but its mass
-  end type frame_body_type
-
-  type :: dynamics_plan_type
-    type(frame_body_type), allocatable :: bodies(:)    !< none of link 1, none without mass
-    type(planar_body_type), allocatable :: planar_bodies(:)   !< the same in planar arithmetic, if it is used,
-    type(planar_block_type), allocatable :: planar_blocks(:)  !< and the blocks
-    real(wp) :: gravity(3) = 0.0_wp                    !< in the axes of frame 0, or of the plane [m/s^2]
-    integer, allocatable :: place_of(:)                !< (M) number of a coordinate among the independent ones, 0
-    integer, allocatable :: first(:)                   !< (0:M+1) first entry of each frame
-    integer, allocatable :: column(:)                  !< (entries) number of the independent coordinate
-    integer, allocatable :: parent_entry(:)            !< (entries) the same column in the parent frame, 0 for none
-    integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame
-    logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
-    integer, allocatable :: acting(:)                  !< numbers of the loads that may move anything
-    logical, allocatable :: load_links(:)              !< (N) links whose motion loads ask for
-    integer, allocatable :: loaded(:)                  !< the same without link 1, which stays where it is
-    logical :: open_chains = .false.                   !< no chain is closed: accelerations by articulated bodies
-    type(articulated_type) :: articulated              !< of open chains, but for planar arithmetic
-  end type dynamics_plan_type
+  public :: make_dynamics_plan
 
 contains
 
@@ -55,7 +22,6 @@ contains
     integer :: i
 
     dynamics%gravity = mechanism%gravity
-    if (plan%planar%used) dynamics%gravity = to_plane(plan%planar, mechanism%gravity)
     allocate (dynamics%place_of(plan%n_coordinates), source=0)
     do i = 1, size(plan%independent)
       dynamics%place_of(plan%independent(i)) = i
@@ -69,10 +35,13 @@ contains
     dynamics%loaded = pack([(i, i=2, plan%n_links)], dynamics%load_links(2:))
     call find_bodies(mechanism, plan, dynamics)
     call find_columns(plan, dynamics)
-    if (plan%planar%used) call list_planar_blocks(plan, dynamics)
     call find_carriers(plan, dynamics)
     dynamics%open_chains = size(plan%closures) == 0
-    if (dynamics%open_chains .and. .not. plan%planar%used) call lay_out_open_chains(plan, dynamics)
+    if (plan%planar%used) then
+      allocate (dynamics%arithmetic, source=new_planar_dynamics(mechanism, plan, dynamics))
+    else
+      allocate (dynamics%arithmetic, source=new_spatial_dynamics(plan, dynamics))
+    end if
   end subroutine make_dynamics_plan
 
   !> Bodies with mass, moved into the frames of their links.
@@ -83,13 +52,11 @@ contains
     integer :: i, n
 
     allocate (dynamics%bodies(size(mechanism%bodies)))
-    if (plan%planar%used) allocate (dynamics%planar_bodies(size(mechanism%bodies)))
     n = 0
     do i = 1, size(mechanism%bodies)
       associate (body => mechanism%bodies(i))
         if (body%link == 1 .or. .not. body%has_inertia()) cycle
         n = n + 1
-        if (plan%planar%used) dynamics%planar_bodies(n) = planar_body(plan, body)
         dynamics%bodies(n)%link = body%link
         dynamics%bodies(n)%frame = plan%frame_of(body%link)
         dynamics%bodies(n)%mass = body%mass
@@ -99,23 +66,7 @@ contains
       end associate
     end do
     dynamics%bodies = dynamics%bodies(:n)
-    if (plan%planar%used) dynamics%planar_bodies = dynamics%planar_bodies(:n)
   end subroutine find_bodies
-
-  !> Open chains as articulated bodies.
-  subroutine lay_out_open_chains(plan, dynamics)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(inout) :: dynamics
-    integer :: i
-
-    dynamics%articulated = new_articulated(plan%steps%parent, plan%steps%coordinate, &
-                                           abs(plan%steps%slide) > 0.0_wp .or. .not. plan%steps%is_screw)
-    do i = 1, size(dynamics%bodies)
-      associate (body => dynamics%bodies(i))
-        call add_to_frame(dynamics%articulated, body%frame, body%mass, body%centre, body%inertia)
-      end associate
-    end do
-  end subroutine lay_out_open_chains
 
   !> The columns of all frames, block by block.
   subroutine find_columns(plan, dynamics)
@@ -143,18 +94,6 @@ contains
     dynamics%first(last + 1:) = dynamics%first(last + 1)
     call resize(dynamics%first(m + 1) - 1, dynamics)
   end subroutine find_columns
-
-  !> What the loops of each block hold.
-  subroutine list_planar_blocks(plan, dynamics)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(inout) :: dynamics
-    integer :: b
-
-    allocate (dynamics%planar_blocks(size(plan%blocks)))
-    do b = 1, size(plan%blocks)
-      call list_loops(plan, b, dynamics%first, dynamics%column, dynamics%place_of, dynamics%planar_blocks(b))
-    end do
-  end subroutine list_planar_blocks
 
   !> Lists of entries of another length, what they hold kept.
   pure subroutine resize(n, dynamics)

@@ -1,13 +1,12 @@
 !> Kinetic (20) and potential energy of a state.
 module mech9_energy
   use mech9_kinds, only: wp
-  use mech9_rotation, only: turn, turn_back, cross
+  use mech9_rotation, only: turn
   use mech9_mechanism, only: mechanism_type
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_dynamics_plan, only: dynamics_plan_type
-  use mech9_planar_lagrange, only: planar_kinetic_energy
+  use mech9_lagrange_types, only: dynamics_plan_type
   use mech9_frame_motion, only: link_motion
   implicit none
   private
@@ -19,22 +18,8 @@ contains
   pure real(wp) function kinetic_energy(dynamics, state) result(energy)
     type(dynamics_plan_type), intent(in) :: dynamics
     type(state_type), intent(in) :: state       !< with its velocities
-    real(wp) :: arm(3), v(3), omega(3)
-    integer :: i
 
-    if (allocated(dynamics%planar_bodies)) then
-      energy = planar_kinetic_energy(dynamics%planar_bodies, state%planar)
-      return
-    end if
-    energy = 0.0_wp
-    do i = 1, size(dynamics%bodies)
-      associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
-        arm = turn(state%r(:, :, f), body%centre)
-        v = state%v(:, f) + cross(state%omega(:, f), arm)
-        omega = turn_back(state%r(:, :, f), state%omega(:, f))
-        energy = energy + 0.5_wp*(body%mass*dot_product(v, v) + dot_product(omega, turn(body%inertia, omega)))
-      end associate
-    end do
+    energy = dynamics%arithmetic%kinetic_energy(dynamics, state)
   end function kinetic_energy
 
   !> Of gravity, zero where all centres are in the origin of link 1, and of the springs [J].

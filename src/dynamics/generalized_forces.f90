@@ -2,19 +2,16 @@
 module mech9_generalized_forces
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_rotation, only: cross
   use mech9_mechanism, only: mechanism_type
   use mech9_call_fault, only: call_fault_type
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_dynamics_plan, only: dynamics_plan_type
-  use mech9_planar_lagrange, only: add_link_force
-  use mech9_lagrange_work, only: lagrange_work_type
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_frame_motion, only: link_motion
   implicit none
   private
-  public :: collect_loads, collect_forces, torque_on_frame, show_state
+  public :: collect_loads, collect_forces, show_state
 
 contains
 
@@ -49,7 +46,7 @@ contains
     integer :: i, e, p, s
 
     do i = 1, size(dynamics%loaded)
-      call add_forces_on_link(plan, dynamics, state, dynamics%loaded(i), work)
+      call dynamics%arithmetic%add_link_force(plan, dynamics, state, dynamics%loaded(i), work)
     end do
     if (.not. work%sum%any_generalized) return
     do i = 1, plan%n_coordinates
@@ -61,44 +58,6 @@ contains
       end do
     end do
   end subroutine collect_forces
-
-  pure subroutine add_forces_on_link(plan, dynamics, state, link, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link
-    type(lagrange_work_type), intent(inout) :: work
-    real(wp) :: torque(3)
-    integer :: f, first, last, e, p
-
-    f = plan%frame_of(link)
-    first = dynamics%first(f)
-    last = dynamics%first(f + 1) - 1
-    if (plan%planar%used) then
-      call add_link_force(plan%planar, link, last - first + 1, dynamics%column(first:last), &
-                          work%jacobian%flat(:, first:last), state%planar%pose(:, f), work%sum%force(:, link), &
-                          work%sum%torque(:, link), work%forces)
-      return
-    end if
-    torque = torque_on_frame(plan, state, link, work)
-    do e = first, last
-      p = dynamics%column(e)
-      work%forces(p) = work%forces(p) + dot_product(work%jacobian%v(:, e), work%sum%force(:, link)) &
-                       + dot_product(work%jacobian%w(:, e), torque)
-    end do
-  end subroutine add_forces_on_link
-
-  !> Torque of the loads on a link about the origin of its frame.
-  pure function torque_on_frame(plan, state, link, work) result(torque)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link
-    type(lagrange_work_type), intent(in) :: work
-    real(wp) :: torque(3), arm(3)
-
-    arm = work%view%links(link)%p - plan%origin - state%p(:, plan%frame_of(link))
-    torque = work%sum%torque(:, link) + cross(arm, work%sum%force(:, link))
-  end function torque_on_frame
 
   !> The state as loads see it: the links' own systems in that of link 1.
   pure subroutine show_state(plan, dynamics, state, view)

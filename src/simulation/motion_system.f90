@@ -13,9 +13,10 @@ module mech9_motion_system
   use mech9_block_solver, only: newton_outcome_type, close_block
   use mech9_planning, only: chain_names
   use mech9_ode_system, only: ode_system_type
-  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
+  use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_expectation, only: expectation_type
-  use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
+  use mech9_lagrange_work, only: new_lagrange_work
   use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
   use mech9_generalized_forces, only: show_state
   use mech9_frame_motion, only: place_all

@@ -9,8 +9,9 @@ program test_bodies
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
+  use mech9_dynamics_plan, only: make_dynamics_plan
+  use mech9_lagrange_work, only: new_lagrange_work
   use mech9_lagrange, only: find_equations, find_motion
   use mech9_coordinate_load, only: coordinate_load_type
   use mech9_spring_load, only: spring_load_type

@@ -10,8 +10,9 @@ program test_planar_arithmetic
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
-  use mech9_lagrange_work, only: lagrange_work_type, new_lagrange_work
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
+  use mech9_dynamics_plan, only: make_dynamics_plan
+  use mech9_lagrange_work, only: new_lagrange_work
   use mech9_lagrange, only: find_equations, find_motion, complete_accelerations
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_sample_mechanisms, only: general_loop

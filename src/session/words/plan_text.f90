@@ -6,7 +6,8 @@ module mech9_plan_text
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type, closure_type
   use mech9_requested, only: requested_type, needed_blocks
-  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_lagrange_types, only: dynamics_plan_type
+  use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_structure_text, only: print_marked
   implicit none
   private

@@ -1,0 +1,249 @@
+!> Lagrange's equations in a plane: the same sums as in space, over columns of three numbers.
+module mech9_planar_dynamics
+  use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
+  use mech9_least_squares, only: least_squares_type, nearly_dependent
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type, planar_motion_type
+  use mech9_planar_motion, only: to_plane
+  use mech9_planar_closure, only: planar_bias_rates, planar_difference
+  use mech9_frame_motion, only: spread_accelerations
+  use mech9_block_solver, only: block_work_type
+  use mech9_planar_lagrange, only: planar_body_type, planar_body, spread_columns, add_bodies => add_inertia, &
+    planar_wrench, add_force => add_link_force, planar_kinetic_energy
+  use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, move_frames
+  use mech9_planar_articulated, only: new_planar_work, solve_in_plane
+  use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
+  implicit none
+  private
+  public :: planar_dynamics_type, new_planar_dynamics
+
+  !> The arithmetic of a plane.
+  type, extends(dynamics_arithmetic_type) :: planar_dynamics_type
+    type(planar_body_type), allocatable :: bodies(:)      !< those of the plan of dynamics
+    type(planar_block_type), allocatable :: blocks(:)     !< loops of each block
+    real(wp) :: gravity(2) = 0.0_wp                       !< in the plane's axes [m/s^2]
+  contains
+    procedure :: make_work
+    procedure :: factorize_block
+    procedure :: move_regular_block
+    procedure :: spread_jacobian
+    procedure :: closing_column
+    procedure :: add_inertia
+    procedure :: add_link_force
+    procedure :: solve_open_chains
+    procedure :: kinetic_energy
+  end type planar_dynamics_type
+
+contains
+
+  !> The arithmetic for a plan of dynamics, whose bodies and columns are known.
+  pure function new_planar_dynamics(mechanism, plan, dynamics) result(self)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism, planar
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(planar_dynamics_type) :: self
+    real(wp) :: gravity(3)
+    integer :: b, i, n
+
+    gravity = to_plane(plan%planar, dynamics%gravity)
+    self%gravity = gravity(1:2)
+    allocate (self%bodies(size(dynamics%bodies)), self%blocks(size(plan%blocks)))
+    ! in the order of the plan of dynamics
+    n = 0
+    do i = 1, size(mechanism%bodies)
+      if (mechanism%bodies(i)%link == 1 .or. .not. mechanism%bodies(i)%has_inertia()) cycle
+      n = n + 1
+      self%bodies(n) = planar_body(plan, mechanism%bodies(i))
+    end do
+    do b = 1, size(plan%blocks)
+      call list_loops(plan, b, dynamics%first, dynamics%column, dynamics%place_of, self%blocks(b))
+    end do
+  end function new_planar_dynamics
+
+  !> Room for the columns of frames and for the passes over open chains.
+  pure subroutine make_work(self, plan, dynamics, work)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(lagrange_work_type), intent(inout) :: work       !< gets the room
+
+    allocate (work%jacobian%flat(3, size(dynamics%column)), source=0.0_wp)
+    if (dynamics%open_chains) work%planar = new_planar_work(plan%n_coordinates)
+  end subroutine make_work
+
+  !> Factorize the Jacobian of a block.
+  subroutine factorize_block(self, plan, b, state, work)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    integer, intent(in) :: b                              !< number of the block
+    type(state_type), intent(in) :: state                 !< with the frames in place
+    type(lagrange_work_type), intent(inout) :: work       !< gets the factors
+
+    call factorize_in_plane(plan, self%blocks(b), state%planar, work%blocks(b)%equations)
+    work%blocks(b)%count%factorizations = work%blocks(b)%count%factorizations + 1
+  end subroutine factorize_block
+
+  !> Rates, entries and accelerations from rates in two passes, where nothing is lost in round-off.
+  subroutine move_regular_block(self, plan, dynamics, b, state, work, moved)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    integer, intent(in) :: b                              !< number of the block
+    type(state_type), intent(inout) :: state              !< gets the motion of the block
+    type(lagrange_work_type), intent(inout) :: work       !< with the block factorized; gets the entries
+    logical, intent(out) :: moved                         !< whether the block is conditioned well enough
+
+    moved = work%blocks(b)%equations%conditioning() >= nearly_dependent
+    if (moved) call move_in_plane(plan, dynamics, plan%blocks(b), self%blocks(b), state, work%jacobian, work%sides, &
+                                  work%blocks(b))
+  end subroutine move_regular_block
+
+  !> The Jacobian of a block in planar arithmetic, factorized.
+  subroutine factorize_in_plane(plan, flat, motion, equations)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(planar_block_type), intent(in) :: flat
+    type(planar_motion_type), intent(in) :: motion
+    type(least_squares_type), intent(inout) :: equations
+
+    call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, motion%pose, &
+                      motion%slide, plan%length, equations%m, equations%n, equations%a)
+    call equations%factorize()
+  end subroutine factorize_in_plane
+
+  !> In planar arithmetic, where nothing is lost in noise: each frame is moved once, then once more with the
+  !> accelerations of the dependent coordinates.
+  subroutine move_in_plane(plan, dynamics, block, flat, state, jacobian, sides, work)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics
+    type(block_type), intent(in) :: block   !< the block
+    type(planar_block_type), intent(in) :: flat
+    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(jacobian_type), intent(inout) :: jacobian
+    real(wp), intent(inout), contiguous :: sides(:, :)   !< scratch
+    type(block_work_type), intent(inout) :: work
+    real(wp) :: unit
+    integer :: e, i, j, k, m, n_b
+
+    m = plan%n_coordinates
+    n_b = size(jacobian%b)
+    call fill_columns(size(flat%independent), flat%independent, m, plan%planar%steps, state%planar%pose, &
+                      state%planar%slide, plan%length, size(sides, 1), flat%columns, sides)
+    call add_earlier(size(flat%earlier), flat%earlier, m, state%planar%pose, n_b, jacobian%flat, plan%length, &
+                     size(sides, 1), flat%columns, sides)
+    do i = 1, size(block%unknowns)
+      state%dq(block%coordinates(i)) = 0.0_wp
+    end do
+    do j = 1, flat%columns
+      k = plan%independent(dynamics%column(dynamics%first(block%first_step) + j - 1))
+      unit = plan%unit_of(k)
+      call work%equations%solve(sides(:work%equations%m, j), work%change)
+      do i = 1, size(block%unknowns)
+        e = dynamics%first(block%unknowns(i)) + j - 1
+        jacobian%b(e) = -work%change(i)*plan%unit_of(block%coordinates(i))/unit
+        state%dq(block%coordinates(i)) = state%dq(block%coordinates(i)) + jacobian%b(e)*state%dq(k)
+      end do
+    end do
+    call move_frames(m, n_b, plan%planar%steps, block%first_step, block%last_step, dynamics%first, &
+                     dynamics%parent_entry, dynamics%carries, jacobian%b, state%dq, state%planar%pose, &
+                     state%planar%slide, jacobian%flat, state%planar%velocity, state%planar%acceleration)
+    call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, work%right)
+    call work%equations%solve(work%right, work%change)
+    do i = 1, size(block%unknowns)
+      k = block%coordinates(i)
+      state%ddq(k) = -work%change(i)*plan%unit_of(k)
+    end do
+    call spread_accelerations(plan, block, block%last_step, state)
+  end subroutine move_in_plane
+
+  !> Outward recursion of the Jacobian's entries over the frames of a block.
+  pure subroutine spread_jacobian(self, plan, dynamics, block, state, all_frames, jacobian)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(block_type), intent(in) :: block                 !< the block
+    type(state_type), intent(in) :: state                 !< with the frames in place
+    logical, intent(in) :: all_frames                     !< also frames that carry nothing
+    type(jacobian_type), intent(inout) :: jacobian        !< with `b` of the block's steps
+
+    call spread_columns(plan%n_coordinates, size(jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
+                        dynamics%first, dynamics%parent_entry, dynamics%carries, all_frames, jacobian%b, &
+                        state%planar%pose, state%planar%slide, jacobian%flat)
+  end subroutine spread_jacobian
+
+  !> The opening of a closure per unit rate of one independent coordinate.
+  pure subroutine closing_column(self, plan, c, state, jacobian, e, t, column)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    integer, intent(in) :: c                              !< number of the closure
+    type(state_type), intent(in) :: state                 !< with the frames in place
+    type(jacobian_type), intent(in) :: jacobian           !< entries of all frames
+    integer, intent(in) :: e                              !< entry of the closing frame
+    integer, intent(in) :: t                              !< entry of the target frame; 0: it does not move
+    real(wp), intent(out), contiguous :: column(:)        !< (3) in the equations of the closure
+    real(wp) :: of_target(3)
+
+    of_target = 0.0_wp
+    if (t > 0) of_target = jacobian%flat(:, t)
+    call planar_difference(plan%planar, c, state%planar, jacobian%flat(:, e), of_target, column)
+  end subroutine closing_column
+
+  !> a_pr (21), the velocity terms of (19) and weights.
+  pure subroutine add_inertia(self, dynamics, state, work)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work       !< with the entries of the Jacobian; gets the sums
+
+    call add_bodies(size(self%bodies), self%bodies, size(state%q), size(dynamics%column), dynamics%first, dynamics%column, &
+                    work%jacobian%flat, state%planar%pose, state%planar%velocity, state%planar%acceleration, self%gravity, &
+                    size(work%forces), work%coefficients, work%velocity_terms, work%forces)
+  end subroutine add_inertia
+
+  !> Add the generalized forces (25) of the loads on one link.
+  pure subroutine add_link_force(self, plan, dynamics, state, link, work)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(state_type), intent(in) :: state                 !< with the frames in place
+    integer, intent(in) :: link                           !< that loads act on
+    type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the generalized ones
+    integer :: f, first, last
+
+    f = plan%frame_of(link)
+    first = dynamics%first(f)
+    last = dynamics%first(f + 1) - 1
+    call add_force(plan%planar, link, last - first + 1, dynamics%column(first:last), work%jacobian%flat(:, first:last), &
+                   state%planar%pose(:, f), work%sum%force(:, link), work%sum%torque(:, link), work%forces)
+  end subroutine add_link_force
+
+  !> Accelerations of open chains by articulated bodies.
+  pure subroutine solve_open_chains(self, plan, dynamics, state, work, found)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the accelerations
+    logical, intent(out) :: found                         !< whether all coordinates have inertia
+    integer :: i, k, f
+
+    do i = 1, size(dynamics%loaded)
+      k = dynamics%loaded(i)
+      f = plan%frame_of(k)
+      work%planar%applied(:, f) = planar_wrench(plan%planar, k, state%planar%pose(:, f), work%sum%force(:, k), &
+                                                work%sum%torque(:, k))
+    end do
+    call solve_in_plane(plan%n_coordinates, plan%planar%steps, self%bodies, self%gravity, state%planar%pose, &
+                        state%planar%slide, state%planar%velocity, state%planar%acceleration, work%sum%generalized, &
+                        work%planar, work%accelerations, found)
+  end subroutine solve_open_chains
+
+  !> Sum over the bodies of half m v^2 of the centre and half I w^2 [J].
+  pure real(wp) function kinetic_energy(self, dynamics, state)
+    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(state_type), intent(in) :: state                 !< with its velocities
+
+    kinetic_energy = planar_kinetic_energy(self%bodies, state%planar)
+  end function kinetic_energy
+end module mech9_planar_dynamics

@@ -1,0 +1,268 @@
+!> Lagrange's equations in space: Jacobians of frames, inertia of links, forces on them, articulated bodies.
+module mech9_spatial_dynamics
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: turn, turn_back, cross
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_spatial_closure, only: reduced_screw
+  use mech9_block_solver, only: solver_factorize => factorize_block
+  use mech9_articulated_bodies, only: articulated_type, new_articulated, new_articulated_work, add_to_frame, find_open_chains => &
+    solve_open_chains
+  use mech9_lagrange_types, only: frame_body_type, dynamics_plan_type, jacobian_type, lagrange_work_type, &
+    dynamics_arithmetic_type
+  implicit none
+  private
+  public :: spatial_dynamics_type, new_spatial_dynamics
+
+  !> The arithmetic of space.
+  type, extends(dynamics_arithmetic_type) :: spatial_dynamics_type
+    type(articulated_type) :: articulated        !< of open chains
+  contains
+    procedure :: make_work
+    procedure :: factorize_block
+    procedure :: move_regular_block
+    procedure :: spread_jacobian
+    procedure :: closing_column
+    procedure :: add_inertia
+    procedure :: add_link_force
+    procedure :: solve_open_chains
+    procedure :: kinetic_energy
+  end type spatial_dynamics_type
+
+contains
+
+  !> The arithmetic for a plan of dynamics, whose bodies are known.
+  pure function new_spatial_dynamics(plan, dynamics) result(self)
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(spatial_dynamics_type) :: self
+    integer :: i
+
+    if (.not. dynamics%open_chains) return
+    self%articulated = new_articulated(plan%steps%parent, plan%steps%coordinate, &
+                                       abs(plan%steps%slide) > 0.0_wp .or. .not. plan%steps%is_screw)
+    do i = 1, size(dynamics%bodies)
+      associate (body => dynamics%bodies(i))
+        call add_to_frame(self%articulated, body%frame, body%mass, body%centre, body%inertia)
+      end associate
+    end do
+  end function new_spatial_dynamics
+
+  !> Room for the columns of frames and for the passes over open chains.
+  pure subroutine make_work(self, plan, dynamics, work)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(lagrange_work_type), intent(inout) :: work       !< gets the room
+
+    allocate (work%jacobian%w(3, size(dynamics%column)), work%jacobian%v(3, size(dynamics%column)), source=0.0_wp)
+    if (dynamics%open_chains) work%articulated = new_articulated_work(plan%n_coordinates)
+  end subroutine make_work
+
+  !> Factorize the Jacobian of a block.
+  subroutine factorize_block(self, plan, b, state, work)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    integer, intent(in) :: b                              !< number of the block
+    type(state_type), intent(in) :: state                 !< with the frames in place
+    type(lagrange_work_type), intent(inout) :: work       !< gets the factors
+
+    call solver_factorize(plan, plan%blocks(b), state, work%blocks(b))
+  end subroutine factorize_block
+
+  !> In space there is no other way than the general one.
+  subroutine move_regular_block(self, plan, dynamics, b, state, work, moved)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    integer, intent(in) :: b                              !< number of the block
+    type(state_type), intent(inout) :: state              !< not changed
+    type(lagrange_work_type), intent(inout) :: work       !< not changed
+    logical, intent(out) :: moved                         !< false
+
+    moved = .false.
+  end subroutine move_regular_block
+
+  !> Outward recursion of the Jacobian's entries over the frames of a block.
+  pure subroutine spread_jacobian(self, plan, dynamics, block, state, all_frames, jacobian)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(block_type), intent(in) :: block                 !< the block
+    type(state_type), intent(in) :: state                 !< with the frames in place
+    logical, intent(in) :: all_frames                     !< also frames that carry nothing
+    type(jacobian_type), intent(inout) :: jacobian        !< with `b` of the block's steps
+    real(wp) :: arm(3)
+    integer :: s, e, p
+
+    do s = block%first_step, block%last_step
+      if (.not. (all_frames .or. dynamics%carries(s))) cycle
+      arm = state%p(:, s) - state%p(:, plan%steps(s)%parent)
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        jacobian%w(:, e) = jacobian%b(e)*state%axis_w(:, s)
+        jacobian%v(:, e) = jacobian%b(e)*state%axis_v(:, s)
+        p = dynamics%parent_entry(e)
+        if (p == 0) cycle
+        jacobian%w(:, e) = jacobian%w(:, e) + jacobian%w(:, p)
+        jacobian%v(:, e) = jacobian%v(:, e) + jacobian%v(:, p) + cross(jacobian%w(:, p), arm)
+      end do
+    end do
+  end subroutine spread_jacobian
+
+  !> The opening of a closure per unit rate of one independent coordinate.
+  pure subroutine closing_column(self, plan, c, state, jacobian, e, t, column)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    integer, intent(in) :: c                              !< number of the closure
+    type(state_type), intent(in) :: state                 !< with the frames in place
+    type(jacobian_type), intent(in) :: jacobian           !< entries of all frames
+    integer, intent(in) :: e                              !< entry of the closing frame
+    integer, intent(in) :: t                              !< entry of the target frame; 0: it does not move
+    real(wp), intent(out), contiguous :: column(:)        !< (rank) in the equations of the closure
+    real(wp) :: w(3), v(3), arm(3)
+
+    associate (closure => plan%closures(c))
+      w = jacobian%w(:, e)
+      v = jacobian%v(:, e)
+      if (t > 0) then
+        arm = state%p(:, closure%closing) - state%p(:, closure%target)
+        w = w - jacobian%w(:, t)
+        v = v - jacobian%v(:, t) - cross(jacobian%w(:, t), arm)
+      end if
+      call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), column)
+    end associate
+  end subroutine closing_column
+
+  !> a_pr (21), the velocity terms of (19) and weights.
+  pure subroutine add_inertia(self, dynamics, state, work)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work       !< with the entries of the Jacobian; gets the sums
+    integer :: i
+
+    do i = 1, size(dynamics%bodies)
+      call add_body(dynamics, dynamics%bodies(i), state, work)
+    end do
+  end subroutine add_inertia
+
+  !> The terms of one body.
+  pure subroutine add_body(dynamics, body, state, work)
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(frame_body_type), intent(in) :: body             !< the body
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
+    type(lagrange_work_type), intent(inout) :: work       !< gets the sums
+    real(wp) :: arm(3), force(3), torque(3), j_c(3), momentum(3), spin(3)
+    integer :: f, e, d, p, r
+
+    f = body%frame
+    arm = turn(state%r(:, :, f), body%centre)
+    force = body%mass*(state%a(:, f) + cross(state%alpha(:, f), arm) &
+                       + cross(state%omega(:, f), cross(state%omega(:, f), arm)))
+    torque = 0.0_wp
+    if (.not. body%is_point) then
+      spin = inertia_times(body, state%r(:, :, f), state%omega(:, f))
+      torque = inertia_times(body, state%r(:, :, f), state%alpha(:, f)) + cross(state%omega(:, f), spin)
+    end if
+    do e = dynamics%first(f), dynamics%first(f + 1) - 1
+      p = dynamics%column(e)
+      j_c = work%jacobian%v(:, e) + cross(work%jacobian%w(:, e), arm)
+      work%velocity_terms(p) = work%velocity_terms(p) + dot_product(j_c, force) &
+                               + dot_product(work%jacobian%w(:, e), torque)
+      work%forces(p) = work%forces(p) + body%mass*dot_product(j_c, dynamics%gravity)
+      momentum = body%mass*j_c
+      spin = cross(arm, momentum)
+      if (.not. body%is_point) spin = spin + inertia_times(body, state%r(:, :, f), work%jacobian%w(:, e))
+      ! J_c,r = J_v,r + J_w,r x arm, so that J_c,r . m J_c,p splits into J_v,r and J_w,r
+      do d = e, dynamics%first(f + 1) - 1
+        r = dynamics%column(d)
+        work%coefficients(r, p) = work%coefficients(r, p) + dot_product(work%jacobian%v(:, d), momentum) &
+                                  + dot_product(work%jacobian%w(:, d), spin)
+      end do
+    end do
+  end subroutine add_body
+
+  !> The body's inertia tensor, in fixed axes, times a vector.
+  pure function inertia_times(body, r, vector) result(product)
+    type(frame_body_type), intent(in) :: body             !< the body
+    real(wp), intent(in) :: r(3, 3)          !< rotation of its frame
+    real(wp), intent(in) :: vector(3)        !< fixed axes
+    real(wp) :: product(3)
+
+    product = turn(r, turn(body%inertia, turn_back(r, vector)))
+  end function inertia_times
+
+  !> Add the generalized forces (25) of the loads on one link.
+  pure subroutine add_link_force(self, plan, dynamics, state, link, work)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(state_type), intent(in) :: state                 !< with the frames in place
+    integer, intent(in) :: link                           !< that loads act on
+    type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the generalized ones
+    real(wp) :: torque(3)
+    integer :: f, e, p
+
+    f = plan%frame_of(link)
+    torque = torque_on_frame(plan, state, link, work)
+    do e = dynamics%first(f), dynamics%first(f + 1) - 1
+      p = dynamics%column(e)
+      work%forces(p) = work%forces(p) + dot_product(work%jacobian%v(:, e), work%sum%force(:, link)) &
+                       + dot_product(work%jacobian%w(:, e), torque)
+    end do
+  end subroutine add_link_force
+
+  !> Torque of the loads on a link about the origin of its frame.
+  pure function torque_on_frame(plan, state, link, work) result(torque)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
+    integer, intent(in) :: link             !< that loads act on
+    type(lagrange_work_type), intent(in) :: work   !< with the loads' forces
+    real(wp) :: torque(3)   !< fixed axes [N m]
+    real(wp) :: arm(3)
+
+    arm = work%view%links(link)%p - plan%origin - state%p(:, plan%frame_of(link))
+    torque = work%sum%torque(:, link) + cross(arm, work%sum%force(:, link))
+  end function torque_on_frame
+
+  !> Accelerations of open chains by articulated bodies.
+  pure subroutine solve_open_chains(self, plan, dynamics, state, work, found)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the accelerations
+    logical, intent(out) :: found                         !< whether all coordinates have inertia
+    integer :: i, k, f
+
+    do i = 1, size(dynamics%loaded)
+      k = dynamics%loaded(i)
+      f = plan%frame_of(k)
+      work%articulated%applied(1:3, f) = torque_on_frame(plan, state, k, work)
+      work%articulated%applied(4:6, f) = work%sum%force(:, k)
+    end do
+    call find_open_chains(self%articulated, plan%n_coordinates, dynamics%gravity, state%r, state%p, state%axis_w, &
+                          state%axis_v, state%omega, state%alpha, state%a, work%sum%generalized, work%articulated, &
+                          work%accelerations, found)
+  end subroutine solve_open_chains
+
+  !> Sum over the bodies of half m v^2 of the centre and half omega . I omega [J].
+  pure real(wp) function kinetic_energy(self, dynamics, state)
+    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
+    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(state_type), intent(in) :: state                 !< with its velocities
+    real(wp) :: arm(3), v(3), omega(3)
+    integer :: i
+
+    kinetic_energy = 0.0_wp
+    do i = 1, size(dynamics%bodies)
+      associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
+        arm = turn(state%r(:, :, f), body%centre)
+        v = state%v(:, f) + cross(state%omega(:, f), arm)
+        omega = turn_back(state%r(:, :, f), state%omega(:, f))
+        kinetic_energy = kinetic_energy &
+                         + 0.5_wp*(body%mass*dot_product(v, v) + dot_product(omega, turn(body%inertia, omega)))
+      end associate
+    end do
+  end function kinetic_energy
+end module mech9_spatial_dynamics
