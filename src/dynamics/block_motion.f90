@@ -43,7 +43,7 @@ contains
                    ' is in a singular position for these independent coordinates')
         return
       end if
-      call dynamics%arithmetic%move_regular_block(plan, dynamics, b, state, work, moved)
+      call dynamics%arithmetic%move_regular_block(plan, dynamics, b, conditioning, state, work, moved)
       if (moved) return
       call expect(state%t, work)
       call move_as_expected(plan, dynamics, b, state, work)

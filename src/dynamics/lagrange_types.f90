@@ -114,12 +114,13 @@ module mech9_lagrange_types
 
     !> Rates, Jacobian entries and accelerations from rates of a well conditioned block in a way of its own; `moved` is false
     !> where there is none, and nothing is changed then.
-    subroutine block_mover(self, plan, dynamics, b, state, work, moved)
-      import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, state_type, lagrange_work_type
+    subroutine block_mover(self, plan, dynamics, b, conditioning, state, work, moved)
+      import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, state_type, lagrange_work_type, wp
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
       integer, intent(in) :: b                              !< number of the block
+      real(wp), intent(in) :: conditioning                  !< of its Jacobian
       type(state_type), intent(inout) :: state              !< gets the motion of the block
       type(lagrange_work_type), intent(inout) :: work       !< with the block factorized; gets the entries
       logical, intent(out) :: moved                         !< whether it was done

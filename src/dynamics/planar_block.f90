@@ -123,13 +123,15 @@ contains
     real(wp), intent(in) :: length                !< of the mechanism [m]
     integer, intent(in) :: rows, columns
     real(wp), intent(out) :: matrix(rows, columns)
+    real(wp) :: per_length
     integer :: i, s, row
 
+    per_length = 1.0_wp/length
     matrix = 0.0_wp
     do i = 1, n
       s = parts(i)%frame
       row = parts(i)%row
-      call step_column(steps(s), parts(i)%weight, f(:, s), slide(:, s), f(3:4, parts(i)%base), 1.0_wp/length, &
+      call step_column(steps(s), parts(i)%weight, f(:, s), slide(:, s), f(3:4, parts(i)%base), per_length, &
                        matrix(row + 1:row + 3, parts(i)%column))
     end do
   end subroutine fill_columns

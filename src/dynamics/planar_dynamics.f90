@@ -85,16 +85,17 @@ contains
   end subroutine factorize_block
 
   !> Rates, entries and accelerations from rates in two passes, where nothing is lost in round-off.
-  subroutine move_regular_block(self, plan, dynamics, b, state, work, moved)
+  subroutine move_regular_block(self, plan, dynamics, b, conditioning, state, work, moved)
     class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
     integer, intent(in) :: b                              !< number of the block
+    real(wp), intent(in) :: conditioning                  !< of its Jacobian
     type(state_type), intent(inout) :: state              !< gets the motion of the block
     type(lagrange_work_type), intent(inout) :: work       !< with the block factorized; gets the entries
     logical, intent(out) :: moved                         !< whether the block is conditioned well enough
 
-    moved = work%blocks(b)%equations%conditioning() >= nearly_dependent
+    moved = conditioning >= nearly_dependent
     if (moved) call move_in_plane(plan, dynamics, plan%blocks(b), self%blocks(b), state, work%jacobian, work%sides, &
                                   work%blocks(b))
   end subroutine move_regular_block

@@ -71,11 +71,12 @@ contains
   end subroutine factorize_block
 
   !> In space there is no other way than the general one.
-  subroutine move_regular_block(self, plan, dynamics, b, state, work, moved)
+  subroutine move_regular_block(self, plan, dynamics, b, conditioning, state, work, moved)
     class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
     integer, intent(in) :: b                              !< number of the block
+    real(wp), intent(in) :: conditioning                  !< of its Jacobian
     type(state_type), intent(inout) :: state              !< not changed
     type(lagrange_work_type), intent(inout) :: work       !< not changed
     logical, intent(out) :: moved                         !< false

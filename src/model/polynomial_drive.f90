@@ -60,6 +60,10 @@ contains
     integer :: k, last
 
     rate = 0.0_wp
+    if (size(self%coefficients) <= 2) then
+      if (size(self%coefficients) == 2) rate = abs(self%coefficients(2))
+      return
+    end if
     last = max(min(highest, size(self%coefficients) - 1), 0)
     if (size(self%coefficients) > highest + 1) then
       call find_terms(self%coefficients, .true., max(abs(t), abs(t + h)), highest + 1, sizes)

@@ -33,13 +33,13 @@ contains
     do degrees = 0, 355, 5
       obstacles%n_lines = 0
       call add_bar(obstacles, degrees)
-      labels = [named(at)]
+      labels(1) = named(at)
       call place_labels(obstacles, page, labels)
       call test%is_true(.not. any_covered(obstacles, labels(1)), 'beside a bar at '//to_text(degrees)//' degrees')
       call test%is_true(distance(labels(1)) < 25.0_wp .and. .not. leads(labels(1)), 'and near its joint')
     end do
     obstacles%n_lines = 0
-    labels = [named(at)]
+    labels(1) = named(at)
     call place_labels(obstacles, page, labels)
     call test%is_true(labels(1)%chosen == 1, 'where nothing is in the way, the spot that it likes best')
   end subroutine one_bar
@@ -58,7 +58,7 @@ contains
         obstacles%n_lines = 0
         call add_bar(obstacles, i)
         call add_bar(obstacles, j)
-        labels = [named(at)]
+        labels(1) = named(at)
         call place_labels(obstacles, page, labels)
         free = free .and. .not. any_covered(obstacles, labels(1)) .and. distance(labels(1)) < 25.0_wp
       end do
@@ -74,7 +74,7 @@ contains
     integer :: i
 
     do i = 0, 3
-      labels = [named([merge(8.0_wp, 592.0_wp, i < 2), merge(8.0_wp, 392.0_wp, mod(i, 2) == 0)])]
+      labels(1) = named([merge(8.0_wp, 592.0_wp, i < 2), merge(8.0_wp, 392.0_wp, mod(i, 2) == 0)])
       call place_labels(obstacles, page, labels)
       associate (spot => labels(1)%spots(labels(1)%chosen))
         call test%is_true(all(spot%low >= 0.0_wp) .and. all(spot%high <= page), 'on the page')
@@ -116,7 +116,7 @@ contains
       to = at + 15.0_wp*[cos((i + 1)*pi/6), sin((i + 1)*pi/6)]
       call obstacles%add(from, to, 8.0_wp, 1.0_wp)
     end do
-    labels = [named(at)]
+    labels(1) = named(at)
     call place_labels(obstacles, page, labels)
     call test%is_true(leads(labels(1)), 'a line leads out of the cage')
     call test%is_true(.not. any_covered(obstacles, labels(1)), 'to a name that covers nothing')
@@ -131,7 +131,7 @@ contains
 
     call obstacles%add([0.0_wp, 190.0_wp], [600.0_wp, 190.0_wp], half, 1.0_wp, owner=3)
     do owner = 2, 3
-      labels = [named(at)]
+      labels(1) = named(at)
       labels(1)%owner = owner
       call place_labels(obstacles, page, labels)
       call test%is_true(any_covered(obstacles, labels(1)) .eqv. owner == 3, 'on the own bar, beside that of another link')
@@ -189,7 +189,7 @@ contains
   end function leads
 
   !> Whether the middle line of an obstacle goes through a label, by points of it every half px.
-  logical function any_covered(obstacles, label)
+  pure logical function any_covered(obstacles, label)
     type(obstacles_type), intent(in) :: obstacles
     type(label_type), intent(in) :: label
     real(wp) :: point(2)
