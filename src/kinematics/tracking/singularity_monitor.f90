@@ -76,7 +76,7 @@ contains
     logical, intent(in) :: factorized   !< the factors in `work` belong to the position in `state`
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
     type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
-    real(wp), intent(inout) :: worst   !< raised to at least the measure of this step; up to 1 no singular matrix lies on the way
+    real(wp), intent(inout) :: worst   !< raised to at least the measure of this step; up to 1 it has no singular matrix
     real(wp) :: change
 
     if (.not. factorized) call factorize_block(plan, block, state, work)
