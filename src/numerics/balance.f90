@@ -13,7 +13,7 @@ module mech9_balance
 contains
 
   !> Scale a square matrix A to D^-1 A D with a diagonal matrix D, so that each row and the column of the same number
-  !> become equally long outside the diagonal (Osborne). The eigenvalues stay; the Frobenius norm falls
+  !> become equally long outside the diagonal (Osborne in docs/bibliography.md). The eigenvalues stay; the Frobenius norm falls
   !> towards the least value that any choice of units can give it.
   pure subroutine balance(a)
     real(wp), intent(inout) :: a(:, :)   !< (n, n) the matrix, which becomes D^-1 A D

@@ -1,4 +1,4 @@
-!> Other independent coordinates where the present ones come to a singular position.
+!> The choice of other independent coordinates near a singular position (Wehage and Haug in docs/bibliography.md).
 module mech9_coordinate_choice
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly, exit_singular
