@@ -13,7 +13,7 @@ program test_clock
 contains
 
   subroutine clock_goes_on(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: before, now
     logical :: back
     integer :: i
@@ -30,7 +30,7 @@ contains
 
   !> In a fast loop: never before the interval is over, and again and again.
   subroutine pacer_keeps_time(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(pacer_type) :: pacer
     real(wp), parameter :: interval = 0.005_wp
     real(wp) :: origin, passed

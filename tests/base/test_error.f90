@@ -11,7 +11,7 @@ program test_error
 contains
 
   subroutine failures(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(error_type), allocatable :: err
     type(error_type) :: fresh
 

@@ -22,9 +22,12 @@ contains
   end subroutine run_tests
 
   subroutine check(tester, path, folder, name, ending, changed)
-    type(tester_type), intent(inout) :: tester
-    character(len=*), intent(in) :: path, folder, name, ending
-    character(len=*), intent(in) :: changed   !< with the ending svg
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: path         !< the name that is taken apart
+    character(len=*), intent(in) :: folder       !< its folder, with the slash at the end
+    character(len=*), intent(in) :: name         !< its name without the folder
+    character(len=*), intent(in) :: ending       !< its ending without the point, in small letters
+    character(len=*), intent(in) :: changed      !< with the ending svg
 
     call tester%is_true(folder_of(path) == folder .and. len(folder_of(path)) == len(folder), path//': folder')
     call tester%is_true(name_of(path) == name, path//': name')

@@ -18,15 +18,16 @@ program test_text
 contains
 
   subroutine same(test, text, expected)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: text, expected
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: text       !< the text that was made
+    character(len=*), intent(in) :: expected   !< the right text
 
     ! lengths too: Fortran takes 'a' and 'a ' for equal
     call test%is_true(text == expected .and. len(text) == len(expected), '"'//text//'" should be "'//expected//'"')
   end subroutine same
 
   subroutine integers_as_text(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: none(0) = [integer ::]
 
     call same(test, to_text(0), '0')
@@ -42,7 +43,7 @@ contains
   end subroutine integers_as_text
 
   subroutine reals_as_text(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
 
     call same(test, to_text(0.0_wp), '0')
     call same(test, to_text(-0.0_wp), '0')
@@ -74,7 +75,7 @@ contains
 
   !> 17 digits give back the very number, 6 digits half a unit of the sixth.
   subroutine reals_read_back(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     character(len=48) :: text
     real(wp) :: number, back
@@ -105,7 +106,7 @@ contains
   end subroutine reals_read_back
 
   subroutine pieces_of_text(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(string_type) :: words(3)
     character(len=2) :: umlaut
 
@@ -127,7 +128,7 @@ contains
   end subroutine pieces_of_text
 
   subroutine near_names(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     character(len=12), parameter :: known(5) = [character(len=12) :: &
                                                 'revolute', 'prismatic', 'helical', 'user', 'axis']
 

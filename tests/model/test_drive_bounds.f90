@@ -55,8 +55,8 @@ contains
 
   !> Against the rates at many times between.
   subroutine check(drive, name)
-    class(drive_type), intent(in) :: drive
-    character(len=*), intent(in) :: name
+    class(drive_type), intent(in) :: drive   !< the drive
+    character(len=*), intent(in) :: name     !< of its kind, for the report of a failure
     real(wp) :: t, h, q, dq, ddq, bound, fastest
     type(error_type), allocatable :: err
     integer :: i, j

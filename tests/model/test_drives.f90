@@ -27,9 +27,9 @@ program test_drives
 contains
 
   real(wp) function value_at(test, drive, t)
-    type(tester_type), intent(inout) :: test
-    class(drive_type), intent(in) :: drive
-    real(wp), intent(in) :: t
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    class(drive_type), intent(in) :: drive     !< the drive
+    real(wp), intent(in) :: t                  !< time [s]
     type(error_type), allocatable :: err
     real(wp) :: dq, ddq
 
@@ -40,10 +40,10 @@ contains
   !> Derivatives as stated against differences of sixteenth order at h = 1/32: they leave the round-off
   !> of the values, of order one, times 2/h and 8/h^2.
   subroutine check_derivatives(test, drive, t, why)
-    type(tester_type), intent(inout) :: test
-    class(drive_type), intent(in) :: drive
-    real(wp), intent(in) :: t
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    class(drive_type), intent(in) :: drive     !< the drive
+    real(wp), intent(in) :: t                  !< time [s]
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp), parameter :: h = 1.0_wp/32.0_wp
     type(error_type), allocatable :: err
     real(wp) :: values(-half_width:half_width), q, dq, ddq, first, second, error
@@ -61,7 +61,7 @@ contains
   end subroutine check_derivatives
 
   subroutine polynomials(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(polynomial_drive_type) :: drive
     type(error_type), allocatable :: err
@@ -85,7 +85,7 @@ contains
   end subroutine polynomials
 
   subroutine harmonics(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(harmonic_drive_type) :: drive
     type(error_type), allocatable :: err
@@ -111,7 +111,7 @@ contains
 
   !> Points of a cubic, unevenly spaced, give the cubic.
   subroutine table_of_cubic(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(table_drive_type) :: table
     type(polynomial_drive_type) :: cubic
@@ -138,7 +138,7 @@ contains
 
   !> Within one piece a table is a cubic, whose derivatives differences find exactly.
   subroutine table_of_sine(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(table_drive_type) :: table
     type(error_type), allocatable :: err
     real(wp) :: t(11)
@@ -154,7 +154,7 @@ contains
   end subroutine table_of_sine
 
   subroutine ends_of_table(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(table_drive_type) :: table
     type(error_type), allocatable :: err
     real(wp) :: t(5), q, dq, ddq
@@ -178,7 +178,7 @@ contains
 
   !> Times of results: evenly spaced, the ends exact.
   subroutine time_grid(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(time_grid_type) :: grid
     integer :: i
 

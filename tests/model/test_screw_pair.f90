@@ -30,9 +30,9 @@ program test_screw_pair
 contains
 
   function pose_at(test, pair, q) result(pose)
-    type(tester_type), intent(inout) :: test
-    type(screw_pair_type), intent(in) :: pair
-    real(wp), intent(in) :: q
+    type(tester_type), intent(inout) :: test    !< counts the checks
+    type(screw_pair_type), intent(in) :: pair   !< the pair
+    real(wp), intent(in) :: q                   !< coordinate [rad or m]
     type(pose_type) :: pose
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
@@ -44,7 +44,8 @@ contains
 
   !> A turn about z and a translation along z.
   pure function turn_and_slide(angle, length) result(pose)
-    real(wp), intent(in) :: angle, length
+    real(wp), intent(in) :: angle    !< about z [rad]
+    real(wp), intent(in) :: length   !< along z [m]
     type(pose_type) :: pose
 
     pose%r = about_z(angle)
@@ -53,11 +54,11 @@ contains
 
   !> Pose, derivatives and factors of one pair at one position.
   subroutine check_pair(test, pair, q, expected, why)
-    type(tester_type), intent(inout) :: test
-    type(screw_pair_type), intent(in) :: pair
-    real(wp), intent(in) :: q
-    type(pose_type), intent(in) :: expected
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test    !< counts the checks
+    type(screw_pair_type), intent(in) :: pair   !< the pair
+    real(wp), intent(in) :: q                   !< coordinate [rad or m]
+    type(pose_type), intent(in) :: expected     !< the right pose
+    character(len=*), intent(in) :: why         !< the statement that is checked, printed where it is wrong
     type(screw_factors_type) :: factors
     type(pose_type) :: composed
     logical :: is_screw
@@ -73,8 +74,8 @@ contains
 
   !> T(q) = F motion(q) G^-1.
   subroutine with_frames(test, random)
-    type(tester_type), intent(inout) :: test
-    type(random_type), intent(inout) :: random
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(pose_type) :: f, g
     real(wp) :: q, pitch
 
@@ -96,8 +97,8 @@ contains
 
   !> T = Rz(theta) Tz(d) Tx(a) Rx(alpha) with q added to theta, or to d; a helical pair advances besides.
   subroutine with_denavit_hartenberg(test, random)
-    type(tester_type), intent(inout) :: test
-    type(random_type), intent(inout) :: random
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     real(wp) :: a, alpha, d, theta, q, pitch
 
     a = random%symmetric()
@@ -118,8 +119,8 @@ contains
   !> Points of the axis stay on it: a turn leaves them, a slide moves them by q, a full turn of a screw
   !> by its pitch.
   subroutine fixed_axes(test, random)
-    type(tester_type), intent(inout) :: test
-    type(random_type), intent(inout) :: random
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(pose_type) :: f, g, turned
     real(wp) :: on_axis(3), q, pitch
 
@@ -140,7 +141,7 @@ contains
   end subroutine fixed_axes
 
   subroutine kinds_and_units(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(screw_pair_type) :: pair
     type(pose_type) :: home
 

@@ -17,8 +17,8 @@ contains
 
   !> Entries at random, from -1 to 1.
   subroutine fill(random, a)
-    type(random_type), intent(inout) :: random
-    real(wp), intent(out) :: a(:, :)
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    real(wp), intent(out) :: a(:, :)             !< any shape
     integer :: i, j
 
     do j = 1, size(a, 2)

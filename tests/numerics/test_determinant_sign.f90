@@ -17,7 +17,7 @@ contains
 
   !> Exact determinant by Bareiss' elimination, which divides without remainder.
   function determinant(matrix) result(value)
-    integer, intent(in) :: matrix(:, :)
+    integer, intent(in) :: matrix(:, :)   !< square
     integer(long) :: value
     integer(long) :: a(size(matrix, 1), size(matrix, 1)), row(size(matrix, 1)), last
     integer :: n, i, j, k, sign
@@ -49,16 +49,17 @@ contains
   end function determinant
 
   function random_integer(random, most) result(number)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: most
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    integer, intent(in) :: most                  !< largest magnitude
     integer :: number
 
     number = nint((most + 0.49_wp)*random%symmetric())
   end function random_integer
 
   function random_integers(random, n, most) result(a)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: n, most
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    integer, intent(in) :: n                     !< rows and columns
+    integer, intent(in) :: most                  !< largest magnitude
     integer :: a(n, n), i, j
 
     do j = 1, n
@@ -69,10 +70,10 @@ contains
   end function random_integers
 
   subroutine check_matrix(test, matrix, value, why)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: matrix(:, :)
-    integer(long), intent(in) :: value
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: matrix(:, :)        !< square
+    integer(long), intent(in) :: value         !< its exact determinant
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(least_squares_type) :: system
     integer :: n
 
@@ -90,7 +91,7 @@ contains
 
   !> Entries -1 .. 1 give many zeros and singular matrices, -3 .. 3 few.
   subroutine small_matrices(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     integer, allocatable :: a(:, :)
     integer :: n, trial
@@ -105,7 +106,7 @@ contains
 
   !> All of three rows, with each choice of signs.
   subroutine permutations(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: orders(3, 6) = reshape([1, 2, 3, 2, 3, 1, 3, 1, 2, 2, 1, 3, 1, 3, 2, 3, 2, 1], [3, 6])
     integer :: a(3, 3), i, j, signs, value
 
@@ -125,7 +126,7 @@ contains
   !> Blocks along the diagonal whose determinants are exact, mixed by additions of rows, which change no
   !> determinant, and by exchanges, which change its sign; past the size from which LAPACK is called.
   subroutine large_matrices(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     integer, allocatable :: a(:, :), block(:, :), row(:)
     integer :: n, trial, first, i, j, k, value
@@ -164,7 +165,7 @@ contains
   end subroutine large_matrices
 
   subroutine other_shapes(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(least_squares_type) :: system
 
     call system%create(3, 2)

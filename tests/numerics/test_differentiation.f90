@@ -25,7 +25,7 @@ program test_differentiation
 contains
 
   subroutine steps(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer :: number
 
     call test%is_true(stencil_size == 2*half_width + 1, 'a stencil has its middle and two sides')
@@ -39,7 +39,7 @@ contains
 
   !> A polynomial of degree 16 is its own interpolant: nothing but round-off remains.
   subroutine powers(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp), parameter :: h = 0.125_wp, x = 0.25_wp
     real(wp) :: values(-half_width:half_width), first, second, error, largest
     integer :: n, i
@@ -58,9 +58,14 @@ contains
 
   !> Check one stencil; `bound17` and `bound18` limit the derivatives of these orders on it.
   subroutine check_stencil(test, values, h, first_true, second_true, bound17, bound18, why)
-    type(tester_type), intent(inout) :: test
-    real(wp), intent(in) :: values(-half_width:half_width), h, first_true, second_true, bound17, bound18
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test                 !< counts the checks
+    real(wp), intent(in) :: values(-half_width:half_width)   !< of the function at i h
+    real(wp), intent(in) :: h                                !< distance of neighbours
+    real(wp), intent(in) :: first_true                       !< the right first derivative
+    real(wp), intent(in) :: second_true                      !< the right second derivative
+    real(wp), intent(in) :: bound17                          !< largest derivative of order 17
+    real(wp), intent(in) :: bound18                          !< largest derivative of order 18
+    character(len=*), intent(in) :: why                      !< the statement that is checked, printed where it is wrong
     real(wp) :: first, second, error, rounding
 
     rounding = epsilon(h)*maxval(abs(values))
@@ -72,7 +77,7 @@ contains
   end subroutine check_stencil
 
   subroutine sines(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: values(-half_width:half_width), x, k, h
     integer :: trial, number, i
@@ -90,7 +95,7 @@ contains
   end subroutine sines
 
   subroutine exponential(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: values(-half_width:half_width), x, h, top
     integer :: trial, number, i
@@ -108,7 +113,7 @@ contains
 
   !> 1/x, whose derivatives grow like factorials: f^(n) = (-1)^n n!/x^(n+1).
   subroutine rational(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: values(-half_width:half_width), x, h, least
     integer :: number, i, j
 
@@ -127,7 +132,7 @@ contains
 
   !> Where truncation rules, half the step divides the error by 2^16, and the estimate is above it.
   subroutine order_and_estimate(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp), parameter :: x = 0.3_wp
     real(wp) :: values(-half_width:half_width), h, first, second, error, e_first(2), e_second(2)
     integer :: i, j

@@ -39,9 +39,11 @@ program test_hermite
 contains
 
   pure subroutine power(x, k, y, dy, ddy)
-    real(wp), intent(in) :: x
-    integer, intent(in) :: k
-    real(wp), intent(out) :: y, dy, ddy
+    real(wp), intent(in) :: x      !< base
+    integer, intent(in) :: k       !< exponent
+    real(wp), intent(out) :: y     !< x^k
+    real(wp), intent(out) :: dy    !< its first derivative
+    real(wp), intent(out) :: ddy   !< its second derivative
 
     y = x**k
     dy = k*x**(k - 1)

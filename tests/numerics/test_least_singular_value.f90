@@ -32,7 +32,9 @@ contains
 
   !> A random matrix whose last column is nearer and nearer to the sum of the others.
   subroutine compare(m, n, trial)
-    integer, intent(in) :: m, n, trial
+    integer, intent(in) :: m       !< rows
+    integer, intent(in) :: n       !< columns
+    integer, intent(in) :: trial   !< number of the matrix; the larger, the nearer to singular
     real(wp) :: a(m, n), s(n), u(m, m), vt(1, 1), work(20*(m + n)), small
     type(least_squares_type) :: equations
     integer :: info

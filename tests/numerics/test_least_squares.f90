@@ -26,7 +26,7 @@ contains
 
   !> Singular values, the largest first.
   function singular_values(a) result(s)
-    real(wp), intent(in) :: a(:, :)
+    real(wp), intent(in) :: a(:, :)   !< any shape
     real(wp) :: s(min(size(a, 1), size(a, 2)))
     real(wp) :: copy(size(a, 1), size(a, 2)), u(size(a, 1), size(a, 1)), vt(1, 1), work(10*(size(a, 1) + size(a, 2)))
     integer :: info
@@ -40,7 +40,9 @@ contains
   !> How far x is from least squares: A^T (b - A x), in quadruple precision, against what a solution of a
   !> problem changed in its last digits leaves there, |A| (|A| |x| + |b|).
   real(wp) function normality(a, b, x)
-    real(wp), intent(in) :: a(:, :), b(:), x(:)
+    real(wp), intent(in) :: a(:, :)   !< matrix of the problem
+    real(wp), intent(in) :: b(:)      !< right-hand side
+    real(wp), intent(in) :: x(:)      !< solution that is judged
     real(quad) :: remains(size(b))
     real(wp) :: size_a
     integer :: j
@@ -59,7 +61,7 @@ contains
 
   !> Each shape up to 60 equations in 40 unknowns: the remainder stands across all columns.
   subroutine all_shapes(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(least_squares_type) :: system
     real(wp), allocatable :: a(:, :), b(:), b_kept(:), x(:)
@@ -94,7 +96,8 @@ contains
 
   !> Solution of A^T A x = A^T b by Cholesky's factorization, in quadruple precision.
   function normal_solution(a, b) result(x)
-    real(wp), intent(in) :: a(:, :), b(:)
+    real(wp), intent(in) :: a(:, :)   !< matrix with independent columns
+    real(wp), intent(in) :: b(:)      !< right-hand side
     real(wp) :: x(size(a, 2))
     real(quad) :: c(size(a, 1), size(a, 2)), g(size(a, 2), size(a, 2)), y(size(a, 2))
     integer :: j, k, n
@@ -124,7 +127,7 @@ contains
 
   !> Solutions themselves, within what the condition of the problem allows.
   subroutine against_normal_equations(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: rows(9) = [1, 2, 3, 6, 12, 23, 25, 40, 60], columns(8) = [1, 2, 3, 6, 12, 23, 24, 40]
     type(random_type) :: random
     type(least_squares_type) :: system
@@ -157,7 +160,7 @@ contains
 
   !> Products of thin matrices have the rank of their common side, whatever the shape.
   subroutine deficient(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: sides(8) = [2, 3, 6, 9, 17, 24, 33, 40]
     type(random_type) :: random
     type(least_squares_type) :: system
@@ -191,7 +194,7 @@ contains
   !> Columns along the axes: nothing below the diagonal is left to be reflected away, and yet the columns
   !> must be chosen by what remains of them.
   subroutine hidden_behind_zeros(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(least_squares_type) :: system
     real(wp) :: x(3), b(3), remainder
     integer, parameter :: entries(9) = [10, 0, 0, 9, 0, 0, 0, 1, 0]
@@ -221,7 +224,7 @@ contains
   end subroutine hidden_behind_zeros
 
   subroutine zero_matrices(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(least_squares_type) :: system
     real(wp) :: x(30), b(30), remainder
     integer :: n
@@ -247,7 +250,7 @@ contains
 
   !> Columns across each other: the quotient of the shortest and the longest.
   subroutine known_conditioning(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(least_squares_type) :: system
     integer :: k, i
 
@@ -271,7 +274,7 @@ contains
   !> Pivots against singular values: |r11| <= s1 <= sqrt(n) |r11| and
   !> sn <= |rnn| <= sn sqrt(4^n + 6n - 1)/3 (Lawson and Hanson, chapter 6).
   subroutine conditioning_within_bounds(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(least_squares_type) :: system
     real(wp), allocatable :: a(:, :), s(:)
@@ -296,7 +299,7 @@ contains
 
   !> One factorization serves several right-hand sides.
   subroutine several_right_sides(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(least_squares_type) :: system
     real(wp), allocatable :: a(:, :), b(:), x(:), expected(:), s(:)
@@ -323,7 +326,7 @@ contains
   !> A tolerance above the least pivot leaves columns out, also of three equations in three unknowns: a row of zeros more,
   !> which takes them to another method, changes nothing.
   subroutine fewer_columns(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(least_squares_type) :: three, more
     type(random_type) :: random
     real(wp) :: b(3), right(3), longer(4), x(3), y(3), tolerance, left, left_of_more

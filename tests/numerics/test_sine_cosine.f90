@@ -21,7 +21,8 @@ contains
 
   !> Largest error of either.
   real(wp) function error_of(angles, turned) result(worst)
-    real(wp), intent(in) :: angles(:), turned(:, :)
+    real(wp), intent(in) :: angles(:)      !< [rad]
+    real(wp), intent(in) :: turned(:, :)   !< (2,n) cosine and sine of each angle
     integer :: i
 
     worst = 0.0_wp

@@ -18,8 +18,8 @@ contains
 
   !> Increasing points at distances between 0.1 and 0.3.
   function random_knots(random, n) result(x)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: n
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    integer, intent(in) :: n                     !< points
     real(wp) :: x(n)
     integer :: i
 
@@ -31,7 +31,7 @@ contains
 
   !> "Not a knot" ends leave a cubic as it is, between the points and beyond them.
   subroutine cubics(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(spline_type) :: spline
     type(error_type), allocatable :: err
@@ -60,7 +60,7 @@ contains
   !> Through each point; value, slope and second derivative the same from both sides; the third
   !> derivative the same on both sides of the second and of the last point but one.
   subroutine smoothness(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(spline_type) :: spline
     type(error_type), allocatable :: err
@@ -97,9 +97,9 @@ contains
 
   !> Largest errors of value and derivatives of the spline through n + 1 points of a sine.
   subroutine sine_errors(test, n, errors)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: n
-    real(wp), intent(out) :: errors(3)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: n                   !< intervals
+    real(wp), intent(out) :: errors(3)         !< of value, first and second derivative
     type(spline_type) :: spline
     type(error_type), allocatable :: err
     real(wp) :: x(0:n), t, y, dy, ddy
@@ -118,7 +118,7 @@ contains
 
   !> Half the distance divides the errors by 16, 8 and 4.
   subroutine order(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: coarse(3), fine(3), quotient(3)
     integer :: i
 
@@ -134,7 +134,7 @@ contains
   end subroutine order
 
   subroutine refused(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(spline_type) :: spline
     type(error_type), allocatable :: err
 

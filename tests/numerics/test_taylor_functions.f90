@@ -22,31 +22,32 @@ contains
 
   !> A smooth argument u(x) that stays between 0.15 and 0.85 for |x| <= 1.
   function argument_real(x, a) result(u)
-    real(wp), intent(in) :: x, a
+    real(wp), intent(in) :: x   !< variable
+    real(wp), intent(in) :: a   !< factor that chooses the argument
     real(wp) :: u
 
     u = 0.5_wp + 0.1_wp*a*x - 0.2_wp*x*x*a + 0.05_wp*x*x*x
   end function argument_real
 
   function argument_taylor(x, a) result(u)
-    type(taylor), intent(in) :: x
-    real(wp), intent(in) :: a
+    type(taylor), intent(in) :: x   !< variable
+    real(wp), intent(in) :: a       !< factor that chooses the argument
     type(taylor) :: u
 
     u = 0.5_wp + 0.1_wp*a*x - 0.2_wp*x*x*a + 0.05_wp*x*x*x
   end function argument_taylor
 
   function value_real(number, u) result(f)
-    integer, intent(in) :: number
-    real(wp), intent(in) :: u
+    integer, intent(in) :: number   !< of the function
+    real(wp), intent(in) :: u       !< its argument
     real(wp) :: f
 
     include 'tested_functions.inc'
   end function value_real
 
   function value_taylor(number, u) result(f)
-    integer, intent(in) :: number
-    type(taylor), intent(in) :: u
+    integer, intent(in) :: number   !< of the function
+    type(taylor), intent(in) :: u   !< its argument
     type(taylor) :: f
 
     include 'tested_functions.inc'
@@ -54,7 +55,7 @@ contains
 
   !> f(u(x)) by Taylor arithmetic and by differences of real numbers.
   subroutine against_differences(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp), parameter :: h = 1.0_wp/64.0_wp
     character(len=2) :: name
@@ -81,10 +82,11 @@ contains
   end subroutine against_differences
 
   subroutine derivatives(test, f, first, second, why)
-    type(tester_type), intent(inout) :: test
-    type(taylor), intent(in) :: f
-    real(wp), intent(in) :: first, second
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(taylor), intent(in) :: f              !< value with derivatives
+    real(wp), intent(in) :: first              !< the right first derivative
+    real(wp), intent(in) :: second             !< the right second derivative
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     ! ten roundings of numbers of order one
     call test%near(f%first, first, 4.0e-15_wp, why//': first derivative')
@@ -92,7 +94,7 @@ contains
   end subroutine derivatives
 
   subroutine textbook_derivatives(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(taylor) :: q
     real(wp) :: x
@@ -121,9 +123,10 @@ contains
   end subroutine textbook_derivatives
 
   subroutine same(test, a, b, why)
-    type(tester_type), intent(inout) :: test
-    type(taylor), intent(in) :: a, b
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(taylor), intent(in) :: a              !< value with derivatives
+    type(taylor), intent(in) :: b              !< the right ones
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     ! arguments between 0.15 and 0.85: the worst of the functions below multiplies roundings by fifty
     call test%near(a%value, b%value, 1.0e-14_wp, why//': value')
@@ -132,7 +135,7 @@ contains
   end subroutine same
 
   function random_argument(random) result(u)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(taylor) :: u
 
     u%value = 0.5_wp + 0.35_wp*random%symmetric()
@@ -142,7 +145,7 @@ contains
 
   !> What one function does the other undoes, with both derivatives.
   subroutine inverse_functions(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(taylor) :: u
     integer :: i
@@ -166,7 +169,7 @@ contains
   end subroutine inverse_functions
 
   subroutine related_functions(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(taylor) :: u
     integer :: i
@@ -190,7 +193,7 @@ contains
 
   !> The angle of a point that runs around the origin grows with it in every quadrant.
   subroutine all_quadrants(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(taylor) :: angle, back
     integer :: i
 

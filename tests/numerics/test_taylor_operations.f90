@@ -26,9 +26,10 @@ program test_taylor_operations
 contains
 
   subroutine same(test, a, b, why)
-    type(tester_type), intent(inout) :: test
-    type(taylor), intent(in) :: a, b
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(taylor), intent(in) :: a              !< value with derivatives
+    type(taylor), intent(in) :: b              !< the right ones
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     call test%near(a%value, b%value, round_off, why//': value')
     call test%near(a%first, b%first, round_off, why//': first derivative')
@@ -36,7 +37,7 @@ contains
   end subroutine same
 
   function random_taylor(random) result(a)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(taylor) :: a
 
     a%value = sign(1.0_wp, random%symmetric())
@@ -47,14 +48,14 @@ contains
 
   !> The function with these three coefficients at x = 0.
   function from_coefficients(c) result(a)
-    real(wp), intent(in) :: c(0:2)
+    real(wp), intent(in) :: c(0:2)   !< of 1, x, x^2
     type(taylor) :: a
 
     a = taylor(c(0), c(1), 2.0_wp*c(2))
   end function from_coefficients
 
   subroutine against_polynomials(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(taylor) :: u, v
     real(wp) :: a(0:2), b(0:2), product(0:2), quotient(0:2)
@@ -77,7 +78,7 @@ contains
   end subroutine against_polynomials
 
   subroutine identities(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(taylor) :: u, v, w
     integer :: i
@@ -101,7 +102,7 @@ contains
 
   !> Real numbers and integers beside Taylor numbers act as constants, on either side.
   subroutine mixed_operands(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(taylor) :: u, x, k
     real(wp) :: r
@@ -144,7 +145,7 @@ contains
 
   !> Powers against repeated products, roots and logarithms.
   subroutine powers(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(taylor) :: u, v, product
     integer :: i, n
@@ -170,7 +171,7 @@ contains
 
   !> At zero a power is as smooth as its exponent says; nothing is divided by zero.
   subroutine powers_at_zero(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(taylor) :: x
 
     x = variable(0.0_wp)
@@ -189,7 +190,7 @@ contains
 
   !> Comparisons look at values only.
   subroutine comparisons(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(taylor) :: a, b
     real(wp) :: x, y
     integer :: i, j
@@ -212,7 +213,7 @@ contains
 
   !> Arrays go through element by element, with scalars beside them.
   subroutine arrays(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(taylor) :: a(3), b(3), c(3), d(2, 2), u
     integer :: i

@@ -52,8 +52,9 @@ contains
   end subroutine integers
 
   subroutine same(f, expected, why)
-    type(taylor), intent(in) :: f, expected
-    character(len=*), intent(in) :: why
+    type(taylor), intent(in) :: f          !< value with derivatives
+    type(taylor), intent(in) :: expected   !< the right ones
+    character(len=*), intent(in) :: why    !< the statement that is checked, printed where it is wrong
     real(wp) :: scale
 
     scale = max(1.0_wp, abs(expected%value), abs(expected%first), abs(expected%second))

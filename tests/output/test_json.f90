@@ -18,7 +18,7 @@ contains
   end subroutine run_tests
 
   subroutine test_document(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(json_type) :: json
     type(error_type), allocatable :: err
     character, parameter :: nl = achar(10)
@@ -49,7 +49,7 @@ contains
 
   !> Every number comes back bit for bit, in the shortest form that does so among 15 to 17 digits.
   subroutine test_numbers(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(json_type) :: json
     type(error_type), allocatable :: err
     real(wp) :: numbers(8), read_back
@@ -82,7 +82,7 @@ contains
 
   !> Calls that do not make a document are refused, not written.
   subroutine test_misuse(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(json_type) :: open_end, no_name, crossed, two, nothing, deep
     type(error_type), allocatable :: err
     integer :: i
@@ -117,7 +117,7 @@ contains
   end subroutine test_misuse
 
   subroutine test_full_disk(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(json_type) :: json
     type(error_type), allocatable :: err
 
@@ -128,7 +128,7 @@ contains
 
   !> All of a small file.
   function file_text(path) result(text)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< of the file
     character(len=:), allocatable :: text
     integer :: unit, size
 

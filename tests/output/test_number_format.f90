@@ -25,8 +25,8 @@ contains
   end subroutine run_tests
 
   subroutine test_special(tester, format)
-    type(tester_type), intent(inout) :: tester
-    type(number_format_type), intent(in) :: format
+    type(tester_type), intent(inout) :: tester       !< counts the checks
+    type(number_format_type), intent(in) :: format   !< of the numbers
 
     call expect(tester, format, 0.0_wp, '0.0000000000000000E+00', 'zero')
     call expect(tester, format, -0.0_wp, '-0.0000000000000000E+00', 'the sign of zero stays')
@@ -43,8 +43,8 @@ contains
 
   !> Numbers in the midst of two neighbours of 17 digits, exactly: to the even one.
   subroutine test_ties(tester, format)
-    type(tester_type), intent(inout) :: tester
-    type(number_format_type), intent(in) :: format
+    type(tester_type), intent(inout) :: tester       !< counts the checks
+    type(number_format_type), intent(in) :: format   !< of the numbers
 
     call expect(tester, format, 1234567890123456.25_wp, '1.2345678901234562E+15', 'tie, even below')
     call expect(tester, format, 1234567890123456.75_wp, '1.2345678901234568E+15', 'tie, even above')
@@ -54,8 +54,8 @@ contains
 
   !> Numbers whose digits beyond the 17th are nearest to a half, below it and above it.
   subroutine test_hard(tester, format)
-    type(tester_type), intent(inout) :: tester
-    type(number_format_type), intent(in) :: format
+    type(tester_type), intent(inout) :: tester       !< counts the checks
+    type(number_format_type), intent(in) :: format   !< of the numbers
     character(len=16), parameter :: bits(*) = [ &
       '2b659a2783ce70ab', '617348bd023ae858', '10f1d467e94b856e', '3086e22db4568793', &
       '5c6e735b3003e352', '618011f2d73116f4', '0730d9b828199006', &
@@ -79,10 +79,11 @@ contains
   end subroutine test_hard
 
   subroutine expect(tester, format, number, text, why)
-    type(tester_type), intent(inout) :: tester
-    type(number_format_type), intent(in) :: format
-    real(wp), intent(in) :: number
-    character(len=*), intent(in) :: text, why
+    type(tester_type), intent(inout) :: tester       !< counts the checks
+    type(number_format_type), intent(in) :: format   !< of the numbers
+    real(wp), intent(in) :: number                   !< that is written
+    character(len=*), intent(in) :: text             !< the right text, without blanks before it
+    character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
     character(len=number_width) :: field
 
     call format%put(number, field)
@@ -92,8 +93,8 @@ contains
 
   !> Powers of two and of ten with their neighbours: where the number of digits changes.
   subroutine test_edges(tester, format)
-    type(tester_type), intent(inout) :: tester
-    type(number_format_type), intent(in) :: format
+    type(tester_type), intent(inout) :: tester       !< counts the checks
+    type(number_format_type), intent(in) :: format   !< of the numbers
     character(len=8) :: text
     real(wp) :: number
     integer :: i, wrong
@@ -114,9 +115,9 @@ contains
 
   !> Count what is wrong at a number and three neighbours on either side, by their bits.
   subroutine count_wrong_near(format, number, wrong)
-    type(number_format_type), intent(in) :: format
-    real(wp), intent(in) :: number
-    integer, intent(inout) :: wrong
+    type(number_format_type), intent(in) :: format   !< of the numbers
+    real(wp), intent(in) :: number                   !< the middle one
+    integer, intent(inout) :: wrong                  !< grows by the numbers whose text is wrong
     integer :: i
 
     do i = -3, 3
@@ -126,8 +127,8 @@ contains
 
   !> A million random bit patterns: all exponents, signs, subnormal numbers, and what is not finite.
   subroutine test_random(tester, format)
-    type(tester_type), intent(inout) :: tester
-    type(number_format_type), intent(in) :: format
+    type(tester_type), intent(inout) :: tester       !< counts the checks
+    type(number_format_type), intent(in) :: format   !< of the numbers
     character(len=number_width) :: field
     integer(long) :: bits
     real(wp) :: number, read_back
@@ -155,8 +156,8 @@ contains
 
   !> Whether a number's text is that of the compiler's formatted write, with a short exponent.
   logical function agrees(format, number)
-    type(number_format_type), intent(in) :: format
-    real(wp), intent(in) :: number
+    type(number_format_type), intent(in) :: format   !< of the numbers
+    real(wp), intent(in) :: number                   !< that is written
     character(len=number_width) :: field, expected
 
     write (expected, '(es25.16e3)') number
@@ -168,8 +169,8 @@ contains
   !> The reason to have it: it must be much faster than the formatted write. About 25 times in a
   !> release build; three times passes with run-time checks on a busy machine, too.
   subroutine test_speed(tester, format)
-    type(tester_type), intent(inout) :: tester
-    type(number_format_type), intent(in) :: format
+    type(tester_type), intent(inout) :: tester       !< counts the checks
+    type(number_format_type), intent(in) :: format   !< of the numbers
     integer, parameter :: many = 100000
     character(len=number_width) :: field
     real(wp) :: numbers(1000), start, own, compilers

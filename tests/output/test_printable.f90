@@ -40,7 +40,9 @@ contains
   end subroutine test_clean_texts
 
   subroutine is(text, expected, why)
-    character(len=*), intent(in) :: text, expected, why
+    character(len=*), intent(in) :: text       !< of any bytes
+    character(len=*), intent(in) :: expected   !< the right printable text
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     call test%is_true(len(text) == len(expected) .and. text == expected, why//': '//text)
   end subroutine is

@@ -24,8 +24,8 @@ contains
 
   !> A run of n + 1 rows from 0 to 1 s: t, q1 = a t, P.x = 1 + a t^2, P.z = round-off that has the sign of a.
   function new_run(n, a) result(kept)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: a
+    integer, intent(in) :: n    !< intervals
+    real(wp), intent(in) :: a   !< factor of the motion
     type(kept_rows_type) :: kept
     type(string_type) :: names(4), units(4)
     real(wp) :: t
@@ -47,7 +47,7 @@ contains
   end function new_run
 
   subroutine test_kept(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(kept_rows_type) :: kept
     character(len=:), allocatable :: meant
     integer :: number
@@ -65,7 +65,7 @@ contains
 
   !> Of a run too long for the memory every so-manieth row is kept, the first one included.
   subroutine test_thinned(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(kept_rows_type) :: kept
     type(string_type) :: names(1), units(1)
     integer, parameter :: n = 40000000
@@ -86,7 +86,7 @@ contains
   end subroutine test_thinned
 
   subroutine test_text(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=:), allocatable :: text
 
     text = rows_text(new_run(4, 2.0_wp), [1, 3], 2)
@@ -97,7 +97,7 @@ contains
 
   !> q1 differs by |a - b| at t = 1 s; P.x as well, a smaller share; P.z by no more than round-off.
   subroutine test_comparison(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(comparison_type) :: comparison
     character(len=:), allocatable :: text
 
@@ -127,7 +127,7 @@ contains
   end subroutine test_comparison
 
   subroutine test_common_times(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(comparison_type) :: comparison
     type(kept_rows_type) :: later
 

@@ -24,15 +24,15 @@ contains
 
   !> A table for the tests: columns t, q1 [rad].
   subroutine open_two_columns(table, path, err)
-    type(table_type), intent(inout) :: table
-    character(len=*), intent(in) :: path
-    type(error_type), allocatable, intent(out) :: err
+    type(table_type), intent(inout) :: table            !< opened
+    character(len=*), intent(in) :: path                !< of its file
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call table%open(path, 'Two columns', 'mech9k 0.0', words('t|q1'), words('s|rad'), err)
   end subroutine open_two_columns
 
   subroutine test_contents(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(table_type) :: table
     type(error_type), allocatable :: err
     character(len=80) :: lines(7)
@@ -64,7 +64,7 @@ contains
 
   !> Titles and names of any bytes leave a table that can be read.
   subroutine test_odd_words(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(table_type) :: table
     type(error_type), allocatable :: err
     character(len=100) :: lines(8)
@@ -89,7 +89,7 @@ contains
 
   !> A file of comma-separated values: names, then rows, nothing else; names in quotes where they must be.
   subroutine test_commas(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(table_type) :: table
     type(error_type), allocatable :: err
     character(len=100) :: lines(4)
@@ -114,7 +114,7 @@ contains
 
   !> Several buffers full of rows: nothing is lost or torn where one ends.
   subroutine test_many_rows(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, parameter :: rows = 50000
     type(table_type) :: table
     type(error_type), allocatable :: err
@@ -144,7 +144,7 @@ contains
 
   !> A slow run: what is more than a second old stands in the file, in whole rows, before it is closed.
   subroutine test_regular_flush(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(table_type) :: table
     type(error_type), allocatable :: err
     real(wp) :: start
@@ -170,7 +170,7 @@ contains
   end subroutine test_regular_flush
 
   subroutine test_failures(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(table_type) :: table
     type(error_type), allocatable :: err
     integer :: i
@@ -204,7 +204,7 @@ contains
 
   !> Words that are separated by `|` in the text. (Array constructors of these leak in gfortran 12.)
   function words(text) result(list)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< words with `|` between them
     type(string_type), allocatable :: list(:)
     integer :: first, next, i
 
@@ -219,9 +219,9 @@ contains
 
   !> The lines of a file; count may exceed what there is room for.
   subroutine read_lines(path, lines, count)
-    character(len=*), intent(in) :: path
-    character(len=*), intent(out) :: lines(:)
-    integer, intent(out) :: count
+    character(len=*), intent(in) :: path        !< of the file
+    character(len=*), intent(out) :: lines(:)   !< as many as there is room for
+    integer, intent(out) :: count               !< lines of the file
     character(len=200) :: line
     integer :: unit, status
 

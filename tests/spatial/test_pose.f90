@@ -24,7 +24,7 @@ program test_pose
 contains
 
   subroutine composition(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(pose_type) :: a, b, c
     real(wp) :: x(3)
@@ -52,7 +52,7 @@ contains
   !> Three points given in a frame lead back to it: R2 on x, R3 in the half-plane of x and -z, so that
   !> (R2 - R1) x (R3 - R1) is along y.
   subroutine from_points(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(pose_type) :: pose, found
     real(wp) :: scale, along, across, r2(3), r3(3)
@@ -78,7 +78,7 @@ contains
 
   !> Close to one line the plane is known badly, but the matrix is a rotation all the same.
   subroutine nearly_in_line(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(pose_type) :: pose, found
     logical :: ok
@@ -99,7 +99,7 @@ contains
   end subroutine nearly_in_line
 
   subroutine in_line(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(pose_type) :: pose
     real(wp) :: r1(3), d(3)
@@ -121,7 +121,7 @@ contains
   end subroutine in_line
 
   subroutine from_axis(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(pose_type) :: pose
     real(wp) :: point(3), axis(3), zero(3)
@@ -151,7 +151,9 @@ contains
   end subroutine from_axis
 
   pure function moved(x, y, z) result(pose)
-    real(wp), intent(in) :: x, y, z
+    real(wp), intent(in) :: x   !< translation along x [m]
+    real(wp), intent(in) :: y   !< translation along y [m]
+    real(wp), intent(in) :: z   !< translation along z [m]
     type(pose_type) :: pose
 
     pose%p = [x, y, z]
@@ -159,7 +161,7 @@ contains
 
   !> T = Rz(theta) Tz(d) Tx(a) Rx(alpha), factor by factor.
   subroutine denavit_hartenberg(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(pose_type) :: expected
     real(wp) :: a, alpha, d, theta
@@ -182,10 +184,10 @@ contains
   end subroutine denavit_hartenberg
 
   subroutine check_default(test, axis, expected, why)
-    type(tester_type), intent(inout) :: test
-    real(wp), intent(in) :: axis(3)
-    integer, intent(in) :: expected
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: axis(3)            !< of any length
+    integer, intent(in) :: expected            !< number of the right direction: 1, 2, 3 for x, y, z
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp) :: zero(3)
 
     zero = default_zero(axis)
@@ -195,7 +197,7 @@ contains
   !> The first of x, y, z at 45 degrees or more, by the angle itself; at exactly 45 it counts, whatever
   !> the length of the axis and its rounding.
   subroutine default_directions(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: axis(3), angles(3), scale
     integer :: i

@@ -23,7 +23,7 @@ program test_rotation
 contains
 
   subroutine vectors(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: a(3), b(3), c(3), matrix(3, 3)
     integer :: i
@@ -49,7 +49,8 @@ contains
   end subroutine vectors
 
   pure function outer(a, b) result(c)
-    real(wp), intent(in) :: a(3), b(3)
+    real(wp), intent(in) :: a(3)   !< left factor
+    real(wp), intent(in) :: b(3)   !< right factor
     real(wp) :: c(3, 3)
 
     c = spread(a, 2, 3)*spread(b, 1, 3)
@@ -57,7 +58,7 @@ contains
 
   !> Vectors of any size but zero, without overflow or underflow.
   subroutine unit_vectors(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: a(3), e(3)
     integer :: k
@@ -74,7 +75,7 @@ contains
   end subroutine unit_vectors
 
   subroutine axis_and_angle(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: e(3), angle, other, r(3, 3), a(3)
     integer :: i
@@ -104,7 +105,7 @@ contains
 
   !> From 0 to 180 degrees, close to both, and close to all places where formulas change.
   subroutine vector_of_rotation(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: e(3), angle, offset, phi(3)
     integer :: i, k, place
@@ -132,7 +133,7 @@ contains
 
   !> Small angles keep all their digits: closures are measured by them.
   subroutine vector_of_small_rotation(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: e(3), angle, phi(3)
     integer :: i, k
@@ -151,7 +152,7 @@ contains
 
   !> At 180 degrees the axis is known but for its sense.
   subroutine half_turns(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: e(3), phi(3), r(3, 3)
     integer :: i, j, k
@@ -177,7 +178,7 @@ contains
 
   !> There and back, for random rotations and for half turns, about axes and diagonals, where w vanishes.
   subroutine quaternion_of_any_rotation(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: given(4), found(4)
     integer :: i
@@ -195,7 +196,7 @@ contains
   end subroutine quaternion_of_any_rotation
 
   subroutine vector_of_any_rotation(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: r(3, 3), phi(3), angle
     integer :: i

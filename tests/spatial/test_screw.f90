@@ -26,7 +26,7 @@ program test_screw
 contains
 
   function random_screw(random) result(s)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     real(wp) :: s(6)
 
     s(1:3) = random_vector(random)
@@ -35,7 +35,9 @@ contains
 
   !> The screw of a turn about an axis through a point, with an advance per radian.
   pure function joint(axis, point, advance) result(s)
-    real(wp), intent(in) :: axis(3), point(3), advance
+    real(wp), intent(in) :: axis(3)    !< direction of any length
+    real(wp), intent(in) :: point(3)   !< of the axis [m]
+    real(wp), intent(in) :: advance    !< per radian [m]
     real(wp) :: s(6)
 
     s(1:3) = axis
@@ -43,7 +45,7 @@ contains
   end function joint
 
   pure function slide(direction) result(s)
-    real(wp), intent(in) :: direction(3)
+    real(wp), intent(in) :: direction(3)   !< of any length
     real(wp) :: s(6)
 
     s(1:3) = 0.0_wp
@@ -51,7 +53,7 @@ contains
   end function slide
 
   subroutine bracket_identities(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: a(6), b(6), c(6), x, y
     integer :: i
@@ -72,7 +74,7 @@ contains
 
   !> The velocity of a point is the same vector, whatever frame it is written in.
   subroutine change_of_frame(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(pose_type) :: x_ab, x_bc
     real(wp) :: a(6), b(6), point_b(3), point_a(3), velocity_b(3), velocity_a(3), in_a(6)
@@ -99,7 +101,7 @@ contains
 
   !> The bracket is the rate at which a motion along the first screw carries the second along.
   subroutine bracket_as_rate(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp), parameter :: h = 1.0_wp/32.0_wp
     type(pose_type) :: pose
@@ -130,10 +132,11 @@ contains
   end subroutine bracket_as_rate
 
   subroutine check_basis(test, basis, rank, screws, why)
-    type(tester_type), intent(inout) :: test
-    real(wp), intent(in) :: basis(6, 6), screws(:, :)
-    integer, intent(in) :: rank
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: basis(6, 6)        !< its columns are orthonormal; only the first `rank` count
+    real(wp), intent(in) :: screws(:, :)       !< that span the space
+    integer, intent(in) :: rank                !< that was found
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp) :: product(rank, rank)
     integer :: i
 
@@ -147,8 +150,9 @@ contains
 
   !> Whether all columns are combinations of the first `rank` columns of an orthonormal basis.
   pure logical function within(basis, rank, screws)
-    real(wp), intent(in) :: basis(6, 6), screws(:, :)
-    integer, intent(in) :: rank
+    real(wp), intent(in) :: basis(6, 6)    !< orthonormal columns
+    real(wp), intent(in) :: screws(:, :)   !< that are looked for in the space
+    integer, intent(in) :: rank            !< number of its columns that count
     real(wp) :: outside(6, size(screws, 2))
 
     outside = screws - matmul(basis(:, :rank), matmul(transpose(basis(:, :rank)), screws))
@@ -156,7 +160,7 @@ contains
   end function within
 
   subroutine bases(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp), allocatable :: screws(:, :)
     real(wp) :: basis(6, 6)
@@ -188,11 +192,11 @@ contains
   !> Check the algebra of some screws, written in a random frame: its dimension, that it holds the screws,
   !> and that it is closed under the bracket.
   subroutine check_algebra(test, random, screws, dimension, why)
-    type(tester_type), intent(inout) :: test
-    type(random_type), intent(inout) :: random
-    real(wp), intent(in) :: screws(:, :)
-    integer, intent(in) :: dimension
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    real(wp), intent(in) :: screws(:, :)         !< that generate the algebra
+    integer, intent(in) :: dimension             !< the right one
+    character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
     type(pose_type) :: frame
     real(wp) :: moved(6, size(screws, 2)), basis(6, 6)
     integer :: rank, i, j
@@ -216,7 +220,7 @@ contains
 
   !> The subgroups of rigid motions, from few of their joints and from many.
   subroutine algebras(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], y(3) = [0.0_wp, 1.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
     real(wp) :: p(3), q(3), s(3), u(3), v(3), w(3)
@@ -266,13 +270,14 @@ contains
   !> Split the space of some screws, written in a random frame: how many directions there are, that the slides belong to
   !> the space, the axis where there is one, and whether it turns only by screwing.
   subroutine check_split(test, random, screws, n_turns, n_slides, by_screwing, axis, why)
-    type(tester_type), intent(inout) :: test
-    type(random_type), intent(inout) :: random
-    real(wp), intent(in) :: screws(:, :)
-    integer, intent(in) :: n_turns, n_slides
-    logical, intent(in) :: by_screwing
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    real(wp), intent(in) :: screws(:, :)         !< that span the space
+    integer, intent(in) :: n_turns               !< right number of directions of turning
+    integer, intent(in) :: n_slides              !< right number of directions of sliding
+    logical, intent(in) :: by_screwing           !< it turns only together with a slide
     real(wp), intent(in) :: axis(3)              !< of its only turning, a unit vector
-    character(len=*), intent(in) :: why
+    character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
     type(pose_type) :: frame
     real(wp) :: moved(6, size(screws, 2)), basis(6, 6), turns(3, 3), slides(3, 3)
     integer :: rank, turning, sliding, i
@@ -296,7 +301,7 @@ contains
 
   !> What the subgroups of rigid motions turn about and slide along.
   subroutine split_spaces(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], y(3) = [0.0_wp, 1.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
     real(wp) :: p(3), basis(6, 6), turns(3, 3), slides(3, 3)
