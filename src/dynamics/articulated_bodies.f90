@@ -1,4 +1,4 @@
-!> Accelerations of open chains by articulated bodies (Featherstone in docs/bibliography.md): no matrix of all coordinates, O(links).
+!> Accelerations of open chains by articulated bodies (Featherstone in docs/bibliography.md), without a matrix, in O(links).
 !>
 !> Lagrange's equations of a mechanism without closed chains are those of Newton and Euler link by link. What
 !> hangs on a step resists the motion (dw, dv) of its frame with a wrench that is linear in it,

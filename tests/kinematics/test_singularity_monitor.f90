@@ -1,5 +1,4 @@
-!> What is watched from step to step, on a four-bar whose singular positions are known: no step is trusted that may have
-!> passed one.
+!> The singularity monitor on a four-bar whose singular positions are known: it trusts no step in which one may lie.
 program test_singularity_monitor
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -26,8 +25,8 @@ program test_singularity_monitor
 
   middle = 0.5_wp*(four_bar_limit(bar, stretched=.false.) + four_bar_limit(bar, stretched=.true.))
   call begin()
-  call watch_changes()
-  call watch_signs()
+  call check_changes()
+  call check_signs()
   call test%finish()
 
 contains
@@ -45,9 +44,10 @@ contains
     monitors(1) = new_singularity_monitor(plan%blocks(1))
   end subroutine begin
 
+  !> Place the four-bar at an angle of the crank, on a branch.
   subroutine go_to(angle, branch)
-    real(wp), intent(in) :: angle
-    integer, intent(in) :: branch
+    real(wp), intent(in) :: angle   !< angle of the crank [rad]
+    integer, intent(in) :: branch   !< +1 or -1
     type(error_type), allocatable :: err
 
     state%q = four_bar_guess(bar, angle, branch)
@@ -55,43 +55,44 @@ contains
     call test%no_error(err, 'the frames are in place')
   end subroutine go_to
 
-  subroutine depart(angle, branch)
-    real(wp), intent(in) :: angle
-    integer, intent(in) :: branch
+  !> Take such a position as the start of a step.
+  subroutine start_step(angle, branch)
+    real(wp), intent(in) :: angle   !< angle of the crank [rad]
+    integer, intent(in) :: branch   !< +1 or -1
 
     call go_to(angle, branch)
     call factorize_trial(plan, plan%blocks(1), state, work(1), monitors(1))
     call accept_jacobians(work, monitors)
-  end subroutine depart
+  end subroutine start_step
 
-  !> What watching a step to a position adds: up to 1 it is trusted.
+  !> The measure of a step to a position, which is trusted up to 1.
   real(wp) function step_to(angle, branch) result(worst)
-    real(wp), intent(in) :: angle
-    integer, intent(in) :: branch
+    real(wp), intent(in) :: angle   !< angle of the crank [rad]
+    integer, intent(in) :: branch   !< +1 or -1
 
     call go_to(angle, branch)
     worst = 0.0_wp
     call monitor_step(plan, plan%blocks(1), state, .false., work(1), monitors(1), worst)
   end function step_to
 
-  subroutine watch_changes()
+  subroutine check_changes()
     real(wp) :: limit
 
     limit = four_bar_limit(bar, stretched=.true.)
-    call depart(middle, 1)
+    call start_step(middle, 1)
     call test%near(step_to(middle, 1), 0.0_wp, 0.0_wp, 'nothing has changed where it stays')
     call test%is_true(step_to(middle + 1.0e-3_wp, 1) < 0.1_wp, 'a short step is trusted')
     ! the Jacobian is singular at the limit, to the round-off of the angle there: the root of that of the crank
     call test%is_true(step_to(limit, 1) > 1.0_wp, 'none that ends at a dead point')
-    call depart(limit - 1.0e-4_wp, 1)
+    call start_step(limit - 1.0e-4_wp, 1)
     call test%is_true(step_to(limit - 1.0e-4_wp, -1) > 1.0_wp, 'nor one to the other branch, however near it is')
     call test%is_true(monitors(1)%trial_sign == -monitors(1)%sign, 'whose determinant has the other sign')
-  end subroutine watch_changes
+  end subroutine check_changes
 
-  !> The sign alone is enough to refuse a step, were the change of the Jacobian ever so small.
-  subroutine watch_signs()
-    call depart(middle, 1)
+  !> A change of the determinant's sign refuses a step even if the Jacobian changes very little.
+  subroutine check_signs()
+    call start_step(middle, 1)
     monitors(1)%sign = -monitors(1)%sign
     call test%is_true(step_to(middle, 1) > 1.0_wp, 'a sign that changed is not passed over')
-  end subroutine watch_signs
+  end subroutine check_signs
 end program test_singularity_monitor
