@@ -22,11 +22,11 @@ contains
 
   !> All groups &body: masses, centres and inertia tensors, checked.
   pure subroutine read_bodies(document, structure, pairs, bodies, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(structure_type), intent(in) :: structure            !< without links where it is not known
-    type(pair_slot_type), intent(in) :: pairs(:)             !< (M); those in whose groups is an error are missing
-    type(body_type), allocatable, intent(out) :: bodies(:)   !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document             !< the data file as groups and items
+    type(structure_type), intent(in) :: structure           !< the structure; without links where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)            !< (M) pairs by coordinate; a slot is empty where its group has an error
+    type(body_type), allocatable, intent(out) :: bodies(:)  !< one for each sound group, in their order
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     type(turning_search_type) :: search
     integer, allocatable :: numbers(:)
     real(wp) :: j(6)
@@ -57,11 +57,11 @@ contains
   !> Report a tensor that no body has. For a link that can turn about one direction only, the moment about that direction
   !> is enough; the rest of its tensor may be zero.
   pure subroutine check_inertia(group, body, judged, search, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(body_type), intent(in) :: body   !< the body that the group describes
-    logical, intent(in) :: judged                            !< whether it is known how the link can turn
-    type(turning_search_type), intent(inout) :: search       !< of use where that is known
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(body_type), intent(in) :: body                   !< the body that the group describes
+    logical, intent(in) :: judged                         !< whether it is known how the link can turn
+    type(turning_search_type), intent(inout) :: search    !< directions in which links turn; used where `judged` is true
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: problem
     real(wp) :: direction(3)
     logical :: has_one, is_enough
@@ -71,7 +71,7 @@ contains
     if (.not. allocated(problem)) return
     call only_direction(body%inertia, direction, has_one)
     if (has_one) then
-      if (.not. judged) return                               ! other errors were reported
+      if (.not. judged) return                               ! the structure or the pairs have errors, which were reported
       call search%turns_only_about(body%link, direction, slack, is_enough, barrier)
       if (is_enough) return
       problem = problem//'; one moment alone is enough where a link turns about the axis of that moment only'
@@ -84,9 +84,9 @@ contains
 
   !> The direction of a tensor that has a moment about one direction and nothing else.
   pure subroutine only_direction(inertia, direction, has_one)
-    real(wp), intent(in) :: inertia(3, 3)                    !< [kg m^2]
-    real(wp), intent(out) :: direction(3)                    !< of length 1
-    logical, intent(out) :: has_one   !< whether the tensor is of this form
+    real(wp), intent(in) :: inertia(3, 3)  !< tensor of inertia about the mass centre, in the axes of the link [kg m^2]
+    real(wp), intent(out) :: direction(3)  !< direction of the moment, in the axes of the link, of length 1
+    logical, intent(out) :: has_one        !< whether the tensor is of this form
     real(wp) :: moment
     integer :: i, k
 
@@ -105,9 +105,9 @@ contains
   !> matrix without negative eigenvalues; with it the tensor has none either, and no principal moment exceeds the sum
   !> of the two others. All principal minors of such a matrix are zero or positive.
   pure subroutine judge_tensor(inertia, problem, at)
-    real(wp), intent(in) :: inertia(3, 3)                    !< [kg m^2]
-    character(len=:), allocatable, intent(out) :: problem    !< in words; not allocated where there is none
-    integer, intent(out) :: at                               !< the number of the list that shows it
+    real(wp), intent(in) :: inertia(3, 3)  !< tensor of inertia about the mass centre, in the axes of the link [kg m^2]
+    character(len=:), allocatable, intent(out) :: problem  !< what is wrong, in words; not allocated where nothing is
+    integer, intent(out) :: at                             !< position of the wrong number in the list of the data file
     real(wp) :: s(3, 3), scale
     integer :: i
 
@@ -132,24 +132,24 @@ contains
   end subroutine judge_tensor
 
   pure function moment_name(i) result(name)
-    integer, intent(in) :: i   !< number of the axis: 1, 2 or 3
+    integer, intent(in) :: i  !< number of the axis: 1, 2 or 3
     character(len=2) :: name
     character(len=2), parameter :: names(3) = ['xx', 'yy', 'zz']
 
     name = names(i)
   end function moment_name
 
-  !> Determinant of two rows and columns.
+  !> Determinant of two rows and the same two columns.
   pure real(wp) function minor(a, i, j)
-    real(wp), intent(in) :: a(3, 3)   !< symmetric matrix
-    integer, intent(in) :: i   !< number of the first row and column
-    integer, intent(in) :: j   !< number of the second row and column
+    real(wp), intent(in) :: a(3, 3)  !< symmetric matrix
+    integer, intent(in) :: i         !< number of the first row and column
+    integer, intent(in) :: j         !< number of the second row and column
 
     minor = a(i, i)*a(j, j) - a(i, j)*a(j, i)
   end function minor
 
   pure real(wp) function determinant(a)
-    real(wp), intent(in) :: a(3, 3)   !< symmetric matrix
+    real(wp), intent(in) :: a(3, 3)  !< symmetric matrix
 
     determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
                   + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
@@ -157,7 +157,7 @@ contains
 
   !> The acceleration of gravity; zero where the file has none.
   pure function read_gravity(document) result(gravity)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(document_type), intent(in) :: document  !< the data file as groups and items
     real(wp) :: gravity(3)
     integer, allocatable :: numbers(:)
 

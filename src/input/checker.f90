@@ -15,15 +15,15 @@ module mech9_checker
   private
   public :: check_document
 
-  integer, parameter :: kind_length = 16    !< of the longest kind of a group
+  integer, parameter :: kind_length = 16  !< length of the longest kind of a group
 
 contains
 
   !> Check all groups. Each group gets its row of the grammar, one plain item for each name, and the
   !> mark `sound` where nothing is wrong with it.
   pure subroutine check_document(document, diagnostics)
-    type(document_type), intent(inout) :: document   !< the data file as groups and items
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(inout) :: document        !< the data file as groups and items
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: i, found
 
     do i = 1, size(document%groups)
@@ -45,11 +45,11 @@ contains
   end subroutine check_document
 
   pure subroutine report_unknown_group(group, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: hint
 
-    if (group%name == '') return          ! told when it was read
+    if (group%name == '') return          ! this error was reported when the file was read
     hint = nearest_name(group%name, names_of_groups())
     if (hint /= '') hint = '; did you mean &'//hint//'?'
     call diagnostics%add(group%span, 'unknown group '//diagnostics%text_of(group%span)//hint)
@@ -57,7 +57,7 @@ contains
 
   !> Whether the group holds a value that was reported when it was read.
   pure logical function has_bad_value(group)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     integer :: i
 
     has_bad_value = .true.
@@ -68,8 +68,8 @@ contains
   end function has_bad_value
 
   pure subroutine check_group(group, diagnostics)
-    type(group_type), intent(inout) :: group   !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(inout) :: group              !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=kind_length) :: kind
 
     call merge_group(group, diagnostics)
@@ -80,8 +80,8 @@ contains
 
   !> Make one item of each name. The coincidence matrix keeps its rows and columns apart.
   pure subroutine merge_group(group, diagnostics)
-    type(group_type), intent(inout) :: group   !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(inout) :: group              !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(item_type), allocatable :: merged(:)
     type(item_type) :: one
     integer :: firsts(size(group%items)), i, j, count, names
@@ -98,10 +98,10 @@ contains
         end do
         if (j <= names) cycle
         names = names + 1
-        firsts(names) = i   ! where each name stands first
+        firsts(names) = i   ! positions of the first items of each name
         call merge_items(group%items, group%items(i)%name, one, diagnostics)
       end if
-      if (all(one%values%kind == value_null)) cycle   ! "name = ," says as much as nothing
+      if (all(one%values%kind == value_null)) cycle   ! "name = ," gives no value: the default holds
       call add_item(merged, count, one)
     end do
     if (.not. allocated(merged)) allocate (merged(0))
@@ -109,15 +109,15 @@ contains
   end subroutine merge_group
 
   pure logical function is_matrix(group, item)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(item_type), intent(in) :: item   !< the item that may be the coincidence matrix
+    type(group_type), intent(in) :: group  !< the group of the data file
+    type(item_type), intent(in) :: item    !< the item that may be the coincidence matrix
 
     is_matrix = group%name == 'structure' .and. item%name == 'c'
   end function is_matrix
 
   !> The kind that a group gives; empty where it gives none, or an unknown one.
   pure function kind_of(group) result(kind)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=kind_length) :: kind
     integer, allocatable :: rows(:)
     integer :: i
@@ -133,9 +133,9 @@ contains
   end function kind_of
 
   pure subroutine check_items(group, kind, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: kind   !< the kind of the group; empty where it has none
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: kind                  !< the kind of the group; empty where it has none
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: rows(:)
     integer :: i, row
 
@@ -156,9 +156,9 @@ contains
   end subroutine check_items
 
   pure subroutine report_unknown_name(group, item, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(item_type), intent(in) :: item   !< the item whose name is unknown
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(item_type), intent(in) :: item                   !< the item whose name is unknown
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: hint
     integer :: i
 
@@ -177,9 +177,9 @@ contains
 
   !> Report each missing name that must be given.
   pure subroutine check_missing(group, kind, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: kind   !< the kind of the group; empty where it has none
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: kind                  !< the kind of the group; empty where it has none
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -193,7 +193,7 @@ contains
   end subroutine check_missing
 
   pure logical function is_given(group, name)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item that is sought
     integer :: i
 
@@ -206,9 +206,9 @@ contains
 
   !> Report groups that stand twice though they may stand only once, and groups whose key stands twice.
   pure subroutine check_repeated(document, row, diagnostics)
-    type(document_type), intent(inout) :: document   !< the data file as groups and items
-    integer, intent(in) :: row   !< row of the groups in group_table
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(inout) :: document        !< the data file as groups and items
+    integer, intent(in) :: row                            !< row of the groups in group_table
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: members(:), keys(:)
     integer :: i, j
 
@@ -236,11 +236,11 @@ contains
   !> A number that is equal for groups of the same key and for no others; negative and of its own
   !> where the key is missing or wrong.
   pure integer function key_number(group, number, members, row, document)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    integer, intent(in) :: number                 !< of the group among its fellows
-    integer, intent(in) :: members(:)   !< numbers of all groups of this kind in the document
-    integer, intent(in) :: row   !< row of these groups in group_table
-    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(group_type), intent(in) :: group        !< the group of the data file
+    integer, intent(in) :: number                !< position of the group among those of its kind
+    integer, intent(in) :: members(:)            !< numbers of all groups of this kind in the document
+    integer, intent(in) :: row                   !< row of these groups in group_table
+    type(document_type), intent(in) :: document  !< the data file as groups and items
     type(value_type) :: value, other
     integer :: j
 
@@ -260,8 +260,8 @@ contains
   end function key_number
 
   pure function key_value(group, key) result(value)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: key   !< the name whose value is returned
+    type(group_type), intent(in) :: group  !< the group of the data file
+    character(len=*), intent(in) :: key    !< the name whose value is returned
     type(value_type) :: value
     integer :: i
 
@@ -271,10 +271,10 @@ contains
   end function key_value
 
   pure subroutine report_repeated(group, first, key, diagnostics)
-    type(group_type), intent(in) :: group   !< the group that stands there again
-    type(group_type), intent(in) :: first   !< the group that stands there first
-    character(len=*), intent(in) :: key   !< the name that tells the groups apart; empty where the group may stand only once
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group that stands there again
+    type(group_type), intent(in) :: first                 !< the group that stands there first
+    character(len=*), intent(in) :: key  !< the name that tells the groups apart; empty where the group may stand only once
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: text
     type(value_type) :: value
     type(span_type) :: span

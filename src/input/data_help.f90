@@ -13,11 +13,11 @@ module mech9_data_help
 
 contains
 
-  !> Help on a group with all of its names, or on one name of it; a short list of the groups where none is meant.
+  !> Help on a group with all of its names, or on one name of it; without a group, a short list of all groups.
   subroutine write_data_help(unit, subject, err)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    character(len=*), intent(in) :: subject         !< GROUP or GROUP.NAME, with or without &; empty: all groups
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer, intent(in) :: unit                        !< Fortran unit to write to
+    character(len=*), intent(in) :: subject            !< GROUP or GROUP.NAME, with or without &; empty: all groups
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: group, name
     integer, allocatable :: rows(:)
     integer :: row, dot, i
@@ -51,11 +51,11 @@ contains
     end do
   end subroutine write_data_help
 
-  !> A question for the known word nearest to a misspelled one; the other advice where none is near.
+  !> The question whether the known word nearest to a misspelled one is meant; other advice where none is near.
   pure function hint(word, known, otherwise) result(text)
-    character(len=*), intent(in) :: word   !< the unknown word of the user
+    character(len=*), intent(in) :: word       !< the unknown word of the user
     character(len=*), intent(in) :: known(:)   !< the words that exist
-    character(len=*), intent(in) :: otherwise   !< the advice where no known word is near
+    character(len=*), intent(in) :: otherwise  !< the advice where no known word is near
     character(len=:), allocatable :: text
 
     text = nearest_name(word, known)
@@ -67,7 +67,7 @@ contains
   end function hint
 
   subroutine list_groups(unit)
-    integer, intent(in) :: unit   !< Fortran unit to write to
+    integer, intent(in) :: unit  !< Fortran unit to write to
     integer :: i
 
     write (unit, '(a)') 'The groups of a data file, in any order; --help-data GROUP explains one, GROUP.NAME a name in it:'
@@ -77,8 +77,8 @@ contains
   end subroutine list_groups
 
   subroutine describe_item(unit, row)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    integer, intent(in) :: unit             !< Fortran unit to write to
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
 
     write (unit, '(a)')
     write (unit, '(2a)') indent(:2), trim(row%name)//' = '//trim(row%example)
@@ -88,7 +88,7 @@ contains
 
   !> The groups one after the other, each with a Markdown table of its names.
   subroutine write_data_tables(unit)
-    integer, intent(in) :: unit   !< Fortran unit to write to
+    integer, intent(in) :: unit  !< Fortran unit to write to
     integer, allocatable :: rows(:)
     integer :: i, j
 
@@ -105,24 +105,24 @@ contains
   end subroutine write_data_tables
 
   subroutine write_table_row(unit, row)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    integer, intent(in) :: unit             !< Fortran unit to write to
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
 
     write (unit, '(*(a))') '| `', trim(row%name), '` | ', values_text(row), ' | ', unit_text(row), ' | ', &
       default_text(row), ' | ', meaning_text(row), ' | `', trim(row%example), '` |'
   end subroutine write_table_row
 
   pure function capital(text) result(raised)
-    character(len=*), intent(in) :: text   !< a text that is not empty
+    character(len=*), intent(in) :: text  !< a text that is not empty
     character(len=len(text)) :: raised
 
     raised = text
     if (text(1:1) >= 'a' .and. text(1:1) <= 'z') raised(1:1) = achar(iachar(text(1:1)) - 32)
   end function capital
 
-  !> How often a group may stand, and which program uses it.
+  !> The rule how often a group may stand, and the program that uses it.
   pure function use_text(row) result(text)
-    type(group_row_type), intent(in) :: row   !< the group, as a row of group_table
+    type(group_row_type), intent(in) :: row  !< the group, as a row of group_table
     character(len=:), allocatable :: text
 
     text = 'stands at most once'
@@ -133,7 +133,7 @@ contains
 
   !> The values that a name takes: "2 whole numbers, >=1", "a text: fixed or link".
   pure function values_text(row) result(text)
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     select case (row%type)
@@ -157,7 +157,7 @@ contains
 
   !> "a b c" as "a, b or c".
   pure function word_list(words) result(text)
-    character(len=*), intent(in) :: words   !< the words, with one blank between two of them
+    character(len=*), intent(in) :: words  !< the words, with one blank between two of them
     character(len=:), allocatable :: text
     integer :: i, last
 
@@ -176,7 +176,7 @@ contains
 
   !> The unit in words; the grammar writes `q` for the unit of a coordinate.
   pure function unit_text(row) result(text)
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     select case (row%unit)
@@ -195,7 +195,7 @@ contains
 
   !> The values that a name takes, their unit, and the default.
   pure function takes_text(row) result(text)
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     text = values_text(row)
@@ -209,7 +209,7 @@ contains
 
   !> The value that holds where the name is not given.
   pure function default_text(row) result(text)
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     if (row%needed) then
@@ -225,7 +225,7 @@ contains
 
   !> The meaning of a name, after the kinds of the group that it belongs to.
   pure function meaning_text(row) result(text)
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=:), allocatable :: text
 
     text = trim(row%help)

@@ -21,7 +21,7 @@ module mech9_diagnostics
   type :: diagnostics_type
     !> The texts that spans point into; the first one is the data file.
     type(source_type), allocatable :: sources(:)
-    integer :: count = 0               !< errors found, also those that are no longer kept
+    integer :: count = 0  !< errors found, also those that are no longer kept
     type(diagnostic_type), allocatable, private :: kept(:)
     integer, private :: kept_count = 0
   contains
@@ -38,20 +38,20 @@ module mech9_diagnostics
     procedure :: report
   end type diagnostics_type
 
-  integer, parameter :: most_kept = 1000     !< a file with more errors is no data file
+  integer, parameter :: most_kept = 1000  !< errors that are kept; a file with more is no data file
   integer, parameter :: most_shown = 20
-  integer, parameter :: window = 100         !< columns of a line that are shown
-  integer, parameter :: margin = 33          !< of them before the place
-  integer, parameter :: longest_quote = 40   !< of a text quoted in a message
+  integer, parameter :: window = 100        !< columns of a line that are shown
+  integer, parameter :: margin = 33         !< columns shown before the place of the error
+  integer, parameter :: longest_quote = 40  !< longest text that a message quotes
 
 contains
 
   !> Add an error. A span with source 0 means that it has no place.
   pure subroutine add(self, span, message, code)
-    class(diagnostics_type), intent(inout) :: self   !< the diagnostics
-    type(span_type), intent(in) :: span   !< place of the error in its source; source 0: none
-    character(len=*), intent(in) :: message   !< the error in words
-    integer, intent(in), optional :: code     !< exit_data unless given
+    class(diagnostics_type), intent(inout) :: self  !< the diagnostics
+    type(span_type), intent(in) :: span             !< place of the error in its source; source 0: none
+    character(len=*), intent(in) :: message         !< the error in words
+    integer, intent(in), optional :: code           !< exit code for this error; exit_data if absent
 
     self%count = self%count + 1
     if (.not. allocated(self%kept)) allocate (self%kept(16))
@@ -67,8 +67,8 @@ contains
 
   !> Add a failure of another floor; its place is one in the data file.
   pure subroutine add_error(self, err)
-    class(diagnostics_type), intent(inout) :: self   !< the diagnostics
-    type(error_type), intent(in) :: err   !< the failure
+    class(diagnostics_type), intent(inout) :: self  !< the diagnostics
+    type(error_type), intent(in) :: err             !< the failure
     type(span_type) :: span
     integer :: byte
 
@@ -81,7 +81,7 @@ contains
 
   !> Length of the word at the beginning of a text, for the carets under it; at least 1.
   pure integer function word_length(text) result(length)
-    character(len=*), intent(in) :: text   !< the text from the first byte of the word to the end of the file
+    character(len=*), intent(in) :: text  !< the text from the first byte of the word to the end of the file
 
     length = scan(text(min(2, len(text)):), ' ,/=()'//achar(9)//achar(10)//achar(13))
     if (length == 0) length = len(text)
@@ -89,7 +89,7 @@ contains
   end function word_length
 
   pure subroutine grow(kept)
-    type(diagnostic_type), allocatable, intent(inout) :: kept(:)   !< the errors; their number of places is doubled
+    type(diagnostic_type), allocatable, intent(inout) :: kept(:)  !< the errors; their number of places is doubled
     type(diagnostic_type), allocatable :: grown(:)
 
     allocate (grown(2*size(kept)))
@@ -99,9 +99,9 @@ contains
 
   !> Add a text that spans will point into.
   pure subroutine add_source(self, source, number)
-    class(diagnostics_type), intent(inout) :: self   !< the diagnostics
-    type(source_type), intent(in) :: source   !< the text that spans will point into
-    integer, intent(out) :: number            !< for `source` of the spans
+    class(diagnostics_type), intent(inout) :: self  !< the diagnostics
+    type(source_type), intent(in) :: source         !< the text that spans will point into
+    integer, intent(out) :: number                  !< number of the source, for spans
     type(source_type), allocatable :: grown(:)
 
     number = 1
@@ -113,14 +113,14 @@ contains
   end subroutine add_source
 
   pure logical function failed(self)
-    class(diagnostics_type), intent(in) :: self   !< the diagnostics
+    class(diagnostics_type), intent(in) :: self  !< the diagnostics
 
     failed = self%count > 0
   end function failed
 
   !> The exit code of the gravest error: an unreadable file before wrong data before a wrong structure.
   pure integer function code(self)
-    class(diagnostics_type), intent(in) :: self   !< the diagnostics
+    class(diagnostics_type), intent(in) :: self  !< the diagnostics
     integer, parameter :: order(3) = [exit_file, exit_data, exit_structure]
     integer :: i
 
@@ -135,23 +135,23 @@ contains
 
   !> Line and column of a span; line 0 for spans outside the data file.
   pure type(place_type) function place(self, span)
-    class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    type(span_type), intent(in) :: span   !< bytes of a source
+    class(diagnostics_type), intent(in) :: self  !< the diagnostics
+    type(span_type), intent(in) :: span          !< bytes of a source
 
     if (span%source == 1) place = self%sources(1)%place(span%first)
   end function place
 
   pure integer function cut_length(text, longest) result(length)
-    character(len=*), intent(in) :: text   !< the text that is shown
-    integer, intent(in) :: longest   !< most bytes that are shown
+    character(len=*), intent(in) :: text  !< the text that is shown
+    integer, intent(in) :: longest        !< most bytes that are shown
 
     length = len(text)
     if (length > longest) length = character_start(text, longest, 1) - 1 + len('...')
   end function cut_length
 
   pure integer function length_of(self, span) result(length)
-    type(diagnostics_type), intent(in) :: self   !< the diagnostics
-    type(span_type), intent(in) :: span   !< the bytes that are quoted
+    type(diagnostics_type), intent(in) :: self  !< the diagnostics
+    type(span_type), intent(in) :: span         !< the bytes that are quoted
 
     length = 0
     if (span%source == 0) return
@@ -160,8 +160,8 @@ contains
 
   !> A span as it is written, for messages: short and printable.
   pure function text_of(self, span) result(text)
-    class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    type(span_type), intent(in) :: span   !< the bytes that are quoted
+    class(diagnostics_type), intent(in) :: self  !< the diagnostics
+    type(span_type), intent(in) :: span          !< the bytes that are quoted
     character(len=length_of(self, span)) :: text
 
     if (span%source == 0) return
@@ -170,17 +170,17 @@ contains
 
   !> The number of errors that `get` and `render` can return.
   pure integer function known(self)
-    class(diagnostics_type), intent(in) :: self   !< the diagnostics
+    class(diagnostics_type), intent(in) :: self  !< the diagnostics
 
     known = self%kept_count
   end function known
 
   !> Error number i in the order in which they were found: its message alone, and its place.
   pure subroutine get(self, i, message, span)
-    class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    integer, intent(in) :: i                  !< 1 to known()
-    character(len=:), allocatable, intent(out) :: message   !< the error in words
-    type(span_type), intent(out) :: span      !< source 0: no place
+    class(diagnostics_type), intent(in) :: self            !< the diagnostics
+    integer, intent(in) :: i                               !< number of the error, from 1 to known()
+    character(len=:), allocatable, intent(out) :: message  !< the error in words
+    type(span_type), intent(out) :: span                   !< place of the error; source 0: none
 
     message = self%kept(i)%message
     span = self%kept(i)%span
@@ -188,9 +188,9 @@ contains
 
   !> Error number i in the order of the places, as it is shown: message, line, carets.
   pure subroutine render(self, i, text)
-    class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    integer, intent(in) :: i   !< position of the error in the order of places, from 1
-    character(len=:), allocatable, intent(out) :: text   !< the lines to show, without a line end after the last
+    class(diagnostics_type), intent(in) :: self         !< the diagnostics
+    integer, intent(in) :: i                            !< position of the error in the order of places, from 1
+    character(len=:), allocatable, intent(out) :: text  !< the lines to show, without a line end after the last
     type(diagnostic_type) :: this
     type(place_type) :: position
     integer, allocatable :: order(:)
@@ -215,8 +215,8 @@ contains
 
   !> Print the errors in the order of their places, at most twenty of them.
   subroutine report(self, unit)
-    class(diagnostics_type), intent(in) :: self   !< the diagnostics
-    integer, intent(in) :: unit   !< Fortran unit to write to
+    class(diagnostics_type), intent(in) :: self  !< the diagnostics
+    integer, intent(in) :: unit                  !< Fortran unit to write to
     character(len=:), allocatable :: text
     integer :: i
 
@@ -230,7 +230,7 @@ contains
 
   !> Positions of the kept errors by source, then by place; those without a place come last.
   pure function sorted(self) result(order)
-    type(diagnostics_type), intent(in) :: self   !< the diagnostics
+    type(diagnostics_type), intent(in) :: self  !< the diagnostics
     integer, allocatable :: order(:)
     integer :: i, j, new
 
@@ -248,8 +248,8 @@ contains
   end function sorted
 
   pure logical function before(a, b)
-    type(span_type), intent(in) :: a   !< the place that may come first
-    type(span_type), intent(in) :: b   !< the place that it is compared with
+    type(span_type), intent(in) :: a  !< the place that may come first
+    type(span_type), intent(in) :: b  !< the place that it is compared with
 
     if (a%source == b%source) then
       before = a%first < b%first
@@ -260,9 +260,9 @@ contains
 
   !> Append the line of a span with carets under the span; of a long line, a window around it.
   pure subroutine append_excerpt(source, span, text)
-    type(source_type), intent(in) :: source   !< the text that the span points into
-    type(span_type), intent(in) :: span   !< the place that gets carets
-    character(len=:), allocatable, intent(inout) :: text   !< the message, to which two lines are appended
+    type(source_type), intent(in) :: source               !< the text that the span points into
+    type(span_type), intent(in) :: span                   !< the place that gets carets
+    character(len=:), allocatable, intent(inout) :: text  !< the message, to which two lines are appended
     character(len=:), allocatable :: line, carets
     type(place_type) :: position
     integer :: first, last, from, to, i
@@ -280,7 +280,7 @@ contains
     line = printable(source%text(from:to))
     carets = repeat(' ', count_characters(source%text(from:span%first - 1)))
     do i = 1, min(len(carets), len(line))
-      if (line(i:i) == achar(9)) carets(i:i) = achar(9)   ! tabs above blanks would shift the carets
+      if (line(i:i) == achar(9)) carets(i:i) = achar(9)   ! a blank under a tab would shift the carets
     end do
     carets = carets//repeat('^', max(1, count_characters(source%text(span%first:min(span%last, to)))))
     if (from > first) then
@@ -293,9 +293,9 @@ contains
 
   !> The first byte of the character that byte `at` belongs to.
   pure integer function character_start(text, at, least) result(start)
-    character(len=*), intent(in) :: text   !< a text in UTF-8
-    integer, intent(in) :: at   !< number of a byte; it may be one beyond the end
-    integer, intent(in) :: least   !< lowest result allowed
+    character(len=*), intent(in) :: text  !< a text in UTF-8
+    integer, intent(in) :: at             !< number of a byte; it may be one beyond the end
+    integer, intent(in) :: least          !< lowest result allowed
 
     start = at
     if (at > len(text)) return
@@ -306,7 +306,7 @@ contains
   end function character_start
 
   pure integer function count_characters(text) result(n)
-    character(len=*), intent(in) :: text   !< a text in UTF-8
+    character(len=*), intent(in) :: text  !< a text in UTF-8
     integer :: i
 
     n = 0
@@ -315,9 +315,9 @@ contains
     end do
   end function count_characters
 
-  !> A text that may come from anywhere, safe to print: control bytes become question marks (tabs stay).
+  !> A text of any origin, safe to print: control bytes become question marks (tabs stay).
   pure function printable_text(text) result(shown)
-    character(len=*), intent(in) :: text   !< any bytes
+    character(len=*), intent(in) :: text  !< any bytes
     character(len=len(text)) :: shown
     integer :: i
 
@@ -327,10 +327,10 @@ contains
     end do
   end function printable_text
 
-  !> The same, cut where it is longer than `longest` bytes.
+  !> The beginning of a text, safe to print, of at most `longest` bytes.
   pure function printable_beginning(text, longest) result(shown)
-    character(len=*), intent(in) :: text   !< any bytes
-    integer, intent(in) :: longest   !< most bytes of the result
+    character(len=*), intent(in) :: text  !< any bytes
+    integer, intent(in) :: longest        !< most bytes of the result
     character(len=cut_length(text, longest)) :: shown
 
     shown = printable_text(text)

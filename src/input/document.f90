@@ -17,51 +17,51 @@ module mech9_document
   !> One value as it is written.
   type :: value_type
     integer :: kind = value_null
-    integer :: times = 1                         !< written as times*value
-    integer(long) :: whole = 0                   !< of an integer
-    real(wp) :: number = 0.0_wp                  !< of an integer or a real
+    integer :: times = 1         !< written as times*value
+    integer(long) :: whole = 0   !< value of an integer
+    real(wp) :: number = 0.0_wp  !< value of an integer or a real
     logical :: truth = .false.
-    character(len=:), allocatable :: text        !< of a text (without quotes) or a word
+    character(len=:), allocatable :: text  !< the text (without quotes) or the word
     type(span_type) :: span
   end type value_type
 
   !> One subscript of a name: an index, or a section first:last.
   type :: subscript_type
-    integer :: first = 0      !< 0: not given
-    integer :: last = 0       !< 0: not given
+    integer :: first = 0  !< 0: not given
+    integer :: last = 0   !< 0: not given
     logical :: section = .false.
   end type subscript_type
 
   !> One name with the values it is given.
   type :: item_type
-    character(len=:), allocatable :: name        !< in lower case
+    character(len=:), allocatable :: name  !< in lower case
     type(subscript_type), allocatable :: subscripts(:)
     type(value_type), allocatable :: values(:)
-    type(span_type) :: span                      !< of the name
-    logical :: overrides = .false.               !< comes from --set and replaces what the file says
+    type(span_type) :: span         !< place of the name
+    logical :: overrides = .false.  !< comes from --set and replaces the value of the file
   end type item_type
 
   !> One group with its items, in the order of the file.
   type :: group_type
-    character(len=:), allocatable :: name        !< in lower case
+    character(len=:), allocatable :: name  !< in lower case
     type(item_type), allocatable :: items(:)
-    type(span_type) :: span                      !< of the & and the name
-    integer :: row = 0                           !< of the grammar; 0 while unchecked or unknown
-    logical :: sound = .false.                   !< checked, and nothing was found wrong within it
+    type(span_type) :: span     !< place of the & and the name
+    integer :: row = 0          !< row of group_table; 0 while unchecked or unknown
+    logical :: sound = .false.  !< checked and without errors
   end type group_type
 
   type :: document_type
-    type(source_type) :: source                  !< the data file
+    type(source_type) :: source  !< the data file
     type(group_type), allocatable :: groups(:)
   end type document_type
 
 contains
 
-  !> Append; `count` of the array's elements are in use, and the array grows by doubling.
+  !> Append a group. The first `count` elements of the array are in use; the array grows by doubling.
   pure subroutine add_group(groups, count, group)
-    type(group_type), allocatable, intent(inout) :: groups(:)   !< the groups; the first `count` are in use
-    integer, intent(inout) :: count   !< how many elements are in use
-    type(group_type), intent(inout) :: group       !< its items are moved, not copied
+    type(group_type), allocatable, intent(inout) :: groups(:)  !< the groups; the first `count` are in use
+    integer, intent(inout) :: count                            !< how many elements are in use
+    type(group_type), intent(inout) :: group                   !< the group to append; its items are moved, not copied
     type(group_type), allocatable :: grown(:)
     integer :: i
 
@@ -78,8 +78,8 @@ contains
   end subroutine add_group
 
   pure subroutine move_group(from, to)
-    type(group_type), intent(inout) :: from   !< the group that is emptied
-    type(group_type), intent(inout) :: to   !< the group that gets its content
+    type(group_type), intent(inout) :: from  !< the group that is emptied
+    type(group_type), intent(inout) :: to    !< the group that gets its content
 
     call move_alloc(from%name, to%name)
     call move_alloc(from%items, to%items)
@@ -90,9 +90,9 @@ contains
 
   !> Append an item; see add_group.
   pure subroutine add_item(items, count, item)
-    type(item_type), allocatable, intent(inout) :: items(:)   !< the items; the first `count` are in use
-    integer, intent(inout) :: count   !< how many elements are in use
-    type(item_type), intent(inout) :: item         !< its values are moved, not copied
+    type(item_type), allocatable, intent(inout) :: items(:)  !< the items; the first `count` are in use
+    integer, intent(inout) :: count                          !< how many elements are in use
+    type(item_type), intent(inout) :: item                   !< the item to append; its values are moved, not copied
     type(item_type), allocatable :: grown(:)
     integer :: i
 
@@ -109,8 +109,8 @@ contains
   end subroutine add_item
 
   pure subroutine move_item(from, to)
-    type(item_type), intent(inout) :: from   !< the item that is emptied
-    type(item_type), intent(inout) :: to   !< the item that gets its content
+    type(item_type), intent(inout) :: from  !< the item that is emptied
+    type(item_type), intent(inout) :: to    !< the item that gets its content
 
     call move_alloc(from%name, to%name)
     call move_alloc(from%subscripts, to%subscripts)
@@ -121,9 +121,9 @@ contains
 
   !> Append a value; see add_group.
   pure subroutine add_value(values, count, value)
-    type(value_type), allocatable, intent(inout) :: values(:)   !< the values; the first `count` are in use
-    integer, intent(inout) :: count   !< how many elements are in use
-    type(value_type), intent(in) :: value   !< the value to append
+    type(value_type), allocatable, intent(inout) :: values(:)  !< the values; the first `count` are in use
+    integer, intent(inout) :: count                            !< how many elements are in use
+    type(value_type), intent(in) :: value                      !< the value to append
     type(value_type), allocatable :: grown(:)
 
     if (.not. allocated(values)) allocate (values(4))
@@ -136,10 +136,10 @@ contains
     values(count) = value
   end subroutine add_value
 
-  !> Cut the arrays of a finished document to what is in use.
+  !> Cut the array of groups to the elements in use.
   pure subroutine trim_document(groups, count)
-    type(group_type), allocatable, intent(inout) :: groups(:)   !< the groups, cut to their first `count`
-    integer, intent(in) :: count   !< how many elements are in use
+    type(group_type), allocatable, intent(inout) :: groups(:)  !< the groups, cut to their first `count`
+    integer, intent(in) :: count                               !< how many elements are in use
     type(group_type), allocatable :: cut(:)
     integer :: i
 

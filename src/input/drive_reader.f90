@@ -24,15 +24,15 @@ contains
 
   !> Make the drives of all sound groups.
   subroutine read_drives(document, structure, pairs, angle_unit, start, parameters, needed, drives, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(structure_type), intent(in) :: structure           !< without coordinates where it is not known
-    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit                      !< radians in one unit of angle of the file
-    real(wp), intent(in) :: start                           !< time of the first result [s]
-    real(wp), intent(in) :: parameters(:)                   !< for the user's procedures
-    logical, intent(in) :: needed                           !< every independent coordinate must have one; else none may
-    type(drive_slot_type), allocatable, intent(out) :: drives(:)   !< the drives of sound groups, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document                   !< the data file as groups and items
+    type(structure_type), intent(in) :: structure                 !< the structure; without coordinates where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)  !< (M) pairs by coordinate; a slot is empty where its group has an error
+    real(wp), intent(in) :: angle_unit                            !< unit of angles in the file [rad]
+    real(wp), intent(in) :: start                                 !< time of the first result [s]
+    real(wp), intent(in) :: parameters(:)                         !< numbers of the group &user, for the user's procedures
+    logical, intent(in) :: needed  !< true: every independent coordinate must have a drive; false: none may
+    type(drive_slot_type), allocatable, intent(out) :: drives(:)  !< the drives of sound groups, in their order
+    type(diagnostics_type), intent(inout) :: diagnostics          !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i, n, k
 
@@ -60,9 +60,9 @@ contains
 
   !> The factor that turns a number of a group about a coordinate into rad or m.
   pure real(wp) function unit_of_coordinate(group, pairs, angle_unit) result(unit)
-    type(group_type), intent(in) :: group                   !< with a name `coordinate`
-    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit   !< unit of angles in the file [rad]
+    type(group_type), intent(in) :: group         !< a group with a name `coordinate`
+    type(pair_slot_type), intent(in) :: pairs(:)  !< (M) pairs by coordinate; a slot is empty where its group has an error
+    real(wp), intent(in) :: angle_unit            !< unit of angles in the file [rad]
     integer :: k
 
     unit = 1.0_wp
@@ -73,9 +73,9 @@ contains
   end function unit_of_coordinate
 
   pure subroutine check_coordinate(group, structure, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(structure_type), intent(in) :: structure   !< links and coordinates of the mechanism; none where it is unknown
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(structure_type), intent(in) :: structure         !< links and coordinates of the mechanism; none where it is unknown
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: k
 
     if (structure%n_coordinates == 0) return
@@ -92,9 +92,9 @@ contains
   !> Report the drives of independent coordinates where the motion follows from forces: to ignore them silently
   !> would give another motion than the one that the file describes.
   pure subroutine refuse_all(document, structure, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(structure_type), intent(in) :: structure           !< without coordinates where it is not known
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(structure_type), intent(in) :: structure         !< the structure; without coordinates where it is not known
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i, k
 
@@ -111,9 +111,9 @@ contains
 
   !> Report independent coordinates without a drive.
   pure subroutine check_complete(document, structure, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(structure_type), intent(in) :: structure   !< links and coordinates of the mechanism; none where it is unknown
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(structure_type), intent(in) :: structure         !< links and coordinates of the mechanism; none where it is unknown
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: numbers(:), cq(:)
     type(span_type) :: span
     logical :: driven(structure%n_coordinates)
@@ -138,14 +138,14 @@ contains
 
   !> One drive, in rad, m and s; the slot stays empty where something was reported.
   subroutine read_drive(document, group, angle_unit, unit, start, parameters, slot, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(group_type), intent(in) :: group   !< the group of the data file
-    real(wp), intent(in) :: angle_unit   !< unit of angles in the file [rad]
-    real(wp), intent(in) :: unit                            !< of the coordinate
-    real(wp), intent(in) :: start   !< time at the start [s]
-    real(wp), intent(in) :: parameters(:)   !< numbers of the group &user, for the user's procedures
-    type(drive_slot_type), intent(out) :: slot   !< gets the drive; stays empty where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(in) :: unit                          !< unit of the coordinate in the file [rad or m]
+    real(wp), intent(in) :: start                         !< time at the start [s]
+    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
+    type(drive_slot_type), intent(out) :: slot            !< gets the drive; stays empty where an error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(polynomial_drive_type) :: polynomial
     type(procedure_drive_type) :: user_drive
     type(error_type), allocatable :: err
@@ -169,11 +169,11 @@ contains
   end subroutine read_drive
 
   subroutine read_table_drive(document, group, unit, slot, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(group_type), intent(in) :: group   !< the group of the data file
-    real(wp), intent(in) :: unit   !< unit of the coordinate in the file [rad or m]
-    type(drive_slot_type), intent(inout) :: slot   !< gets the drive; stays empty where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: unit                          !< unit of the coordinate in the file [rad or m]
+    type(drive_slot_type), intent(inout) :: slot          !< gets the drive; stays empty where an error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(table_drive_type) :: drive
     type(error_type), allocatable :: err
     real(wp), allocatable :: t(:), q(:)
@@ -193,8 +193,8 @@ contains
 
   !> The files that drives are read from, in a document that may be unchecked yet.
   pure subroutine files_of_drives(document, paths)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(string_type), allocatable, intent(out) :: paths(:)   !< path of each file, from the working directory
+    type(document_type), intent(in) :: document              !< the data file as groups and items
+    type(string_type), allocatable, intent(out) :: paths(:)  !< path of each file, from the working directory
     integer :: i, n
 
     n = 0
@@ -212,10 +212,10 @@ contains
 
   !> Append the file that a drive names; if it names several, the last one counts.
   pure subroutine take_file(data_file, items, paths, n)
-    character(len=*), intent(in) :: data_file              !< its path
-    type(item_type), intent(in) :: items(:)                !< of the drive
-    type(string_type), intent(inout) :: paths(:)   !< the paths so far; the first n are in use
-    integer, intent(inout) :: n                            !< paths so far
+    character(len=*), intent(in) :: data_file     !< path of the data file
+    type(item_type), intent(in) :: items(:)       !< items of the group &drive
+    type(string_type), intent(inout) :: paths(:)  !< the paths so far; the first n are in use
+    integer, intent(inout) :: n                   !< how many paths are in use
     integer :: i
 
     do i = size(items), 1, -1
@@ -230,8 +230,8 @@ contains
 
   !> Length of the part of the data file's path that a relative name is appended to; 0 for an absolute name.
   pure integer function start_length(data_file, name)
-    character(len=*), intent(in) :: data_file   !< path of the data file
-    character(len=*), intent(in) :: name   !< path as the data file gives it
+    character(len=*), intent(in) :: data_file  !< path of the data file
+    character(len=*), intent(in) :: name       !< path as the data file gives it
 
     start_length = index(data_file, '/', back=.true.)
     if (starts_with(name, '/')) start_length = 0
@@ -239,8 +239,8 @@ contains
 
   !> Path of a file named in a data file: relative names start from the data file's folder.
   pure function beside(data_file, name) result(path)
-    character(len=*), intent(in) :: data_file   !< path of the data file
-    character(len=*), intent(in) :: name   !< path as the data file gives it
+    character(len=*), intent(in) :: data_file  !< path of the data file
+    character(len=*), intent(in) :: name       !< path as the data file gives it
     character(len=start_length(data_file, name) + len(name)) :: path
 
     path = data_file(:start_length(data_file, name))//name

@@ -1,5 +1,5 @@
-!> The data file's language as one constant table: which groups there are, which names each has, and what each name takes.
-!> Reader, help, documentation and conversation all come from it.
+!> The language of the data file as one constant table: the groups, their names, and the values that each name takes.
+!> Reader, help, documentation and conversation are all made from it.
 module mech9_grammar
   use mech9_text, only: lower
   implicit none
@@ -11,9 +11,9 @@ module mech9_grammar
   !> One kind of group.
   type :: group_row_type
     character(len=9) :: name
-    logical :: repeats             !< may stand more than once
-    character(len=10) :: key       !< the name whose value tells its groups apart; empty: none does
-    character(len=6) :: program    !< which program uses it: both, mech9k or mech9d
+    logical :: repeats           !< may stand more than once
+    character(len=10) :: key     !< the name whose value tells its groups apart; empty: none does
+    character(len=6) :: program  !< which program uses it: both, mech9k or mech9d
     character(len=120) :: help
   end type group_row_type
 
@@ -21,21 +21,21 @@ module mech9_grammar
   type :: item_row_type
     character(len=9) :: group
     character(len=18) :: name
-    character(len=7) :: type       !< integer, real, text or logical
-    integer :: low                 !< fewest values
-    integer :: high                !< most values; more than one makes a list
+    character(len=7) :: type  !< integer, real, text or logical
+    integer :: low            !< fewest values
+    integer :: high           !< most values; more than one makes a list
     !> Empty for pure numbers. `angle` is rad or degrees, as angle_unit says; `q` is the unit of
-    !> the coordinate meant: an angle, a length, or the user's own.
+    !> the coordinate: an angle, a length, or that of a user's pair.
     character(len=12) :: unit
-    logical :: needed              !< must be given wherever its kind allows it
-    character(len=22) :: default   !< as it would be written; in parentheses where it is a rule
-    character(len=9) :: range      !< empty, >0, >=0, >=1, or >0 and <1
-    character(len=72) :: words     !< the texts allowed, with blanks between; empty: any
-    character(len=40) :: kinds     !< the kinds of the group it belongs to; empty: all
+    logical :: needed             !< must be given wherever its kind allows it
+    character(len=22) :: default  !< the default as it would be written; in parentheses where it is a rule
+    character(len=9) :: range     !< the range of values: empty, >0, >=0, >=1, or >0 and <1
+    character(len=72) :: words    !< the texts allowed, with blanks between; empty: any
+    character(len=40) :: kinds    !< the kinds of the group it belongs to; empty: all
     character(len=120) :: help
-    character(len=44) :: example   !< a value as it would be written
-    logical :: seldom = .false.    !< the conversation asks for it only when told so
-    character(len=6) :: program = 'both'   !< as in the row of a group: the conversation of the other does not ask for it
+    character(len=44) :: example  !< a value as it would be written
+    logical :: seldom = .false.   !< the conversation asks for it only on request
+    character(len=6) :: program = 'both'   !< which program uses it; the conversation of the other one does not ask for it
   end type item_row_type
 
   integer, parameter :: unlimited = huge(1)
@@ -242,7 +242,7 @@ contains
 
   !> Row of a group in group_table; 0 where there is no such group.
   pure integer function find_group_row(name) result(row)
-    character(len=*), intent(in) :: name   !< name of a group, in any case
+    character(len=*), intent(in) :: name  !< name of a group, in any case
 
     do row = size(group_table), 1, -1
       if (group_table(row)%name == lower(name)) return
@@ -251,7 +251,7 @@ contains
 
   !> Rows of a group's names in item_table.
   pure function rows_of_group(group) result(rows)
-    character(len=*), intent(in) :: group   !< name of a group, in any case
+    character(len=*), intent(in) :: group  !< name of a group, in any case
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -265,9 +265,9 @@ contains
     names = group_table%name
   end function names_of_groups
 
-  !> The names that a group has; one that several kinds share stands more than once.
+  !> The names of a group; a name with several rows is repeated.
   pure function names_in_group(group) result(names)
-    character(len=*), intent(in) :: group   !< name of a group, in any case
+    character(len=*), intent(in) :: group  !< name of a group, in any case
     character(len=len(item_table%name)), allocatable :: names(:)
 
     names = pack(item_table%name, item_table%group == lower(group))
@@ -275,7 +275,7 @@ contains
 
   !> Rows of one name of a group: none where it is unknown, several where its kinds differ.
   pure function find_item_rows(group, name) result(rows)
-    character(len=*), intent(in) :: group   !< name of a group, in any case
+    character(len=*), intent(in) :: group  !< name of a group, in any case
     character(len=*), intent(in) :: name   !< name of an item, in any case
     integer, allocatable :: rows(:)
     integer :: i
@@ -285,7 +285,7 @@ contains
 
   !> Row of a name of a group of this kind; 0 where the name does not belong to the kind.
   pure integer function item_row_for_kind(group, name, kind) result(row)
-    character(len=*), intent(in) :: group   !< name of a group, in any case
+    character(len=*), intent(in) :: group  !< name of a group, in any case
     character(len=*), intent(in) :: name   !< name of an item, in any case
     character(len=*), intent(in) :: kind   !< kind of the group; empty: unknown
     integer, allocatable :: rows(:)
@@ -300,8 +300,8 @@ contains
 
   !> Whether a name belongs to groups of this kind; where no kind is known, to groups of any kind.
   pure logical function takes_kind(row, kind)
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
-    character(len=*), intent(in) :: kind   !< kind of the group; empty: unknown
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
+    character(len=*), intent(in) :: kind    !< kind of the group; empty: unknown
 
     takes_kind = row%kinds == ''
     if (kind /= '' .and. .not. takes_kind) takes_kind = index(' '//row%kinds//' ', ' '//trim(kind)//' ') > 0
@@ -309,7 +309,7 @@ contains
 
   !> The words of a list with blanks between.
   pure function words_of(list) result(words)
-    character(len=*), intent(in) :: list   !< words with blanks between them
+    character(len=*), intent(in) :: list  !< words with blanks between them
     character(len=len(list)), allocatable :: words(:)
     integer :: first, last
 

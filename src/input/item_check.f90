@@ -15,9 +15,9 @@ contains
 
   !> Report every error in the values of an item whose repeats are written out.
   pure subroutine check_item(item, row, diagnostics)
-    type(item_type), intent(in) :: item   !< the item whose values are checked
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(item_type), intent(in) :: item                   !< the item whose values are checked
+    type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: i, found
 
     found = diagnostics%count
@@ -39,18 +39,18 @@ contains
   !> Whether a value is a name of the group, so that an = is missing after it: "point = 0,0,0 axis 0,0,1".
   pure logical function equals_is_missing(value, row)
     type(value_type), intent(in) :: value   !< the value that is checked
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
 
     equals_is_missing = .false.
     if (value%kind == value_word) equals_is_missing = size(find_item_rows(row%group, value%text)) > 0
   end function equals_is_missing
 
   pure subroutine check_type(value, number, name, row, diagnostics)
-    type(value_type), intent(in) :: value   !< the value that is checked
-    integer, intent(in) :: number            !< of the value in its list
-    character(len=*), intent(in) :: name   !< name of the item, for the message
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(value_type), intent(in) :: value                 !< the value that is checked
+    integer, intent(in) :: number                         !< position of the value in its list
+    character(len=*), intent(in) :: name                  !< name of the item, for the message
+    type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: written
 
     if (value%kind == value_bad) return
@@ -86,15 +86,15 @@ contains
 
   !> Whether squares of a number, and its products with other sensible ones, stay within the range of floating point.
   pure logical function is_sensible(number)
-    real(wp), intent(in) :: number   !< any number, in any unit
+    real(wp), intent(in) :: number  !< any number, in any unit
 
     is_sensible = abs(number) <= 1.0e100_wp .and. (abs(number) >= 1.0e-100_wp .or. .not. abs(number) > 0.0_wp)
   end function is_sensible
 
   pure subroutine check_count(item, row, diagnostics)
-    type(item_type), intent(in) :: item   !< the item whose values are checked
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(item_type), intent(in) :: item                   !< the item whose values are checked
+    type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: message
     integer :: n
 
@@ -114,7 +114,7 @@ contains
   end subroutine check_count
 
   pure function expected_count(row) result(text)
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=60) :: text
 
     if (row%high > row%low .and. row%high < unlimited) then
@@ -127,8 +127,8 @@ contains
 
   !> Whether all values are whole numbers in pairs joined by a comma without a blank: 1,5.
   pure logical function decimal_commas(item, diagnostics)
-    type(item_type), intent(in) :: item   !< the item whose values are checked
-    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
+    type(item_type), intent(in) :: item                !< the item whose values are checked
+    type(diagnostics_type), intent(in) :: diagnostics  !< gets what is wrong
     integer :: i
 
     decimal_commas = .false.
@@ -144,7 +144,7 @@ contains
 
   !> The span from one value to another; that of the first alone where they do not stand in one text and in order.
   pure type(span_type) function cover(first, last)
-    type(value_type), intent(in) :: first   !< the value that the result begins with
+    type(value_type), intent(in) :: first  !< the value that the result begins with
     type(value_type), intent(in) :: last   !< the value that the result ends with
 
     cover = first%span
@@ -152,10 +152,10 @@ contains
   end function cover
 
   pure subroutine check_range(value, name, row, diagnostics)
-    type(value_type), intent(in) :: value   !< the value that is checked
-    character(len=*), intent(in) :: name   !< name of the item, for the message
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(value_type), intent(in) :: value                 !< the value that is checked
+    character(len=*), intent(in) :: name                  !< name of the item, for the message
+    type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     logical :: inside
 
     select case (row%range)
@@ -175,10 +175,10 @@ contains
   end subroutine check_range
 
   pure subroutine check_word(value, name, row, diagnostics)
-    type(value_type), intent(in) :: value   !< the value that is checked
-    character(len=*), intent(in) :: name   !< name of the item, for the message
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(value_type), intent(in) :: value                 !< the value that is checked
+    character(len=*), intent(in) :: name                  !< name of the item, for the message
+    type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: hint, word
 
     if (known_word(value%text, row)) return
@@ -196,10 +196,10 @@ contains
     end if
   end subroutine check_word
 
-  !> Whether a text is one of the words of its row, in whatever case.
+  !> Whether a text is one of the words of its row, in any case of letters.
   pure logical function known_word(text, row)
-    character(len=*), intent(in) :: text   !< a text as the user wrote it
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    character(len=*), intent(in) :: text    !< a text as the user wrote it
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
 
     known_word = text /= '' .and. index(trim(text), ' ') == 0 .and. &
                  index(' '//row%words//' ', ' '//lower(trim(text))//' ') > 0

@@ -16,10 +16,10 @@ contains
   !> Merge the items of a name, in the order in which they are written. Contradictions are reported;
   !> the merged item then holds the values that were understood.
   pure subroutine merge_items(items, name, merged, diagnostics)
-    type(item_type), intent(in) :: items(:)          !< of a group; at least one has the name
-    character(len=*), intent(in) :: name   !< name of the items that are merged
-    type(item_type), intent(out) :: merged   !< one item with all values of the name and no subscripts
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(item_type), intent(in) :: items(:)               !< items of a group, of which at least one has the name
+    character(len=*), intent(in) :: name                  !< name of the items that are merged
+    type(item_type), intent(out) :: merged                !< one item with all values of the name and no subscripts
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(value_type), allocatable :: values(:)
     logical, allocatable :: filled(:)
     integer :: i, first, number, count
@@ -49,8 +49,8 @@ contains
 
   !> Whether no other item has the name of this one.
   pure logical function is_alone(items, number)
-    type(item_type), intent(in) :: items(:)   !< all items of a group
-    integer, intent(in) :: number   !< position of the item in the list
+    type(item_type), intent(in) :: items(:)  !< all items of a group
+    integer, intent(in) :: number            !< position of the item in the list
     integer :: i
 
     is_alone = .false.
@@ -62,11 +62,11 @@ contains
 
   !> The position of an item's first value; 0, with a report, where its subscripts are wrong.
   pure subroutine check_subscripts(item, before, number, first, diagnostics)
-    type(item_type), intent(in) :: item   !< the item whose subscripts are read
-    type(span_type), intent(in) :: before            !< of the name where it stands before this
-    integer, intent(in) :: number                    !< of the item among those of its name
-    integer, intent(out) :: first   !< position of the item's first value; 0 where the subscripts are wrong
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(item_type), intent(in) :: item                   !< the item whose subscripts are read
+    type(span_type), intent(in) :: before                 !< place of the name where it is given before this item
+    integer, intent(in) :: number                         !< position of the item among those of its name
+    integer, intent(out) :: first                         !< position of the item's first value; 0 where the subscripts are wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
 
     first = 0
     select case (size(item%subscripts))
@@ -86,8 +86,8 @@ contains
   end subroutine check_subscripts
 
   pure function line_of(span, diagnostics) result(text)
-    type(span_type), intent(in) :: span   !< place of the earlier item
-    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
+    type(span_type), intent(in) :: span                !< place of the earlier item
+    type(diagnostics_type), intent(in) :: diagnostics  !< gets what is wrong
     character(len=60) :: text
 
     text = ''
@@ -99,13 +99,13 @@ contains
 
   !> Put values at their positions. The arrays grow by doubling.
   pure subroutine place_values(item, new, first, values, filled, count, diagnostics)
-    type(item_type), intent(in) :: item                         !< that gives the values
-    type(value_type), intent(in) :: new(:)                      !< its values, repeats written out
-    integer, intent(in) :: first                                !< position of the first of them
-    type(value_type), allocatable, intent(inout) :: values(:)   !< what the items before gave
-    logical, allocatable, intent(inout) :: filled(:)            !< of the same size: a value was given there
-    integer, intent(inout) :: count                             !< so many elements of these arrays are in use
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(item_type), intent(in) :: item                        !< the item that gives the values
+    type(value_type), intent(in) :: new(:)                     !< its values, repeats written out
+    integer, intent(in) :: first                               !< position of the first value
+    type(value_type), allocatable, intent(inout) :: values(:)  !< values of the items before; the first `count` are in use
+    logical, allocatable, intent(inout) :: filled(:)           !< whether each position has its value; of the same size
+    integer, intent(inout) :: count                            !< how many elements of these arrays are in use
+    type(diagnostics_type), intent(inout) :: diagnostics       !< gets what is wrong
     integer :: i, last
 
     last = first + size(new) - 1
@@ -135,10 +135,10 @@ contains
 
   !> Make room for more values.
   pure subroutine lengthen(values, filled, count, length)
-    type(value_type), allocatable, intent(inout) :: values(:)   !< the values; the first `count` are in use
-    logical, allocatable, intent(inout) :: filled(:)   !< whether each position has its value
-    integer, intent(in) :: count      !< elements that are in use
-    integer, intent(in) :: length     !< of the arrays afterwards
+    type(value_type), allocatable, intent(inout) :: values(:)  !< the values; the first `count` are in use
+    logical, allocatable, intent(inout) :: filled(:)           !< whether each position has its value
+    integer, intent(in) :: count                               !< how many elements are in use
+    integer, intent(in) :: length                              !< size of the arrays afterwards
     type(value_type), allocatable :: more(:)
     logical, allocatable :: more_filled(:)
 
@@ -152,9 +152,9 @@ contains
 
   !> Write out r*value. Too long a list is reported and left empty.
   pure subroutine expand_repeats(item, values, diagnostics)
-    type(item_type), intent(in) :: item   !< the item as it is written
-    type(value_type), allocatable, intent(out) :: values(:)   !< its values, each repeated one written out
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(item_type), intent(in) :: item                      !< the item as it is written
+    type(value_type), allocatable, intent(out) :: values(:)  !< its values, each repeated one written out
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
     integer :: i, n, times
 
     n = 0

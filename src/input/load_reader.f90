@@ -20,13 +20,13 @@ contains
 
   !> All loads, in the order of the file. A link or coordinate that does not exist is reported.
   subroutine read_loads(document, n_links, pairs, angle_unit, parameters, loads, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    integer, intent(in) :: n_links                           !< 0 where it is not known
-    type(pair_slot_type), intent(in) :: pairs(:)             !< size 0 where they are not known
-    real(wp), intent(in) :: angle_unit                       !< rad
-    real(wp), intent(in) :: parameters(:)                    !< for a user's procedure
-    type(load_slot_type), allocatable, intent(out) :: loads(:)   !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document                 !< the data file as groups and items
+    integer, intent(in) :: n_links                              !< how many links there are; 0 where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)                !< (M) pairs by coordinate; size 0 where they are not known
+    real(wp), intent(in) :: angle_unit                          !< unit of angles in the file [rad]
+    real(wp), intent(in) :: parameters(:)                       !< numbers of the group &user, for the user's procedure
+    type(load_slot_type), allocatable, intent(out) :: loads(:)  !< one for each sound group, in their order
+    type(diagnostics_type), intent(inout) :: diagnostics        !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i
 
@@ -53,7 +53,7 @@ contains
   end subroutine read_loads
 
   pure function force_load(group) result(load)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     type(force_load_type) :: load
 
     load%link = get_integer(group, 'link')
@@ -67,7 +67,7 @@ contains
   end function force_load
 
   pure function spring_load(group) result(load)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     type(spring_load_type) :: load
 
     load%links = get_integers(group, 'links')
@@ -78,11 +78,11 @@ contains
     load%damping = get_real(group, 'damping')
   end function spring_load
 
-  !> Only the position of rest is an angle in the unit of the file; stiffness and damping are per rad.
+  !> A load on a coordinate. Only the position of rest is an angle in the unit of the file; stiffness and damping are per rad.
   pure function coordinate_load(group, pairs, angle_unit) result(load)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit   !< unit of angles in the file [rad]
+    type(group_type), intent(in) :: group         !< the group of the data file
+    type(pair_slot_type), intent(in) :: pairs(:)  !< (M) pairs by coordinate; a slot is empty where its group has an error
+    real(wp), intent(in) :: angle_unit            !< unit of angles in the file [rad]
     type(coordinate_load_type) :: load
 
     load%coordinate = get_integer(group, 'coordinate')
@@ -96,9 +96,9 @@ contains
   end function coordinate_load
 
   pure subroutine check_coordinate(group, n_coordinates, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    integer, intent(in) :: n_coordinates   !< how many coordinates there are; 0: unknown
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: n_coordinates                  !< how many coordinates there are; 0: unknown
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
 
     if (n_coordinates > 0 .and. get_integer(group, 'coordinate') > n_coordinates) &
       call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '// &
@@ -106,9 +106,9 @@ contains
   end subroutine check_coordinate
 
   pure subroutine check_spring(group, n_links, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    integer, intent(in) :: n_links   !< how many links there are; 0: unknown
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: n_links                        !< how many links there are; 0: unknown
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: links(2)
 
     links = get_integers(group, 'links')

@@ -1,6 +1,6 @@
 !> The values of a checked document by group and name, with the defaults of the grammar.
 !>
-!> Only for sound groups: mechanisms are read after mech9_checker has passed them.
+!> The functions need groups without errors: mech9_checker checks a document before a mechanism is read from it.
 module mech9_lookup
   use mech9_kinds, only: wp
   use mech9_text, only: lower
@@ -17,8 +17,8 @@ contains
 
   !> Positions in the document of the sound groups of a name, in the order of the file.
   pure function groups_named(document, name) result(numbers)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: name   !< name of the groups, in lower case
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    character(len=*), intent(in) :: name         !< name of the groups, in lower case
     integer, allocatable :: numbers(:)
     integer :: i, n, pass
 
@@ -35,8 +35,8 @@ contains
 
   !> The first sound group of a name, or an empty one, which has the defaults.
   pure function group_or_empty(document, name) result(group)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: name   !< name of the group, in lower case
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    character(len=*), intent(in) :: name         !< name of the group, in lower case
     type(group_type) :: group
     integer, allocatable :: numbers(:)
 
@@ -51,8 +51,8 @@ contains
 
   !> Whether the file has a group of this name, sound or not.
   pure logical function has_group(document, name)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: name   !< name of the groups, in lower case
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    character(len=*), intent(in) :: name         !< name of the groups, in lower case
     integer :: i
 
     has_group = .true.
@@ -64,8 +64,8 @@ contains
 
   !> Whether an error was found in a group of this name, so that its meaning is unknown.
   pure logical function has_unsound(document, name)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: name   !< name of the groups, in lower case
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    character(len=*), intent(in) :: name         !< name of the groups, in lower case
     integer :: i
 
     has_unsound = .true.
@@ -77,7 +77,7 @@ contains
 
   !> Number of an item in its group; 0 where the name is not given.
   pure integer function find_item(group, name) result(number)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
 
     do number = size(group%items), 1, -1
@@ -87,7 +87,7 @@ contains
 
   !> Whether the group gives this name.
   pure logical function has_name(group, name)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
 
     has_name = find_item(group, name) > 0
@@ -95,9 +95,9 @@ contains
 
   !> Place of a value; that of the name if no value is meant; that of the group if the name is not given.
   pure type(span_type) function span_of(group, name, value_number) result(span)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name   !< name of the item, in lower case
-    integer, intent(in), optional :: value_number   !< position of the value in its list; absent: the name is meant
+    type(group_type), intent(in) :: group          !< the group of the data file
+    character(len=*), intent(in) :: name           !< name of the item, in lower case
+    integer, intent(in), optional :: value_number  !< position of the value in its list; absent: the name is meant
     integer :: i
 
     span = group%span
@@ -111,7 +111,7 @@ contains
 
   !> The numbers given under a name, or those of its default.
   pure function get_reals(group, name) result(numbers)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     real(wp), allocatable :: numbers(:)
     integer :: i
@@ -126,7 +126,7 @@ contains
 
   !> The number given under a name that takes one, or its default.
   pure real(wp) function get_real(group, name)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     real(wp), allocatable :: numbers(:)
 
@@ -136,7 +136,7 @@ contains
 
   !> Whole numbers given under a name, or those of its default.
   pure function get_integers(group, name) result(numbers)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     integer, allocatable :: numbers(:)
 
@@ -145,7 +145,7 @@ contains
 
   !> The whole number given under a name that takes one, or its default.
   pure integer function get_integer(group, name)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
 
     get_integer = nint(get_real(group, name))
@@ -153,7 +153,7 @@ contains
 
   !> Whether a switch is on.
   pure logical function get_logical(group, name)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     integer :: i
 
@@ -167,7 +167,7 @@ contains
 
   !> Length of a text that is given, or of its default, which stands in quotes.
   pure integer function text_length(group, name) result(length)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     integer :: i, row
 
@@ -185,7 +185,7 @@ contains
 
   !> A text without blanks at its end; words of a list in lower case.
   pure function get_text(group, name) result(text)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     character(len=text_length(group, name)) :: text
     integer :: i, row
@@ -202,7 +202,7 @@ contains
 
   !> The numbers of the grammar's default; none where the default is a rule in parentheses.
   pure function default_numbers(group, name) result(numbers)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     real(wp), allocatable :: numbers(:)
     type(numeral_type) :: numeral
@@ -222,7 +222,7 @@ contains
 
   !> Row of a name, for the kind of its group where it has one.
   pure integer function row_of(group, name) result(row)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     character(len=:), allocatable :: kind
     integer :: i

@@ -11,7 +11,7 @@ module mech9_matrix_items
   !> The coincidence matrix as the data file gives it.
   type :: matrix_type
     integer, allocatable :: c(:, :)
-    type(span_type), allocatable :: spans(:, :)    !< where each element is written; source 0: nowhere
+    type(span_type), allocatable :: spans(:, :)  !< place of each element in the file; source 0: not given
   end type matrix_type
 
   !> Most links of a matrix; for more, the links of the pairs describe a structure in far less text.
@@ -20,13 +20,13 @@ module mech9_matrix_items
 contains
 
   !> Collect all items `c` of the group. Each element must be given once; elements never named are 0,
-  !> unless rows or columns are given: then all must be. `ok` is false where something was reported.
+  !> unless rows or columns are given: then all must be given. `ok` is false where an error was reported.
   pure subroutine read_matrix(group, n_links, matrix, ok, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    integer, intent(in) :: n_links                 !< as given elsewhere; 0: taken from the matrix
-    type(matrix_type), intent(out) :: matrix   !< the coincidence matrix with the places of its elements
-    logical, intent(out) :: ok   !< whether no error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: n_links                        !< number of links by &mechanism; 0: taken from the matrix
+    type(matrix_type), intent(out) :: matrix              !< the coincidence matrix with the places of its elements
+    logical, intent(out) :: ok                            !< whether no error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     logical :: in_rows
     integer :: i, n, found
 
@@ -51,7 +51,7 @@ contains
   end subroutine read_matrix
 
   pure type(span_type) function first_span(group)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     integer :: i
 
     do i = size(group%items), 1, -1
@@ -61,7 +61,7 @@ contains
 
   !> The number of links that the subscripts of rows, columns and elements imply.
   pure integer function size_of_items(group) result(n)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     integer :: i, k
 
     n = 1
@@ -81,9 +81,9 @@ contains
 
   !> Put the values of one item at their places.
   pure subroutine place_item(item, matrix, diagnostics)
-    type(item_type), intent(in) :: item   !< a row, column or element of the matrix
-    type(matrix_type), intent(inout) :: matrix   !< the coincidence matrix with the places of its elements
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(item_type), intent(in) :: item                   !< a row, column or element of the matrix
+    type(matrix_type), intent(inout) :: matrix            !< the coincidence matrix with the places of its elements
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: rows(2), columns(2), i, j, n, expected
 
     n = size(matrix%c, 1)
@@ -120,10 +120,10 @@ contains
     end do
   end subroutine place_item
 
-  !> First and last index that a subscript means.
+  !> First and last index of a subscript.
   pure function bounds(subscript, n)
-    type(subscript_type), intent(in) :: subscript   !< one subscript of an item
-    integer, intent(in) :: n   !< number of links, which a section without an end runs to
+    type(subscript_type), intent(in) :: subscript  !< one subscript of an item
+    integer, intent(in) :: n                       !< number of links, which a section without an end runs to
     integer :: bounds(2)
 
     bounds = max(subscript%first, 1)
@@ -134,7 +134,7 @@ contains
 
   !> "row 2 of c", "column 3 of c", or the item as it is called.
   pure function label(item) result(text)
-    type(item_type), intent(in) :: item   !< a row, column or element of the matrix
+    type(item_type), intent(in) :: item  !< a row, column or element of the matrix
     character(len=32) :: text
 
     text = 'c'
@@ -149,9 +149,9 @@ contains
   end function label
 
   pure subroutine check_complete(group, matrix, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(matrix_type), intent(in) :: matrix   !< the coincidence matrix with the places of its elements
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(matrix_type), intent(in) :: matrix               !< the coincidence matrix with the places of its elements
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: i, j
 
     do i = 1, size(matrix%c, 1)

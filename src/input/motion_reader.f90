@@ -26,12 +26,12 @@ contains
 
   !> All groups &initial: positions and velocities that are given, in rad and m.
   pure subroutine read_initial(document, structure, pairs, angle_unit, initial, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(structure_type), intent(in) :: structure            !< without coordinates where it is not known
-    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit                       !< radians in one unit of angle of the file
-    type(initial_type), intent(out) :: initial   !< positions and velocities at the start; zero where not given
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(structure_type), intent(in) :: structure         !< the structure; without coordinates where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(initial_type), intent(out) :: initial            !< positions and velocities at the start; zero where not given
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: numbers(:)
     real(wp) :: unit
     integer :: i, k
@@ -61,12 +61,12 @@ contains
     end do
   end subroutine read_initial
 
-  !> All groups &point: names, links and positions of the points to be traced.
+  !> All groups &point: names, links and positions of the recorded points [m, in the frame of the link].
   pure subroutine read_points(document, n_links, points, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    integer, intent(in) :: n_links                           !< 0 where it is not known
-    type(point_type), allocatable, intent(out) :: points(:)   !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document              !< the data file as groups and items
+    integer, intent(in) :: n_links                           !< how many links there are; 0 where it is not known
+    type(point_type), allocatable, intent(out) :: points(:)  !< one for each sound group, in their order
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i
 
@@ -84,24 +84,24 @@ contains
     end do
   end subroutine read_points
 
-  !> Names of points become names of columns, such as P.x.
+  !> Check a name of a point, which becomes part of names of columns, such as P.x.
   pure subroutine check_name(group, name, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name   !< name of the point
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: name                  !< name of the point
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
 
     if (len(name) > 0 .and. len(name) <= longest_name .and. verify(name, name_letters) == 0) return
     call diagnostics%add(span_of(group, 'name', 1), '''name'' must be of letters (a to z), digits and _, at most '// &
                          to_text(longest_name)//' of them, not '''//printable(name, longest_name)//'''')
   end subroutine check_name
 
-  !> Report the number of a link that is not there.
+  !> Report the number of a link that does not exist.
   pure subroutine check_link(group, name, position, n_links, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: name   !< name of the item that holds the number of the link
-    integer, intent(in) :: position                          !< of the number in the list
-    integer, intent(in) :: n_links                           !< 0 where it is not known
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: name                  !< name of the item that holds the number of the link
+    integer, intent(in) :: position                       !< position of the number in the list
+    integer, intent(in) :: n_links                        !< how many links there are; 0 where it is not known
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     real(wp), allocatable :: numbers(:)
 
     if (n_links == 0) return

@@ -1,4 +1,4 @@
-!> From the text of a number to its value, with a reason where it has none.
+!> Conversion of the text of a number to its value, with a reason where it has none.
 module mech9_numeral
   use mech9_kinds, only: wp, long
   implicit none
@@ -6,8 +6,8 @@ module mech9_numeral
   public :: numeral_type, read_numeral
 
   type :: numeral_type
-    logical :: is_integer = .false.           !< written without point and exponent
-    integer(long) :: whole = 0                !< of an integer that fits
+    logical :: is_integer = .false.  !< written without point and exponent
+    integer(long) :: whole = 0       !< value of an integer that is not too large
     real(wp) :: number = 0.0_wp
     character(len=:), allocatable :: problem  !< why it is no number; unallocated where all is well
   end type numeral_type
@@ -18,9 +18,9 @@ contains
 
   !> Read an integer or a real: 12, -3., .5, 1e-3, 1.0d0.
   pure subroutine read_numeral(text, numeral)
-    character(len=*), intent(in) :: text         !< without blanks around it
-    type(numeral_type), intent(out) :: numeral   !< the value, or the reason why there is none
-    character(len=:), allocatable :: plain       ! of any length: the stack may be too small for it
+    character(len=*), intent(in) :: text        !< the text, without blanks around it
+    type(numeral_type), intent(out) :: numeral  !< the value, or the reason why there is none
+    character(len=:), allocatable :: plain       ! allocatable because a text may be too long for the stack
     integer :: point_free, mantissa_end, exponent, magnitude
 
     if (is_not_finite(text)) then
@@ -43,7 +43,7 @@ contains
     call first_digit_weight(text(:mantissa_end), magnitude)
     if (magnitude == -huge(1)) return            ! all digits are zero
     magnitude = magnitude + exponent
-    if (magnitude < -400) return                 ! nearer to zero than any number: zero
+    if (magnitude < -400) return                 ! smaller than any number: zero
     plain = text
     if (mantissa_end < len(text)) plain(mantissa_end + 1:mantissa_end + 1) = 'e'
     if (exceeds_range(plain(:mantissa_end), magnitude)) then
@@ -57,7 +57,7 @@ contains
 
   !> Whether a text is NaN or an infinity in a usual spelling, with or without a sign.
   pure logical function is_not_finite(text)
-    character(len=*), intent(in) :: text   !< a value as it is written, without quotes
+    character(len=*), intent(in) :: text  !< a value as it is written, without quotes
     character(len=3) :: head
     integer :: i, first
 
@@ -73,9 +73,9 @@ contains
     if (len(text) - first + 1 > 3) is_not_finite = is_not_finite .and. scan(text(first + 3:first + 3), '(iI') == 1
   end function is_not_finite
 
-  !> [sign] digits with at most one point among them.
+  !> Whether a text is digits, with a sign or none, and with at most one point among them.
   pure logical function is_mantissa(text)
-    character(len=*), intent(in) :: text   !< the numeral up to its exponent letter
+    character(len=*), intent(in) :: text  !< the numeral up to its exponent letter
     integer :: first, point
 
     is_mantissa = .false.
@@ -87,7 +87,7 @@ contains
   end function is_mantissa
 
   pure logical function is_exponent(text)
-    character(len=*), intent(in) :: text   !< the numeral after its exponent letter
+    character(len=*), intent(in) :: text  !< the numeral after its exponent letter
     integer :: first
 
     is_exponent = .false.
@@ -96,9 +96,9 @@ contains
     is_exponent = len(text) >= first .and. verify(text(first:), digits) == 0
   end function is_exponent
 
-  !> An exponent beyond any number is cut to one that is beyond too.
+  !> The value of an exponent; a very large one becomes 100000000 or a little less, which is too large as well.
   pure integer function exponent_value(text) result(exponent)
-    character(len=*), intent(in) :: text   !< the numeral after its exponent letter, already checked
+    character(len=*), intent(in) :: text  !< the numeral after its exponent letter, already checked
     integer :: i
 
     exponent = 0
@@ -110,8 +110,8 @@ contains
 
   !> Power of ten of the first digit that is not zero; -huge where there is none.
   pure subroutine first_digit_weight(mantissa, weight)
-    character(len=*), intent(in) :: mantissa   !< the numeral up to its exponent letter, already checked
-    integer, intent(out) :: weight   !< power of ten of the first digit that is not zero
+    character(len=*), intent(in) :: mantissa  !< the numeral up to its exponent letter, already checked
+    integer, intent(out) :: weight            !< power of ten of the first digit that is not zero
     integer :: point, lead
 
     weight = -huge(1)
@@ -123,10 +123,10 @@ contains
     if (weight > 0) weight = weight - 1
   end subroutine first_digit_weight
 
-  !> Whether a numeral overflows, told before the conversion: that of the Fortran library would raise a floating-point trap.
+  !> Whether a numeral is too large, found before the conversion: that of the Fortran library would raise a floating-point trap.
   pure logical function exceeds_range(mantissa, magnitude)
-    character(len=*), intent(in) :: mantissa   !< the numeral up to its exponent letter, already checked
-    integer, intent(in) :: magnitude       !< power of ten of the first digit
+    character(len=*), intent(in) :: mantissa  !< the numeral up to its exponent letter, already checked
+    integer, intent(in) :: magnitude          !< power of ten of the first digit that is not zero
     character(len=17), parameter :: largest = '17976931348623157'
     character(len=17) :: lead
     integer :: i, n

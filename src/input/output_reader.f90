@@ -13,10 +13,10 @@ contains
 
   !> Read which quantities are recorded and in which files; names not given have their defaults.
   pure subroutine read_output(document, n_coordinates, output, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    integer, intent(in) :: n_coordinates           !< 0 where the structure is not known
-    type(output_settings_type), intent(out) :: output   !< the settings, with defaults for those not given
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    integer, intent(in) :: n_coordinates                  !< how many coordinates there are; 0 where it is not known
+    type(output_settings_type), intent(out) :: output     !< the settings, with defaults for those not given
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(group_type) :: group
 
     group = group_or_empty(document, 'output')
@@ -38,12 +38,12 @@ contains
     if (n_coordinates > 0) call check_coordinates(group, n_coordinates, output%coordinates, diagnostics)
   end subroutine read_output
 
-  !> Each coordinate that is recorded exists, and is named once.
+  !> Report recorded coordinates that do not exist or are named twice.
   pure subroutine check_coordinates(group, n_coordinates, coordinates, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    integer, intent(in) :: n_coordinates   !< how many coordinates there are
-    integer, intent(in) :: coordinates(:)   !< numbers of the recorded coordinates
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: n_coordinates                  !< how many coordinates there are
+    integer, intent(in) :: coordinates(:)                 !< numbers of the recorded coordinates
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: i
 
     do i = 1, size(coordinates)

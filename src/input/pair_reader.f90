@@ -20,12 +20,12 @@ contains
   !> Make the pairs of all sound groups. Coordinates without one keep an empty slot: mechanisms with
   !> such holes are refused when the structure is read.
   subroutine read_pairs(document, n_coordinates, angle_unit, parameters, pairs, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    integer, intent(in) :: n_coordinates               !< 0 where it is not known
-    real(wp), intent(in) :: angle_unit                 !< radians in one unit of angle of the file
-    real(wp), intent(in) :: parameters(:)              !< for the user's procedures
-    type(pair_slot_type), allocatable, intent(out) :: pairs(:)   !< (M) pairs by coordinate; empty where its group is missing or wrong
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document                 !< the data file as groups and items
+    integer, intent(in) :: n_coordinates                        !< how many coordinates there are; 0 where it is not known
+    real(wp), intent(in) :: angle_unit                          !< unit of angles in the file [rad]
+    real(wp), intent(in) :: parameters(:)                       !< numbers of the group &user, for the user's procedures
+    type(pair_slot_type), allocatable, intent(out) :: pairs(:)  !< (M) pairs by coordinate; empty where the group is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics        !< gets what is wrong
     type(pair_slot_type) :: slot
     integer, allocatable :: numbers(:)
     integer :: i, k
@@ -43,11 +43,11 @@ contains
 
   !> One pair; the slot stays empty where something was reported.
   subroutine read_pair(group, angle_unit, parameters, slot, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    real(wp), intent(in) :: angle_unit   !< unit of angles in the file [rad]
-    real(wp), intent(in) :: parameters(:)   !< numbers of the group &user, for the user's procedures
-    type(pair_slot_type), intent(out) :: slot   !< gets the pair; stays empty where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
+    type(pair_slot_type), intent(out) :: slot             !< gets the pair; stays empty where an error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(screw_pair_type) :: screw
     type(procedure_pair_type) :: procedure_pair
     type(error_type), allocatable :: err
@@ -79,10 +79,10 @@ contains
 
   !> A pair in Denavit-Hartenberg form.
   pure subroutine read_dh(group, angle_unit, pair, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    real(wp), intent(in) :: angle_unit   !< unit of angles in the file [rad]
-    type(screw_pair_type), intent(out) :: pair   !< the pair of screw motion
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(screw_pair_type), intent(out) :: pair            !< the pair of screw motion
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=12), parameter :: others(6) = [character(len=12) :: 'point', 'axis', 'zero', 'moving_point', &
                                                  'moving_axis', 'moving_zero']
     real(wp) :: dh(4)
@@ -108,9 +108,9 @@ contains
 
   !> A pair between a frame in its reference link and one in its moving link.
   pure subroutine read_frames(group, pair, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(screw_pair_type), intent(out) :: pair   !< the pair of screw motion
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(screw_pair_type), intent(out) :: pair            !< the pair of screw motion
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(pose_type) :: reference, moving
     real(wp) :: axis(3), zero(3)
     integer :: found
@@ -144,7 +144,7 @@ contains
 
   !> The three numbers of a name, or a default.
   pure function real_or(group, name, otherwise) result(vector)
-    type(group_type), intent(in) :: group   !< the group of the data file
+    type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item
     real(wp), intent(in) :: otherwise(3)   !< the numbers where the item is not given
     real(wp) :: vector(3)
@@ -155,13 +155,13 @@ contains
 
   !> The frame of an axis; vectors that are zero or parallel are reported.
   pure subroutine make_frame(group, prefix, point, axis, zero, frame, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    character(len=*), intent(in) :: prefix            !< of the names: '' or 'moving_'
-    real(wp), intent(in) :: point(3)   !< origin of the frame, in the link [m]
-    real(wp), intent(in) :: axis(3)   !< direction of its z axis, in the link; of any length
-    real(wp), intent(in) :: zero(3)   !< direction near its x axis, in the link; of any length
-    type(pose_type), intent(out) :: frame   !< pose of the frame in the link
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: prefix                !< prefix of the names: '' or 'moving_'
+    real(wp), intent(in) :: point(3)                      !< origin of the frame, in the link [m]
+    real(wp), intent(in) :: axis(3)                       !< direction of its z axis, in the link; of any length
+    real(wp), intent(in) :: zero(3)                       !< direction near its x axis, in the link; of any length
+    type(pose_type), intent(out) :: frame                 !< pose of the frame in the link
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     logical :: ok
 
     call pose_from_axis(point, axis, zero, frame, ok)

@@ -15,9 +15,9 @@ contains
 
   !> Read a data file. The diagnostics get its errors.
   subroutine read_document(path, document, diagnostics)
-    character(len=*), intent(in) :: path   !< path of the data file
-    type(document_type), intent(out) :: document   !< the data file as groups and items
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: path                  !< path of the data file
+    type(document_type), intent(out) :: document          !< the data file as groups and items
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(source_type) :: source
     type(error_type), allocatable :: err
 
@@ -25,12 +25,12 @@ contains
     call parse_document(source, document, diagnostics, err)
   end subroutine read_document
 
-  !> The groups of a text. The first source made known to the diagnostics must be the data file.
+  !> Read the groups of a text. The first source added to the diagnostics must be the data file.
   pure subroutine parse_document(source, document, diagnostics, failure)
-    type(source_type), intent(in) :: source   !< the text of the data file
-    type(document_type), intent(out) :: document   !< the data file as groups and items
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
-    type(error_type), allocatable, intent(in), optional :: failure   !< of reading the source
+    type(source_type), intent(in) :: source                         !< the text of the data file
+    type(document_type), intent(out) :: document                    !< the data file as groups and items
+    type(diagnostics_type), intent(inout) :: diagnostics            !< gets what is wrong
+    type(error_type), allocatable, intent(in), optional :: failure  !< the error of reading the source, if there was one
     type(group_type) :: group
     integer :: number, at, count, found
 
@@ -60,14 +60,14 @@ contains
 
   !> Go on to the & of the next group. Text outside the groups is an error, reported once for each piece of such text.
   pure subroutine find_group(text, at, source, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
-    integer, intent(in) :: source   !< number of the source, for spans
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                  !< the whole text of the source
+    integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source                         !< number of the source, for spans
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: first, line_end
-    logical :: told
+    logical :: reported
 
-    told = .false.
+    reported = .false.
     do
       call skip_blanks(text, at)
       if (at > len(text)) return
@@ -81,17 +81,17 @@ contains
       call skip_line(text, line_end)
       at = line_end
       if (index(text(first:line_end - 1), '&') > 0) at = first + index(text(first:line_end - 1), '&') - 1
-      if (.not. told) call diagnostics%add(span_type(source, first, first + len_trim(text(first:at - 1)) - 1), &
+      if (.not. reported) call diagnostics%add(span_type(source, first, first + len_trim(text(first:at - 1)) - 1), &
                                            'this stands outside every group; a group begins with & and ends with /'// &
                                            trim(slash_advice(text, first)))
-      told = .true.
+      reported = .true.
     end do
   end subroutine find_group
 
-  !> "1/2" is no quotient in a data file: the slash ends the group.
+  !> Advice where a quotient such as 1/2 has ended a group too early: in a data file the slash ends it.
   pure function slash_advice(text, at) result(advice)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(in) :: at   !< number of the byte after the slash
+    character(len=*), intent(in) :: text  !< the whole text of the source
+    integer, intent(in) :: at             !< number of the byte after the slash
     character(len=96) :: advice
 
     advice = ''
@@ -102,11 +102,11 @@ contains
 
   !> A group from its & to its slash.
   pure subroutine parse_group(text, at, source, group, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
-    integer, intent(in) :: source   !< number of the source, for spans
-    type(group_type), intent(out) :: group   !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                  !< the whole text of the source
+    integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source                         !< number of the source, for spans
+    type(group_type), intent(out) :: group                !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: first, count
     type(item_type) :: item
     logical :: ended
@@ -134,12 +134,12 @@ contains
 
   !> Whether the group ends here, either properly (/ or &end) or because its slash is missing.
   pure subroutine end_of_group(text, at, source, group, diagnostics, ended)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
-    integer, intent(in) :: source   !< number of the source, for spans
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
-    logical, intent(out) :: ended   !< whether the group ends here
+    character(len=*), intent(in) :: text                  !< the whole text of the source
+    integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source                         !< number of the source, for spans
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    logical, intent(out) :: ended                         !< whether the group ends here
     integer :: first
 
     ended = .true.
@@ -163,10 +163,10 @@ contains
 
   !> Report text that stands in the place of a name, and go on after it.
   pure subroutine refuse_nameless(text, at, source, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
-    integer, intent(in) :: source   !< number of the source, for spans
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                  !< the whole text of the source
+    integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source                         !< number of the source, for spans
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(span_type) :: span
     type(value_type) :: value
     integer :: first, found
@@ -181,7 +181,7 @@ contains
     span = span_type(source, first, at - 1)
     if (diagnostics%count == found) &
       call diagnostics%add(span, 'a name and = are missing before '''//diagnostics%text_of(span)//'''')
-    do   ! the values that go with it
+    do   ! skip the values after it
       call skip_blanks(text, at)
       if (at > len(text)) return
       if (scan(text(at:at), '/&') > 0 .or. next_is_name(text, at)) return
@@ -196,11 +196,11 @@ contains
 
   !> name = values, or name(subscripts) = values.
   pure subroutine parse_item(text, at, source, item, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at                     !< on a name (see next_is_name)
-    integer, intent(in) :: source   !< number of the source, for spans
-    type(item_type), intent(out) :: item   !< the name with its subscripts and values
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                  !< the whole text of the source
+    integer, intent(inout) :: at                          !< number of a byte: where the name begins, then the first byte not taken
+    integer, intent(in) :: source                         !< number of the source, for spans
+    type(item_type), intent(out) :: item                  !< the name with its subscripts and values
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: first
     logical :: ok
 
@@ -220,18 +220,18 @@ contains
     end if
     if (.not. allocated(item%subscripts)) allocate (item%subscripts(0))
     call skip_blanks(text, at)
-    at = at + 1                                      ! the equals sign
+    at = at + 1                                      ! skip the equals sign
     call parse_values(text, at, source, item%values, diagnostics)
     if (.not. ok) item%values = [value_type(kind=value_bad, span=item%span)]
   end subroutine parse_item
 
   !> Values up to the next name or the end of the group. An empty place between commas is a null value.
   pure subroutine parse_values(text, at, source, values, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
-    integer, intent(in) :: source   !< number of the source, for spans
-    type(value_type), allocatable, intent(out) :: values(:)   !< the values, repeats not yet written out
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                     !< the whole text of the source
+    integer, intent(inout) :: at                             !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source                            !< number of the source, for spans
+    type(value_type), allocatable, intent(out) :: values(:)  !< the values, repeats not yet written out
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
     type(value_type) :: value
     logical :: after_comma
     integer :: count

@@ -1,4 +1,4 @@
-!> From a document to a mechanism with everything checked.
+!> The mechanism of a document, with all data checked.
 module mech9_reader
   use mech9_kinds, only: wp, radians_per_degree
   use mech9_structure, only: structure_type
@@ -28,14 +28,14 @@ contains
   !> The structure alone. The mechanism's geometry need not be given; whatever is given is checked
   !> against the grammar. Of use only where the diagnostics are without errors afterwards.
   pure subroutine read_structure_only(document, structure, vectors, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(structure_type), intent(out) :: structure   !< links and coordinates; of use only without errors
-    type(structural_vectors_type), intent(out) :: vectors   !< structural vectors; of use only without errors
+    type(document_type), intent(in) :: document            !< the data file as groups and items
+    type(structure_type), intent(out) :: structure         !< links and coordinates; of use only without errors
+    type(structural_vectors_type), intent(out) :: vectors  !< structural vectors; of use only without errors
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(document_type) :: checked
     logical :: known
 
-    if (size(document%groups) == 0) return          ! why, was told when it was read
+    if (size(document%groups) == 0) return          ! the reason was reported when the file was read
     checked = document
     call check_document(checked, diagnostics)
     call read_structure(checked, structure, vectors, known, diagnostics)
@@ -44,14 +44,14 @@ contains
   !> The mechanism, in m, rad, kg, s. All errors are collected in the diagnostics, which may hold some from
   !> reading the document already; the mechanism is of use only where there are none.
   subroutine read_mechanism(document, needs_drives, mechanism, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    logical, intent(in) :: needs_drives             !< every independent coordinate must be driven, as in kinematics
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
+    type(mechanism_type), intent(out) :: mechanism        !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(document_type) :: checked
     logical :: known
 
-    if (size(document%groups) == 0) return          ! why, was told when it was read
+    if (size(document%groups) == 0) return          ! the reason was reported when the file was read
     checked = document
     call check_document(checked, diagnostics)
     call read_settings(checked, mechanism, diagnostics)
@@ -62,17 +62,17 @@ contains
 
   !> Set a structure to the form that means unknown: no links and no coordinates.
   pure subroutine forget(structure)
-    type(structure_type), intent(out) :: structure   !< gets no links and no coordinates
+    type(structure_type), intent(out) :: structure  !< gets no links and no coordinates
 
     allocate (structure%links(2, 0), structure%independent(0))
   end subroutine forget
 
   !> Read the groups whose numbers refer to the structure.
   subroutine read_parts(document, needs_drives, mechanism, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    logical, intent(in) :: needs_drives   !< whether independent coordinates must have drives (mech9k)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    logical, intent(in) :: needs_drives                   !< whether independent coordinates must have drives (mech9k)
+    type(mechanism_type), intent(inout) :: mechanism      !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(initial_type) :: initial
 
     associate (m => mechanism, n_links => mechanism%structure%n_links, n_coordinates => mechanism%structure%n_coordinates)
@@ -95,9 +95,9 @@ contains
 
   !> Report a mechanism without pairs: its structure may be known, but its geometry is not.
   pure subroutine check_pairs_given(document, mechanism, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: numbers(:)
 
     if (mechanism%structure%n_coordinates == 0 .or. has_group(document, 'pair')) return
@@ -108,9 +108,9 @@ contains
 
   !> Read the settings that do not refer to the structure: title, units, time, tolerances and methods.
   pure subroutine read_settings(document, mechanism, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(mechanism_type), intent(inout) :: mechanism      !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(group_type) :: group
 
     group = group_or_empty(document, 'mechanism')
@@ -131,9 +131,9 @@ contains
   end subroutine read_settings
 
   pure subroutine read_time(group, time, diagnostics)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    type(time_grid_type), intent(out) :: time   !< the times of the results [s]
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(time_grid_type), intent(out) :: time             !< the times of the results [s]
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
 
     time%start = get_real(group, 'start')
     time%end = get_real(group, 'end')

@@ -23,10 +23,10 @@ module mech9_scanner
 
 contains
 
-  !> Whether a letter stands there; false beyond the end.
+  !> Whether the byte is a letter; false beyond the end.
   pure logical function is_letter(text, at)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(in) :: at   !< number of a byte; it may be beyond the end
+    character(len=*), intent(in) :: text  !< the whole text of the source
+    integer, intent(in) :: at             !< number of a byte; it may be beyond the end
 
     is_letter = .false.
     if (at <= len(text)) is_letter = index(letters, text(at:at)) > 0
@@ -34,8 +34,8 @@ contains
 
   !> Go on over blanks, line ends and comments.
   pure subroutine skip_blanks(text, at)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    character(len=*), intent(in) :: text  !< the whole text of the source
+    integer, intent(inout) :: at          !< number of a byte: where to begin, then the first byte not taken
 
     do while (at <= len(text))
       if (text(at:at) == '!') then
@@ -50,8 +50,8 @@ contains
 
   !> Go on to the end of the line.
   pure subroutine skip_line(text, at)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    character(len=*), intent(in) :: text  !< the whole text of the source
+    integer, intent(inout) :: at          !< number of a byte: where to begin, then the first byte not taken
 
     do while (at <= len(text))
       if (index(line_ends, text(at:at)) > 0) return
@@ -61,8 +61,8 @@ contains
 
   !> Take letters, digits and underscores.
   pure subroutine scan_word(text, at)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    character(len=*), intent(in) :: text  !< the whole text of the source
+    integer, intent(inout) :: at          !< number of a byte: where to begin, then the first byte not taken
 
     do while (at <= len(text))
       if (index(name_letters, text(at:at)) == 0) return
@@ -70,10 +70,10 @@ contains
     end do
   end subroutine scan_word
 
-  !> Whether a name stands here: a word, perhaps with subscripts, before an equals sign.
+  !> Whether a name begins at a byte: a word, perhaps with subscripts, before an equals sign.
   pure logical function next_is_name(text, start)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(in) :: start   !< number of the byte where the name may begin
+    character(len=*), intent(in) :: text  !< the whole text of the source
+    integer, intent(in) :: start          !< number of the byte where the name may begin
     integer :: at, closing
 
     next_is_name = .false.
@@ -94,12 +94,12 @@ contains
     next_is_name = text(at:at) == '='
   end function next_is_name
 
-  !> Take "(2)", "(1,:)", "(2:4)"; `ok` is false where it is something else.
+  !> Take subscripts: "(2)", "(1,:)", "(2:4)"; `ok` is false where the text has another form.
   pure subroutine scan_subscripts(text, at, subscripts, ok)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at                   !< on the parenthesis
-    type(subscript_type), allocatable, intent(out) :: subscripts(:)   !< the subscripts, in their order
-    logical, intent(out) :: ok   !< whether they are subscripts
+    character(len=*), intent(in) :: text                             !< the whole text of the source
+    integer, intent(inout) :: at  !< number of a byte: that of the parenthesis, then the first byte not taken
+    type(subscript_type), allocatable, intent(out) :: subscripts(:)  !< the subscripts, in their order
+    logical, intent(out) :: ok                                       !< whether they are subscripts
     type(subscript_type) :: one
 
     allocate (subscripts(0))
@@ -127,10 +127,10 @@ contains
 
   !> Take a positive whole number with blanks around it, if there is one.
   pure subroutine scan_index(text, at, index_value, ok)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
+    character(len=*), intent(in) :: text  !< the whole text of the source
+    integer, intent(inout) :: at          !< number of a byte: where to begin, then the first byte not taken
     integer, intent(out) :: index_value   !< the number; 0 where there is none
-    logical, intent(inout) :: ok   !< set to false where the number is too large or zero
+    logical, intent(inout) :: ok          !< set to false where the number is too large or zero
     integer :: first
 
     index_value = 0
@@ -148,11 +148,11 @@ contains
 
   !> Take one value; text that cannot be one is reported and becomes a bad value.
   pure subroutine scan_value(text, at, source, value, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
-    integer, intent(in) :: source                 !< number of the text among the sources
-    type(value_type), intent(out) :: value   !< the value with its kind and place
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                  !< the whole text of the source
+    integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source                         !< number of the source, for spans
+    type(value_type), intent(out) :: value                !< the value with its kind and place
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: first, star
 
     first = at
@@ -181,7 +181,7 @@ contains
       if (scan(text(at:at), '"''') > 0) then
         call scan_text(text, at, source, value, diagnostics)
       else if (star > 1) then
-        value%span = span_type(source, first - star, at - 1)   ! "3*" alone: nulls
+        value%span = span_type(source, first - star, at - 1)   ! "3*" alone: three empty values
       else
         value%span = span_type(source, at, at)
         value%kind = value_bad
@@ -192,7 +192,7 @@ contains
   end subroutine scan_value
 
   pure function advice(mark) result(text)
-    character, intent(in) :: mark   !< the unexpected character
+    character, intent(in) :: mark  !< the unexpected character
     character(len=64) :: text
 
     select case (mark)
@@ -209,8 +209,8 @@ contains
 
   !> The r of r*value; 0 where it is zero or longer than any list.
   pure subroutine read_repeat(text, times)
-    character(len=*), intent(in) :: text   !< digits
-    integer, intent(out) :: times   !< the number; 0 where it is zero or too large
+    character(len=*), intent(in) :: text  !< digits
+    integer, intent(out) :: times         !< the number; 0 where it is zero or too large
     type(numeral_type) :: numeral
 
     times = 0
@@ -221,9 +221,9 @@ contains
 
   !> Determine the kind of a value without quotes, and its value.
   pure subroutine classify(word, value, diagnostics)
-    character(len=*), intent(in) :: word   !< the value as it is written
-    type(value_type), intent(inout) :: value   !< the value with its kind and place
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: word                  !< the value as it is written
+    type(value_type), intent(inout) :: value              !< the value with its kind and place
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(numeral_type) :: numeral
 
     select case (lower(word))
@@ -250,13 +250,13 @@ contains
   end subroutine classify
 
   !> Take a text in quotes; a doubled quote stands for one. It must end on its line: a forgotten
-  !> quote would otherwise swallow the rest of the file.
+  !> quote would otherwise turn the rest of the file into text.
   pure subroutine scan_text(text, at, source, value, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
-    integer, intent(in) :: source   !< number of the source, for spans
-    type(value_type), intent(inout) :: value   !< the value with its kind and place
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                  !< the whole text of the source
+    integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(in) :: source                         !< number of the source, for spans
+    type(value_type), intent(inout) :: value              !< the value with its kind and place
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: first
     logical :: closed
 
@@ -277,9 +277,9 @@ contains
 
   !> From an opening quote to the closing one, or to the end of the line.
   pure subroutine find_closing_quote(text, at, closed)
-    character(len=*), intent(in) :: text   !< the whole text of the source
-    integer, intent(inout) :: at   !< number of a byte: where to begin, then the first byte not taken
-    logical, intent(out) :: closed   !< whether the closing quote stands on this line
+    character(len=*), intent(in) :: text  !< the whole text of the source
+    integer, intent(inout) :: at          !< number of a byte: where to begin, then the first byte not taken
+    logical, intent(out) :: closed        !< whether the closing quote stands on this line
     integer :: first
 
     first = at
@@ -299,9 +299,9 @@ contains
 
   !> The text with each doubled quote written once.
   pure subroutine undouble(text, quote, content)
-    character(len=*), intent(in) :: text   !< the text between the quotes
-    character, intent(in) :: quote   !< the quotation mark that is doubled
-    character(len=:), allocatable, intent(out) :: content   !< the text without doubled quotes
+    character(len=*), intent(in) :: text                   !< the text between the quotes
+    character, intent(in) :: quote                         !< the quotation mark that is doubled
+    character(len=:), allocatable, intent(out) :: content  !< the text without doubled quotes
     integer :: i, n
 
     content = text
@@ -318,7 +318,7 @@ contains
 
   !> Whether a line with a forgotten quote ends with a slash, which then most likely ends the group.
   pure logical function closes_group(line)
-    character(len=*), intent(in) :: line   !< the rest of the line, from the opening quote
+    character(len=*), intent(in) :: line  !< the rest of the line, from the opening quote
 
     closes_group = .false.
     if (len_trim(line) > 1) closes_group = line(len_trim(line):len_trim(line)) == '/'

@@ -14,13 +14,13 @@ module mech9_setting
 
 contains
 
-  !> Give a name another value than the data file says: "time.intervals=200", "pair(3).axis=1,0,0",
+  !> Replace the value of a name in the data file: "time.intervals=200", "pair(3).axis=1,0,0",
   !> where pair(3) is the third &pair. A group or a name that the file does not have is added. Texts
   !> need no quotes. The diagnostics get the errors, now or when the document is checked.
   pure subroutine apply_setting(document, setting, diagnostics)
-    type(document_type), intent(inout) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: setting   !< the argument of --set, such as time.intervals=200
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(inout) :: document        !< the data file as groups and items
+    character(len=*), intent(in) :: setting               !< the argument of --set, such as time.intervals=200
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(source_type) :: source
     type(span_type) :: group_span
     type(item_type) :: item
@@ -37,14 +37,14 @@ contains
     if (i > 0) call replace_item(document%groups(i), item)
   end subroutine apply_setting
 
-  !> "group." or "group(2)."; `occurrence` is 0 where no number is given.
+  !> Read "group." or "group(2)."; `occurrence` is 0 where no number is given.
   pure subroutine read_group_name(text, at, source, span, occurrence, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole setting
-    integer, intent(out) :: at                      !< after the point
-    integer, intent(in) :: source   !< number of the setting as a source, for spans
-    type(span_type), intent(out) :: span   !< place of the name of the group in the setting
-    integer, intent(out) :: occurrence   !< which group of that name, from 1; 0: not given
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                  !< the whole setting
+    integer, intent(out) :: at                            !< number of the first byte after the point
+    integer, intent(in) :: source                         !< number of the setting as a source, for spans
+    type(span_type), intent(out) :: span                  !< place of the name of the group in the setting
+    integer, intent(out) :: occurrence                    !< which group of that name, from 1; 0: not given
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(subscript_type), allocatable :: subscripts(:)
     logical :: ok
 
@@ -70,14 +70,14 @@ contains
     at = at + 1
   end subroutine read_group_name
 
-  !> The name and its values; the whole setting must be used up.
+  !> Read the name and its values, up to the end of the setting.
   pure subroutine read_item(text, start, source, group, item, diagnostics)
-    character(len=*), intent(in) :: text   !< the whole setting
-    integer, intent(in) :: start   !< number of the byte where the name begins
-    integer, intent(in) :: source   !< number of the setting as a source, for spans
-    character(len=*), intent(in) :: group   !< name of the group, in lower case
-    type(item_type), intent(out) :: item   !< the name with its values
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: text                  !< the whole setting
+    integer, intent(in) :: start                          !< number of the byte where the name begins
+    integer, intent(in) :: source                         !< number of the setting as a source, for spans
+    character(len=*), intent(in) :: group                 !< name of the group, in lower case
+    type(item_type), intent(out) :: item                  !< the name with its values
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: at, equals
 
     at = start
@@ -104,7 +104,7 @@ contains
   end subroutine read_item
 
   pure logical function takes_text(group, name)
-    character(len=*), intent(in) :: group   !< name of the group
+    character(len=*), intent(in) :: group  !< name of the group
     character(len=*), intent(in) :: name   !< name of the item
     integer, allocatable :: rows(:)
 
@@ -114,19 +114,19 @@ contains
   end function takes_text
 
   pure logical function is_unquoted(value)
-    character(len=*), intent(in) :: value   !< the setting after its equals sign
+    character(len=*), intent(in) :: value  !< the setting after its equals sign
 
     is_unquoted = len_trim(value) > 0 .and. scan(trim(adjustl(value)), '''"') /= 1
   end function is_unquoted
 
   !> Position of the group that a setting means; 0, with a report, where that is unclear.
   pure subroutine find_or_add_group(document, text, span, occurrence, number, diagnostics)
-    type(document_type), intent(inout) :: document   !< the data file as groups and items
-    character(len=*), intent(in) :: text   !< the whole setting
-    type(span_type), intent(in) :: span   !< place of the name of the group in the setting
-    integer, intent(in) :: occurrence   !< which group of that name, from 1; 0: not given
-    integer, intent(out) :: number   !< position of the group in the document; 0 where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(inout) :: document        !< the data file as groups and items
+    character(len=*), intent(in) :: text                  !< the whole setting
+    type(span_type), intent(in) :: span                   !< place of the name of the group in the setting
+    integer, intent(in) :: occurrence                     !< which group of that name, from 1; 0: not given
+    integer, intent(out) :: number                        !< position of the group in the document; 0 where an error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: name
     type(group_type) :: group
     integer, allocatable :: same(:)
@@ -154,8 +154,8 @@ contains
 
   !> Replace the items of the same name by this one; an item with subscripts is added to them.
   pure subroutine replace_item(group, item)
-    type(group_type), intent(inout) :: group   !< the group of the data file
-    type(item_type), intent(inout) :: item   !< the name with its values
+    type(group_type), intent(inout) :: group  !< the group of the data file
+    type(item_type), intent(inout) :: item    !< the name with its values
     type(item_type), allocatable :: items(:)
     integer :: i, count
 

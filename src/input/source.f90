@@ -1,6 +1,6 @@
-!> The text of an input, and where its lines begin.
+!> The text of an input, with the places at which its lines begin.
 !>
-!> Everything read from an input carries a span of it, so that a message can point there.
+!> Every value that is read keeps its span of the text, so that a message can point there.
 module mech9_source
   use mech9_error, only: error_type, place_type, raise, exit_data
   use mech9_text, only: to_text
@@ -17,11 +17,11 @@ module mech9_source
   end type span_type
 
   type :: source_type
-    character(len=:), allocatable :: name       !< a path as the user wrote it, or '--set'
-    character(len=:), allocatable :: text       !< without a byte order mark
-    integer, allocatable :: line_start(:)       !< first byte of each line
-    logical :: is_file = .true.                 !< lines and columns mean something to the user
-    logical :: is_ascii = .true.                !< every byte is a character
+    character(len=:), allocatable :: name  !< a path as the user wrote it, or '--set'
+    character(len=:), allocatable :: text  !< without a byte order mark
+    integer, allocatable :: line_start(:)  !< first byte of each line
+    logical :: is_file = .true.            !< false: a text without lines for the user, such as --set
+    logical :: is_ascii = .true.           !< every byte is a character
   contains
     procedure :: place
     procedure :: line_bounds
@@ -33,11 +33,11 @@ module mech9_source
 contains
 
   !> Read a whole file, or a pipe. Fails with exit_file where it cannot be read, and with exit_data
-  !> where it is empty or no text.
+  !> where it is empty or not a text.
   subroutine read_source(path, source, err)
-    character(len=*), intent(in) :: path   !< path of the file or pipe
-    type(source_type), intent(out) :: source   !< its text with the places of the lines
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path               !< path of the file or pipe
+    type(source_type), intent(out) :: source           !< its text with the places of the lines
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: text
 
     call read_bytes(path, text, err)
@@ -47,16 +47,16 @@ contains
       return
     end if
     if (len(text) >= 3) then
-      if (text(:3) == char(239)//char(187)//char(191)) text = text(4:)   ! the mark of UTF-8
+      if (text(:3) == char(239)//char(187)//char(191)) text = text(4:)   ! the byte order mark of UTF-8
     end if
     source = source_from_text(path, text)
   end subroutine read_source
 
-  !> A source whose text is at hand.
+  !> A source made from a text.
   pure function source_from_text(name, text, is_file) result(source)
-    character(len=*), intent(in) :: name   !< path of the file, or '--set'
-    character(len=*), intent(in) :: text   !< the whole text
-    logical, intent(in), optional :: is_file   !< true unless given
+    character(len=*), intent(in) :: name      !< path of the file, or '--set'
+    character(len=*), intent(in) :: text      !< the whole text
+    logical, intent(in), optional :: is_file  !< whether lines and columns are shown to the user; true if absent
     type(source_type) :: source
 
     source%name = name
@@ -68,8 +68,8 @@ contains
 
   !> Fail where the bytes are not a text that could be a data file.
   pure subroutine refuse_no_text(text, err)
-    character(len=*), intent(in) :: text   !< the whole text
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: text               !< the whole text
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: at
 
     if (len(text) == 0) then
@@ -86,9 +86,9 @@ contains
     if (at > 0) call raise(err, exit_data, 'this is a binary file, not a text (its byte '//to_text(at)//' is zero)')
   end subroutine refuse_no_text
 
-  !> Lines end with LF, CR LF or CR alone.
+  !> Find the beginnings of the lines, which end with LF, CR LF or CR alone.
   pure subroutine find_lines(self)
-    type(source_type), intent(inout) :: self   !< the source
+    type(source_type), intent(inout) :: self  !< the source
     integer :: i, n, pass
 
     do pass = 1, 2
@@ -104,8 +104,8 @@ contains
   end subroutine find_lines
 
   pure logical function ends_line(text, i)
-    character(len=*), intent(in) :: text   !< the whole text
-    integer, intent(in) :: i   !< number of a byte
+    character(len=*), intent(in) :: text  !< the whole text
+    integer, intent(in) :: i              !< number of a byte
 
     ends_line = text(i:i) == line_feed
     if (text(i:i) == carriage_return) then
@@ -116,8 +116,8 @@ contains
 
   !> Line of a byte, and its column counted in characters (a UTF-8 character counts once).
   pure type(place_type) function place(self, byte)
-    class(source_type), intent(in) :: self   !< the source
-    integer, intent(in) :: byte   !< number of a byte; it may be one beyond the end
+    class(source_type), intent(in) :: self  !< the source
+    integer, intent(in) :: byte             !< number of a byte; it may be one beyond the end
     integer :: low, high, middle, i
 
     low = 1
@@ -144,10 +144,10 @@ contains
 
   !> First and last byte of a line, without its end; first > last where it is empty.
   pure subroutine line_bounds(self, line, first, last)
-    class(source_type), intent(in) :: self   !< the source
-    integer, intent(in) :: line   !< number of the line, from 1
-    integer, intent(out) :: first   !< number of its first byte
-    integer, intent(out) :: last   !< number of its last byte before the line end
+    class(source_type), intent(in) :: self  !< the source
+    integer, intent(in) :: line             !< number of the line, from 1
+    integer, intent(out) :: first           !< number of its first byte
+    integer, intent(out) :: last            !< number of its last byte before the line end
 
     first = self%line_start(line)
     last = len(self%text)
@@ -160,8 +160,8 @@ contains
 
   !> The byte of a place; 0 where the text has no such place.
   pure integer function byte_at(self, position) result(byte)
-    class(source_type), intent(in) :: self   !< the source
-    type(place_type), intent(in) :: position   !< line and column, both from 1; columns count characters
+    class(source_type), intent(in) :: self    !< the source
+    type(place_type), intent(in) :: position  !< line and column, both from 1; columns count characters
     integer :: first, last, column
 
     byte = 0
@@ -175,7 +175,7 @@ contains
   end function byte_at
 
   pure logical function all_ascii(text)
-    character(len=*), intent(in) :: text   !< the whole text
+    character(len=*), intent(in) :: text  !< the whole text
     integer :: i
 
     all_ascii = .false.
@@ -187,7 +187,7 @@ contains
 
   !> Whether a byte is not the first of a UTF-8 character.
   pure logical function continues_character(byte)
-    character, intent(in) :: byte   !< one byte of a text in UTF-8
+    character, intent(in) :: byte  !< one byte of a text in UTF-8
 
     continues_character = iachar(byte) >= 128 .and. iachar(byte) < 192
   end function continues_character

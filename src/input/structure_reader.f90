@@ -18,26 +18,26 @@ module mech9_structure_reader
 
   !> The data on the structure, gathered from all groups.
   type :: source_data_type
-    type(group_type) :: structure              !< the group &structure, empty where there is none
-    integer :: n_links = 0                     !< as &mechanism says; 0: it does not
+    type(group_type) :: structure  !< the group &structure, empty where there is none
+    integer :: n_links = 0         !< number of links by &mechanism; 0: not given
     integer :: n_coordinates = 0
     type(span_type) :: n_links_span, n_coordinates_span
-    integer, allocatable :: pairs(:)           !< numbers of the sound groups &pair
-    logical :: all_pairs = .false.             !< no pair is unsound
+    integer, allocatable :: pairs(:)  !< numbers of the sound groups &pair
+    logical :: all_pairs = .false.    !< whether no pair has an error
     type(matrix_type) :: matrix
-    integer, allocatable :: links(:, :)        !< (2,M) of each pair; 0 where it has none
-    integer, allocatable :: group_of_pair(:)   !< (M) number of its group; 0 where it has none
+    integer, allocatable :: links(:, :)       !< (2,M) links of each coordinate's pair; 0 where it has none
+    integer, allocatable :: group_of_pair(:)  !< (M) number of each coordinate's group &pair; 0 where it has none
   end type source_data_type
 
 contains
 
-  !> Read the structure, and the order of computation where the file gives it; else it is made.
-  !> `known` is false where something was reported that leaves the structure unknown.
+  !> Read the structure and the order of computation; where the file does not give the order, it is computed.
+  !> `known` is false where an error was reported that leaves the structure unknown.
   pure subroutine read_structure(document, structure, vectors, known, diagnostics)
-    type(document_type), intent(in) :: document              !< checked
-    type(structure_type), intent(out) :: structure   !< links of each coordinate, and which are independent
-    type(structural_vectors_type), intent(out) :: vectors   !< structural vectors: links in the order of computation, and so on
-    logical, intent(out) :: known   !< whether no error leaves the structure unknown
+    type(document_type), intent(in) :: document            !< the checked document
+    type(structure_type), intent(out) :: structure         !< links of each coordinate, and which are independent
+    type(structural_vectors_type), intent(out) :: vectors  !< structural vectors: links in the order of computation, and so on
+    logical, intent(out) :: known                          !< whether no error leaves the structure unknown
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_data_type) :: data
     integer :: found
@@ -67,8 +67,8 @@ contains
   end subroutine read_structure
 
   pure subroutine gather(document, data)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(out) :: data   !< what the groups say, gathered
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    type(source_data_type), intent(out) :: data  !< the data on the structure, gathered from all groups
     integer, allocatable :: numbers(:)
 
     data%structure%name = 'structure'
@@ -89,10 +89,10 @@ contains
   end subroutine gather
 
   pure subroutine from_matrix(document, data, structure, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(inout) :: data   !< what the groups say, gathered
-    type(structure_type), intent(inout) :: structure   !< links of each coordinate, and which are independent
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
+    type(structure_type), intent(inout) :: structure      !< links of each coordinate, and which are independent
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: m, n
     logical :: ok
@@ -112,11 +112,11 @@ contains
   end subroutine from_matrix
 
   pure subroutine from_pairs(document, data, structure, known, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(inout) :: data   !< what the groups say, gathered
-    type(structure_type), intent(inout) :: structure   !< links of each coordinate, and which are independent
-    logical, intent(out) :: known   !< whether no error leaves the structure unknown
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
+    type(structure_type), intent(inout) :: structure      !< links of each coordinate, and which are independent
+    logical, intent(out) :: known                         !< whether no error leaves the structure unknown
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: n
 
@@ -138,14 +138,14 @@ contains
   end subroutine from_pairs
 
   pure subroutine from_vectors(document, data, structure, vectors, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
-    type(structure_type), intent(inout) :: structure       !< of the first set, where there is one
-    type(structural_vectors_type), intent(inout) :: vectors   !< structural vectors: links in the order of computation, and so on
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document              !< the data file as groups and items
+    type(source_data_type), intent(in) :: data               !< the data on the structure, gathered from all groups
+    type(structure_type), intent(inout) :: structure         !< the structure by the first set, where it is given
+    type(structural_vectors_type), intent(inout) :: vectors  !< structural vectors: links in the order of computation, and so on
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
     type(structure_type) :: second
     type(finding_type), allocatable :: findings(:)
-    integer, allocatable :: n, m      ! not allocated: not given
+    integer, allocatable :: n, m      ! not allocated where not given
     logical :: has_first
 
     has_first = allocated(structure%links)
@@ -168,7 +168,7 @@ contains
 
   !> The independent coordinates; none where cq is not given.
   pure function cq_of(data) result(cq)
-    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
+    type(source_data_type), intent(in) :: data  !< the data on the structure, gathered from all groups
     integer, allocatable :: cq(:)
 
     cq = get_integers(data%structure, 'cq')
@@ -176,10 +176,10 @@ contains
 
   !> First and second set must describe the same structure.
   pure subroutine compare_sets(data, first, second, diagnostics)
-    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
-    type(structure_type), intent(in) :: first   !< the structure by the matrix c or the pairs
-    type(structure_type), intent(in) :: second   !< the structure by nrg and nws
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
+    type(structure_type), intent(in) :: first             !< the structure by the matrix c or the pairs
+    type(structure_type), intent(in) :: second            !< the structure by nrg and nws
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: i
 
@@ -197,19 +197,19 @@ contains
     if (has_name(data%structure, 'cq')) call compare_independent(data, cq_of(data), second, diagnostics)
   end subroutine compare_sets
 
-  !> Position of a coordinate in nws.
+  !> The position of a coordinate in nws.
   pure integer function findloc_value(data, coordinate) result(position)
-    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
-    integer, intent(in) :: coordinate   !< number of the coordinate
+    type(source_data_type), intent(in) :: data  !< the data on the structure, gathered from all groups
+    integer, intent(in) :: coordinate           !< number of the coordinate
 
     position = findloc(get_integers(data%structure, 'nws'), coordinate, dim=1)
   end function findloc_value
 
   pure subroutine compare_independent(data, cq, second, diagnostics)
-    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
-    integer, intent(in) :: cq(:)   !< numbers of the independent coordinates
-    type(structure_type), intent(in) :: second   !< the structure by nrg and nws
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
+    integer, intent(in) :: cq(:)                          !< numbers of the independent coordinates
+    type(structure_type), intent(in) :: second            !< the structure by nrg and nws
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: k
     logical :: in_cq
 
@@ -231,10 +231,10 @@ contains
 
   !> Where the structure does not come from the pairs, they must agree with it, one for each coordinate.
   pure subroutine compare_with_pairs(document, data, structure, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(inout) :: data   !< what the groups say, gathered
-    type(structure_type), intent(in) :: structure   !< links of each coordinate, and which are independent
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
+    type(structure_type), intent(in) :: structure         !< links of each coordinate, and which are independent
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer, allocatable :: links(:, :)
     integer :: k
@@ -250,12 +250,12 @@ contains
     call report(findings, document, data, diagnostics)
   end subroutine compare_with_pairs
 
-  !> Links of the pairs by coordinate, with a report where a coordinate has no pair or is none.
+  !> Take the links of the pairs by coordinate; report coordinates without a pair and pairs of coordinates that do not exist.
   pure subroutine take_pairs(document, n_coordinates, data, diagnostics)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    integer, intent(in) :: n_coordinates   !< how many coordinates the pairs should have
-    type(source_data_type), intent(inout) :: data   !< what the groups say, gathered
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    integer, intent(in) :: n_coordinates                  !< how many coordinates the pairs should have
+    type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: missing(:)
     integer :: i, k, m
 
@@ -287,7 +287,7 @@ contains
   end subroutine take_pairs
 
   pure function kind_word(independent) result(word)
-    logical, intent(in) :: independent   !< whether the coordinate is independent
+    logical, intent(in) :: independent  !< whether the coordinate is independent
     character(len=11) :: word
 
     word = merge('independent', 'dependent  ', independent)
@@ -295,10 +295,10 @@ contains
 
   !> Report findings of the structure floor at the numbers that cause them.
   pure subroutine report(findings, document, data, diagnostics)
-    type(finding_type), intent(in) :: findings(:)   !< errors that the structure floor found
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(finding_type), intent(in) :: findings(:)         !< errors that the structure floor found
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: i
 
     do i = 1, size(findings)
@@ -307,9 +307,9 @@ contains
   end subroutine report
 
   pure type(span_type) function span_of_finding(finding, document, data) result(span)
-    type(finding_type), intent(in) :: finding   !< an error that the structure floor found
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(source_data_type), intent(in) :: data   !< what the groups say, gathered
+    type(finding_type), intent(in) :: finding    !< an error that the structure floor found
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    type(source_data_type), intent(in) :: data   !< the data on the structure, gathered from all groups
 
     span = data%structure%span
     associate (i => finding%index(1), j => finding%index(2))

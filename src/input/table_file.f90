@@ -1,6 +1,6 @@
 !> The file of a table drive: lines with t and q.
 !>
-!> Two numbers in each line, with blanks or a comma between; `#` begins a comment. A line of names may stand before
+!> Each line holds two numbers, with blanks or a comma between; `#` begins a comment. A line of names may stand before
 !> the first point.
 module mech9_table_file
   use mech9_kinds, only: wp
@@ -15,18 +15,18 @@ module mech9_table_file
   public :: read_table_file
 
   character(len=*), parameter :: gaps = ' ,'//achar(9)//achar(13)
-  integer, parameter :: fewest_points = 4     !< of a cubic spline
+  integer, parameter :: fewest_points = 4  !< fewest points of a cubic spline
 
 contains
 
-  !> Read the points of a table. What is wrong is reported with its place in that file; `ok` tells.
+  !> Read the points of a table. Errors are reported with their places in that file; `ok` is false where there are any.
   subroutine read_table_file(path, asked_at, t, q, ok, diagnostics)
-    character(len=*), intent(in) :: path   !< path of the table
-    type(span_type), intent(in) :: asked_at               !< where the data file asks for it
-    real(wp), allocatable, intent(out) :: t(:)   !< times [s]
-    real(wp), allocatable, intent(out) :: q(:)   !< values of the coordinate, in the unit of the file
-    logical, intent(out) :: ok   !< whether no error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    character(len=*), intent(in) :: path                  !< path of the table
+    type(span_type), intent(in) :: asked_at               !< place of its name in the data file
+    real(wp), allocatable, intent(out) :: t(:)            !< times [s]
+    real(wp), allocatable, intent(out) :: q(:)            !< values of the coordinate, in the unit of the file
+    logical, intent(out) :: ok                            !< whether no error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(source_type) :: source
     type(error_type), allocatable :: err
     integer :: number, line, n, found
@@ -58,14 +58,14 @@ contains
 
   !> Take the point of a line, if there is one.
   pure subroutine read_point(source, number, line, may_be_names, t, q, n, diagnostics)
-    type(source_type), intent(in) :: source   !< the text of the table
-    integer, intent(in) :: number   !< number of the table as a source, for spans
-    integer, intent(in) :: line   !< number of the line, from 1
-    logical, intent(inout) :: may_be_names                 !< no line before it held anything
-    real(wp), intent(inout) :: t(:)   !< times [s]; the first n are in use
-    real(wp), intent(inout) :: q(:)   !< values, in the unit of the file; the first n are in use
-    integer, intent(inout) :: n                            !< points so far
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(source_type), intent(in) :: source               !< the text of the table
+    integer, intent(in) :: number                         !< number of the table as a source, for spans
+    integer, intent(in) :: line                           !< number of the line, from 1
+    logical, intent(inout) :: may_be_names                !< whether no earlier line held a name or a number
+    real(wp), intent(inout) :: t(:)                       !< times [s]; the first n are in use
+    real(wp), intent(inout) :: q(:)                       !< values, in the unit of the file; the first n are in use
+    integer, intent(inout) :: n                           !< how many points are in use
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(span_type) :: fields(2)
     type(numeral_type) :: numerals(2)
     integer :: first, last, count, i
@@ -92,7 +92,7 @@ contains
       return
     end do
     if (n > 0) then
-      ! nearer than this, slopes are only round-off
+      ! between nearer points a slope would be round-off only
       if (numerals(1)%number - t(n) <= 1.0e-13_wp*max(abs(numerals(1)%number), abs(t(n)))) then
         call diagnostics%add(fields(1), 't must increase from line to line')
         return
@@ -105,7 +105,7 @@ contains
 
   !> Whether a line holds names of columns: none of its words begins as a number does, or means one that is not finite.
   pure logical function are_names(line)
-    character(len=*), intent(in) :: line   !< a line of the table
+    character(len=*), intent(in) :: line  !< a line of the table
     character(len=:), allocatable :: rest
     integer :: at
 
@@ -124,14 +124,14 @@ contains
     are_names = .true.
   end function are_names
 
-  !> The words of a line up to its comment; of more than two only the number is told.
+  !> Find the words of a line up to its comment; words after the second are only counted.
   pure subroutine split(text, first, last, source, fields, count)
-    character(len=*), intent(in) :: text   !< the whole text of the table
-    integer, intent(in) :: first   !< number of the line's first byte
-    integer, intent(in) :: last   !< number of the line's last byte
-    integer, intent(in) :: source   !< number of the table as a source, for spans
-    type(span_type), intent(out) :: fields(2)   !< places of the first two words
-    integer, intent(out) :: count   !< how many words the line has
+    character(len=*), intent(in) :: text       !< the whole text of the table
+    integer, intent(in) :: first               !< number of the line's first byte
+    integer, intent(in) :: last                !< number of the line's last byte
+    integer, intent(in) :: source              !< number of the table as a source, for spans
+    type(span_type), intent(out) :: fields(2)  !< places of the first two words
+    integer, intent(out) :: count              !< how many words the line has
     integer :: at, start
 
     count = 0

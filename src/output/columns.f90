@@ -17,13 +17,13 @@ module mech9_columns
   type :: columns_type
     type(string_type), allocatable :: names(:)
     type(string_type), allocatable :: units(:)
-    type(string_type), allocatable :: long_names(:)   !< a few words; the name where none were given
+    type(string_type), allocatable :: long_names(:)  !< a few words that describe each column; the name where none were given
     integer :: count = 0
-    integer, allocatable :: coordinates(:) !< numbers of the recorded ones, ascending
-    real(wp), allocatable :: factors(:)     !< (coordinates) from the program's units to those of the results
-    integer :: derivatives = 2       !< highest derivative that is recorded
-    integer :: motion = 0                   !< columns of the time, the coordinates and the points: the first ones
-    type(poses_type) :: poses        !< columns after the others, if they were requested
+    integer, allocatable :: coordinates(:)  !< numbers of the recorded ones, ascending
+    real(wp), allocatable :: factors(:)     !< (coordinates) factors from the program's units to those of the results
+    integer :: derivatives = 2              !< highest derivative that is recorded
+    integer :: motion = 0                   !< how many columns, the first ones, belong to time, coordinates and points
+    type(poses_type) :: poses               !< columns after the others, if they were requested
   contains
     procedure :: append
     procedure :: width
@@ -35,9 +35,9 @@ module mech9_columns
 
 contains
 
-  !> The columns that every run records.
+  !> The columns that every kinematic run records.
   function kinematic_columns(mechanism) result(columns)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(columns_type) :: columns
     character(len=4), parameter :: orders(3) = ['q   ', 'dq  ', 'ddq ']
     character(len=5), parameter :: per_time(3) = ['     ', '/s   ', '/s^2 ']
@@ -72,10 +72,10 @@ contains
 
   !> Append a column.
   pure subroutine append(self, name, unit, long_name)
-    class(columns_type), intent(inout) :: self   !< the columns
-    character(len=*), intent(in) :: name   !< heading of the column
-    character(len=*), intent(in) :: unit   !< unit of its numbers
-    character(len=*), intent(in), optional :: long_name   !< a few words that describe it; absent: the heading
+    class(columns_type), intent(inout) :: self           !< the columns
+    character(len=*), intent(in) :: name                 !< heading of the column
+    character(len=*), intent(in) :: unit                 !< unit of its numbers
+    character(len=*), intent(in), optional :: long_name  !< a few words that describe it; absent: the heading
 
     if (self%count == size(self%names)) then
       call grow(self%names)
@@ -91,7 +91,7 @@ contains
 
   !> Make room for a few more texts.
   pure subroutine grow(texts)
-    type(string_type), allocatable, intent(inout) :: texts(:)   !< texts, with eight more places afterwards
+    type(string_type), allocatable, intent(inout) :: texts(:)  !< texts, with eight more places afterwards
     type(string_type), allocatable :: grown(:)
 
     allocate (grown(size(texts) + 8))
@@ -101,28 +101,28 @@ contains
 
   !> The number of columns, poses included.
   pure integer function width(self)
-    class(columns_type), intent(in) :: self   !< the columns
+    class(columns_type), intent(in) :: self  !< the columns
 
     width = self%count + self%poses%width()
   end function width
 
   !> Fill the columns of the poses in a row, if there are any.
   pure subroutine fill_poses(self, plan, state, row)
-    class(columns_type), intent(in) :: self   !< the columns
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(inout) :: row(:)   !< numbers of one row, one for each column
+    class(columns_type), intent(in) :: self  !< the columns
+    type(plan_type), intent(in) :: plan      !< the plan of the mechanism
+    type(state_type), intent(in) :: state    !< position and motion of the mechanism
+    real(wp), intent(inout) :: row(:)        !< numbers of one row, one for each column
 
     if (self%poses%n_links > 0) call self%poses%fill(plan, state, row(self%count + 1:))
   end subroutine fill_poses
 
   !> Fill the columns of the motion in a row with those of a state.
   pure subroutine fill(self, mechanism, plan, state, row)
-    class(columns_type), intent(in) :: self   !< the columns
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(inout) :: row(:)   !< numbers of one row, one for each column
+    class(columns_type), intent(in) :: self        !< the columns
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(state_type), intent(in) :: state          !< position and motion of the mechanism
+    real(wp), intent(inout) :: row(:)              !< numbers of one row, one for each column
     integer :: i, n, used
 
     n = size(self%coordinates)
@@ -147,13 +147,13 @@ contains
     end do
   end subroutine fill
 
-  !> The recorded coordinates out of all, in the units of the results.
+  !> Select the recorded coordinates and convert them to the units of the results.
   pure subroutine take(n, coordinates, factors, values, columns)
-    integer, intent(in) :: n   !< how many coordinates are recorded
-    integer, intent(in) :: coordinates(n)   !< their numbers
-    real(wp), intent(in) :: factors(n)   !< from the program's units to those of the results
-    real(wp), intent(in) :: values(*)        !< of all coordinates
-    real(wp), intent(inout) :: columns(n)   !< gets the recorded values, in the units of the results
+    integer, intent(in) :: n               !< how many coordinates are recorded
+    integer, intent(in) :: coordinates(n)  !< (n) numbers of the recorded coordinates
+    real(wp), intent(in) :: factors(n)     !< (n) factors from the program's units to those of the results
+    real(wp), intent(in) :: values(*)      !< (M) values of all coordinates, rad or m or their rates
+    real(wp), intent(inout) :: columns(n)  !< gets the recorded values, in the units of the results
     integer :: i
 
     do i = 1, n

@@ -10,9 +10,9 @@ module mech9_facts
   integer, parameter :: a_number = 1, a_count = 2, a_text = 3
 
   type :: fact_type
-    character(len=:), allocatable :: name        !< a word of lower-case letters and underscores
-    character(len=:), allocatable :: long_name   !< a few words for people
-    character(len=:), allocatable :: unit        !< empty for what has none
+    character(len=:), allocatable :: name       !< a word of lower-case letters and underscores
+    character(len=:), allocatable :: long_name  !< a few words for the reader of the report
+    character(len=:), allocatable :: unit       !< unit of the number; empty where it has none
     integer :: kind = a_number
     real(wp) :: number = 0.0_wp
     integer(long) :: whole = 0
@@ -36,10 +36,10 @@ contains
 
   subroutine add_number(self, name, value, long_name, unit)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    real(wp), intent(in) :: value   !< the number, in the unit
-    character(len=*), intent(in) :: unit   !< unit of the number; empty where it has none
+    character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: long_name  !< a few words that describe it
+    real(wp), intent(in) :: value              !< the number, in the unit
+    character(len=*), intent(in) :: unit       !< unit of the number; empty where it has none
 
     call self%next_item(name, long_name, unit, a_number)
     self%items(self%count)%number = value
@@ -47,18 +47,18 @@ contains
 
   subroutine add_count(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    integer, intent(in) :: value   !< the number
+    character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: long_name  !< a few words that describe it
+    integer, intent(in) :: value               !< the number
 
     call self%add_whole(name, int(value, long), long_name)
   end subroutine add_count
 
   subroutine add_whole(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    integer(long), intent(in) :: value   !< the number
+    character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: long_name  !< a few words that describe it
+    integer(long), intent(in) :: value         !< the number
 
     call self%next_item(name, long_name, '', a_count)
     self%items(self%count)%whole = value
@@ -66,9 +66,9 @@ contains
 
   subroutine add_text(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
-    character(len=*), intent(in) :: value   !< the text
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: value      !< the text
+    character(len=*), intent(in) :: long_name  !< a few words that describe it
 
     call self%next_item(name, long_name, '', a_text)
     self%items(self%count)%text = value
@@ -77,10 +77,10 @@ contains
   !> Append an item without a value. The array grows in a loop: an array constructor of such items would leak (gfortran 12).
   subroutine next_item(self, name, long_name, unit, kind)
     class(facts_type), intent(inout) :: self   !< the facts
-    character(len=*), intent(in) :: name   !< a word of lower-case letters and underscores
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    character(len=*), intent(in) :: unit   !< unit of the number; empty where it has none
-    integer, intent(in) :: kind   !< a_number, a_count or a_text
+    character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores
+    character(len=*), intent(in) :: long_name  !< a few words that describe it
+    character(len=*), intent(in) :: unit       !< unit of the number; empty where it has none
+    integer, intent(in) :: kind                !< a_number, a_count or a_text
     type(fact_type), allocatable :: grown(:)
     integer :: i
 
@@ -102,7 +102,7 @@ contains
   !> Add the facts to the object that is being composed, each under its name.
   subroutine to_json(self, json)
     class(facts_type), intent(in) :: self   !< the facts
-    type(json_type), intent(inout) :: json   !< the report, inside an open object
+    type(json_type), intent(inout) :: json  !< the report, inside an open object
     integer :: i
 
     do i = 1, self%count
@@ -122,10 +122,10 @@ contains
   !> Write each fact as a data set of a group. The call before a run makes the data sets; the call after the run changes only
   !> numbers in their places, so that the file is whole whenever the run is killed. Texts stay as they were.
   subroutine to_hdf5(self, file, group, again)
-    class(facts_type), intent(in) :: self   !< the facts
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
-    character(len=*), intent(in) :: group   !< path of the group in the file
-    logical, intent(in) :: again           !< the facts stand there already, with other values
+    class(facts_type), intent(in) :: self        !< the facts
+    type(hdf5_file_type), intent(inout) :: file  !< the open file
+    character(len=*), intent(in) :: group        !< path of the group in the file
+    logical, intent(in) :: again                 !< whether the data sets exist already, with other values
     integer :: i
 
     do i = 1, self%count

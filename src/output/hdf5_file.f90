@@ -30,9 +30,9 @@ module mech9_hdf5_file
   type :: hdf5_file_type
     character(len=:), allocatable :: path
     integer(hid_t) :: id = -1
-    type(error_type), allocatable :: failure      !< the first one
-    integer(hid_t), private :: text_type = -1     !< UTF-8 of any length
-    integer(hid_t), private :: make_groups = -1   !< property: groups on the way are made
+    type(error_type), allocatable :: failure     !< the first failure
+    integer(hid_t), private :: text_type = -1    !< type of texts: UTF-8 of any length
+    integer(hid_t), private :: make_groups = -1  !< property of links: missing groups of a path are made
     type(replacement_type), private :: replacement
   contains
     procedure :: create => create_file
@@ -63,12 +63,12 @@ contains
     text = 'HDF5 '//to_text(major)//'.'//to_text(minor)//'.'//to_text(release)
   end function hdf5_version
 
-  !> Create the file. It gets its name when it is handed to the system for the first time: until then it cannot be opened,
-  !> and an older file of that name stays.
+  !> Create the file. It gets its name at the first flush: until then it cannot be opened,
+  !> and an older file of that name remains.
   subroutine create_file(self, path, err)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: path   !< path of the file
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(hdf5_file_type), intent(inout) :: self       !< the HDF5 file
+    character(len=*), intent(in) :: path               !< path of the file
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer(hid_t) :: access
     integer :: status
 
@@ -100,22 +100,22 @@ contains
   end subroutine create_file
 
   pure logical function is_open(self)
-    class(hdf5_file_type), intent(in) :: self   !< the HDF5 file
+    class(hdf5_file_type), intent(in) :: self  !< the HDF5 file
 
     is_open = self%id >= 0
   end function is_open
 
   !> Properties for making data sets by path.
   pure integer(hid_t) function link_properties(self)
-    class(hdf5_file_type), intent(in) :: self   !< the HDF5 file
+    class(hdf5_file_type), intent(in) :: self  !< the HDF5 file
 
     link_properties = self%make_groups
   end function link_properties
 
   !> Keep the first failure, which a negative status of a call tells.
   subroutine check(self, status)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    integer, intent(in) :: status   !< answer of a call of HDF5; negative: it failed
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    integer, intent(in) :: status                 !< answer of a call of HDF5; negative: it failed
 
     if (status >= 0 .or. allocated(self%failure)) return
     call raise(self%failure, exit_file, "cannot write to '"//self%path//"': "//last_reason())
@@ -123,7 +123,7 @@ contains
 
   !> Write everything to the file: a run that is killed later leaves at least the present state.
   subroutine flush_file(self)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
     integer :: status
 
     if (allocated(self%failure)) return
@@ -135,7 +135,7 @@ contains
   !> Close the file and all objects open in it; a file that was never flushed is removed. Does nothing to a file that
   !> is not open.
   subroutine close_file(self)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
     integer :: status
 
     if (.not. self%is_open()) return
@@ -148,10 +148,10 @@ contains
   end subroutine close_file
 
   subroutine put_text(self, name, text, long_name)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: text   !< the text
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: name          !< path of the data set
+    character(len=*), intent(in) :: text          !< the text
+    character(len=*), intent(in) :: long_name     !< a few words that describe it
     type(string_type) :: texts(1)
 
     texts(1)%text = text
@@ -159,20 +159,20 @@ contains
   end subroutine put_text
 
   subroutine put_texts(self, name, texts, long_name)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    type(string_type), intent(in) :: texts(:)   !< the texts, in their order
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: name          !< path of the data set
+    character(len=*), intent(in) :: long_name     !< a few words that describe it
+    type(string_type), intent(in) :: texts(:)     !< the texts, in their order
 
     call put_text_values(self, name, texts, [size(texts, kind=hsize_t)], long_name)
   end subroutine put_texts
 
   subroutine put_text_values(self, name, texts, extents, long_name)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    type(string_type), intent(in) :: texts(:)   !< the texts, in their order
-    integer(hsize_t), intent(in) :: extents(:)   !< extents of the data set, in Fortran order; empty for a single value
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: name          !< path of the data set
+    character(len=*), intent(in) :: long_name     !< a few words that describe it
+    type(string_type), intent(in) :: texts(:)     !< the texts, in their order
+    integer(hsize_t), intent(in) :: extents(:)    !< extents of the data set, in Fortran order; empty for a single value
     character(kind=c_char), allocatable, target :: letters(:)
     type(c_ptr), allocatable, target :: starts(:)
 
@@ -181,87 +181,87 @@ contains
   end subroutine put_text_values
 
   subroutine put_real(self, name, value, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    real(wp), intent(in), target :: value   !< the number
-    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
+    class(hdf5_file_type), intent(inout) :: self    !< the HDF5 file
+    character(len=*), intent(in) :: name            !< path of the data set
+    character(len=*), intent(in) :: long_name       !< a few words that describe it
+    real(wp), intent(in), target :: value           !< the number
+    character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
 
     call self%put_values(name, h5t_ieee_f64le, h5t_native_double, [integer(hsize_t) ::], c_loc(value), long_name, unit)
   end subroutine put_real
 
   subroutine put_reals(self, name, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    real(wp), intent(in), contiguous, target :: values(:)   !< the numbers
-    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
+    class(hdf5_file_type), intent(inout) :: self           !< the HDF5 file
+    character(len=*), intent(in) :: name                   !< path of the data set
+    character(len=*), intent(in) :: long_name              !< a few words that describe it
+    real(wp), intent(in), contiguous, target :: values(:)  !< the numbers
+    character(len=*), intent(in), optional :: unit         !< unit of the numbers; absent for none
 
     call self%put_values(name, h5t_ieee_f64le, h5t_native_double, [size(values, kind=hsize_t)], c_loc(values), &
                          long_name, unit)
   end subroutine put_reals
 
   subroutine put_matrix(self, name, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    real(wp), intent(in), contiguous, target :: values(:, :)   !< the numbers; their dimensions are those of the data set in reverse
-    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
+    class(hdf5_file_type), intent(inout) :: self              !< the HDF5 file
+    character(len=*), intent(in) :: name                      !< path of the data set
+    character(len=*), intent(in) :: long_name                 !< a few words that describe it
+    real(wp), intent(in), contiguous, target :: values(:, :)  !< the numbers; their dimensions are those of the data set in reverse
+    character(len=*), intent(in), optional :: unit            !< unit of the numbers; absent for none
 
     call self%put_values(name, h5t_ieee_f64le, h5t_native_double, shape(values, kind=hsize_t), c_loc(values), &
                          long_name, unit)
   end subroutine put_matrix
 
   subroutine put_integer(self, name, value, long_name)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    integer, intent(in), target :: value   !< the number
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: name          !< path of the data set
+    character(len=*), intent(in) :: long_name     !< a few words that describe it
+    integer, intent(in), target :: value          !< the number
 
     call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(value), h5_integer_kind), [integer(hsize_t) ::], &
                          c_loc(value), long_name)
   end subroutine put_integer
 
   subroutine put_integers(self, name, values, long_name)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    integer, intent(in), contiguous, target :: values(:)   !< the numbers
+    class(hdf5_file_type), intent(inout) :: self          !< the HDF5 file
+    character(len=*), intent(in) :: name                  !< path of the data set
+    character(len=*), intent(in) :: long_name             !< a few words that describe it
+    integer, intent(in), contiguous, target :: values(:)  !< the numbers
 
     call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind), &
                          [size(values, kind=hsize_t)], c_loc(values), long_name)
   end subroutine put_integers
 
   subroutine put_integer_matrix(self, name, values, long_name)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    integer, intent(in), contiguous, target :: values(:, :)   !< the numbers; their dimensions are those of the data set in reverse
+    class(hdf5_file_type), intent(inout) :: self             !< the HDF5 file
+    character(len=*), intent(in) :: name                     !< path of the data set
+    character(len=*), intent(in) :: long_name                !< a few words that describe it
+    integer, intent(in), contiguous, target :: values(:, :)  !< the numbers; their dimensions are those of the data set in reverse
 
     call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind), &
                          shape(values, kind=hsize_t), c_loc(values), long_name)
   end subroutine put_integer_matrix
 
   subroutine put_long(self, name, value, long_name)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    integer(long), intent(in), target :: value   !< the number
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: name          !< path of the data set
+    character(len=*), intent(in) :: long_name     !< a few words that describe it
+    integer(long), intent(in), target :: value    !< the number
 
     call self%put_values(name, h5t_std_i64le, h5kind_to_type(kind(value), h5_integer_kind), [integer(hsize_t) ::], &
                          c_loc(value), long_name)
   end subroutine put_long
 
-  !> A data set of any type with its attributes.
+  !> Write a data set of any type with its attributes.
   subroutine put_values(self, name, file_type, memory_type, extents, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    integer(hid_t), intent(in) :: file_type   !< type of the numbers in the file
-    integer(hid_t), intent(in) :: memory_type   !< type of the numbers in memory
-    integer(hsize_t), intent(in) :: extents(:)     !< empty: a single value; else the Fortran order
-    type(c_ptr), intent(in) :: values   !< address of the first value
-    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
+    class(hdf5_file_type), intent(inout) :: self    !< the HDF5 file
+    character(len=*), intent(in) :: name            !< path of the data set
+    character(len=*), intent(in) :: long_name       !< a few words that describe it
+    integer(hid_t), intent(in) :: file_type         !< type of the numbers in the file
+    integer(hid_t), intent(in) :: memory_type       !< type of the numbers in memory
+    integer(hsize_t), intent(in) :: extents(:)      !< extents of the data set, in Fortran order; empty for a single value
+    type(c_ptr), intent(in) :: values               !< address of the first value
+    character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
     integer(hid_t) :: space, data_set
     integer :: status
     logical :: exists
@@ -293,10 +293,10 @@ contains
 
   !> Set the description of a data set, and its unit.
   subroutine describe(self, name, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    character(len=*), intent(in), optional :: unit   !< unit of the numbers; absent for none
+    class(hdf5_file_type), intent(inout) :: self    !< the HDF5 file
+    character(len=*), intent(in) :: name            !< path of the data set
+    character(len=*), intent(in) :: long_name       !< a few words that describe it
+    character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
 
     call self%add_attribute(name, 'long_name', long_name)
     if (present(unit)) call self%add_attribute(name, 'units', unit)
@@ -304,10 +304,10 @@ contains
 
   !> Add an attribute that is a text to a data set or group; `/` is the file itself.
   subroutine add_attribute(self, name, attribute, text)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set or group
-    character(len=*), intent(in) :: attribute   !< name of the attribute
-    character(len=*), intent(in) :: text   !< value of the attribute
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: name          !< path of the data set or group
+    character(len=*), intent(in) :: attribute     !< name of the attribute
+    character(len=*), intent(in) :: text          !< value of the attribute
     character(kind=c_char), allocatable, target :: letters(:)
     type(c_ptr), allocatable, target :: starts(:)
     type(string_type) :: texts(1)
@@ -329,9 +329,9 @@ contains
 
   !> Convert texts to the form of C: characters with a zero after each text, and the address of each text.
   subroutine lay_out(texts, letters, starts)
-    type(string_type), intent(in) :: texts(:)   !< the texts, in their order
-    character(kind=c_char), allocatable, target, intent(out) :: letters(:)   !< characters of all texts, each ended by a zero
-    type(c_ptr), allocatable, target, intent(out) :: starts(:)   !< address of the first letter of each text, in `letters`
+    type(string_type), intent(in) :: texts(:)                               !< the texts, in their order
+    character(kind=c_char), allocatable, target, intent(out) :: letters(:)  !< characters of all texts, each ended by a zero
+    type(c_ptr), allocatable, target, intent(out) :: starts(:)  !< address of the first letter of each text, in `letters`
     integer :: i, k, at
 
     allocate (letters(sum([(len(texts(i)%text) + 1, i=1, size(texts))])))
@@ -349,8 +349,8 @@ contains
 
   !> Make a data set of one dimension a dimension scale of the same name.
   subroutine make_scale(self, name)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: name          !< path of the data set
     integer(hid_t) :: data_set
     integer :: status
 
@@ -365,9 +365,9 @@ contains
 
   !> Attach a scale to each dimension of a data set. A scale is not attached to others.
   subroutine attach_scales(self, name, scales)
-    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: scales(:)    !< paths, the slowest dimension first
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: name          !< path of the data set
+    character(len=*), intent(in) :: scales(:)     !< paths of the scales, that of the slowest dimension first
     integer(hid_t) :: data_set, scale
     integer :: status, i
 
@@ -379,7 +379,7 @@ contains
       call h5dopen_f(self%id, trim(scales(i)), scale, status)
       call self%check(status)
       if (allocated(self%failure)) exit
-      ! the dimensions as C counts them, the slowest first, but from 1
+      ! the dimensions are in the order of C, the slowest first, but counted from 1
       call h5dsattach_scale_f(data_set, scale, i, status)
       call self%check(status)
       call h5dclose_f(scale, status)

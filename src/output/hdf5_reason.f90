@@ -26,16 +26,16 @@ module mech9_hdf5_reason
   interface
     integer(c_int) function c_walk(stack, direction, visitor, context) bind(c, name='H5Ewalk2')
       import :: c_int64_t, c_int, c_funptr, c_ptr
-      integer(c_int64_t), value :: stack   !< number of the stack of errors
-      integer(c_int), value :: direction   !< inner_first
-      type(c_funptr), value :: visitor   !< the procedure called for each error
-      type(c_ptr), value :: context   !< address handed to the visitor
+      integer(c_int64_t), value :: stack  !< number of the stack of errors
+      integer(c_int), value :: direction  !< inner_first
+      type(c_funptr), value :: visitor    !< the procedure called for each error
+      type(c_ptr), value :: context       !< address handed to the visitor
     end function c_walk
   end interface
 
 contains
 
-  !> The reason of the failure that happened last: the system's own words where it was the system.
+  !> The reason of the last failure: the message of the operating system where that failed.
   function last_reason() result(text)
     character(len=:), allocatable :: text
     type(words_type), target :: words
@@ -56,11 +56,11 @@ contains
     if (length > 0) text = text(:length)
   end function last_reason
 
-  !> Called by HDF5 for each failure on the stack; the first one is kept.
+  !> Keep the reason of the innermost failure. HDF5 calls this function for each failure on the stack.
   function take_innermost(number, record, context) bind(c) result(status)
-    integer(c_int), value :: number   !< position of the error on the stack, from 0
-    type(error_record_type), intent(in) :: record   !< the error
-    type(c_ptr), value :: context   !< address of the words that get the reason
+    integer(c_int), value :: number                !< position of the error on the stack, from 0
+    type(error_record_type), intent(in) :: record  !< the error
+    type(c_ptr), value :: context                  !< address of the words that get the reason
     integer(c_int) :: status
     type(words_type), pointer :: words
     character(kind=c_char), pointer :: letters(:)

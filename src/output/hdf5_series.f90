@@ -28,23 +28,23 @@ module mech9_hdf5_series
   type :: quantity_type
     integer(hid_t) :: data_set = -1
     character(len=:), allocatable :: name, long_name, unit
-    logical :: whole = .false.                   !< of whole numbers
-    character(len=:), allocatable :: scales(:)   !< paths of the dimension scales, time first; none: it is one itself
-    integer, allocatable :: columns(:)           !< of the rows that it consists of
-    integer(hsize_t), allocatable :: extents(:)  !< of one row of it, Fortran order; empty: one number
-    real(wp), allocatable :: buffer(:, :)        !< (columns, rows)
+    logical :: whole = .false.                   !< whether its numbers are whole
+    character(len=:), allocatable :: scales(:)   !< paths of the dimension scales, time first; none: the quantity is a scale itself
+    integer, allocatable :: columns(:)           !< numbers of its columns in a row
+    integer(hsize_t), allocatable :: extents(:)  !< extents of its part of a row, Fortran order; empty: one number
+    real(wp), allocatable :: buffer(:, :)        !< (columns, rows) numbers of all rows
   end type quantity_type
 
   !> The quantities of one file.
   type :: hdf5_series_type
     private
     type(quantity_type), allocatable :: quantities(:)
-    integer :: count = 0             !< of the quantities
-    integer :: compression = 0       !< 0 none to 9 most
+    integer :: count = 0        !< how many quantities there are
+    integer :: compression = 0  !< compression: from 0, none, to 9, the most
     integer :: chunk_rows = 0
-    integer :: capacity = 0          !< rows of the buffers
-    integer :: waiting = 0           !< rows in the buffers
-    integer(hsize_t) :: written = 0  !< rows in the file
+    integer :: capacity = 0          !< how many rows a buffer holds
+    integer :: waiting = 0           !< how many rows wait in the buffers
+    integer(hsize_t) :: written = 0  !< how many rows are in the file
   contains
     procedure :: start
     procedure :: add
@@ -59,11 +59,11 @@ contains
 
   !> Set sizes of chunks and buffers, before the first quantity is added.
   subroutine start(self, n_quantities, n_columns, expected_rows, compression)
-    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    integer, intent(in) :: n_quantities   !< most quantities
-    integer, intent(in) :: n_columns   !< most columns of the rows
-    integer, intent(in) :: expected_rows             !< there may be more, or fewer
-    integer, intent(in) :: compression               !< 0 none to 9 most
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
+    integer, intent(in) :: n_quantities             !< most quantities
+    integer, intent(in) :: n_columns                !< most columns of the rows
+    integer, intent(in) :: expected_rows            !< expected number of rows; there may be more or fewer
+    integer, intent(in) :: compression              !< compression: from 0, none, to 9, the most
     integer :: chunks
 
     allocate (self%quantities(n_quantities))
@@ -78,24 +78,24 @@ contains
     if (compression > 0) self%capacity = self%chunk_rows
   end subroutine start
 
-  !> How many rows fit into so many bytes; one at least.
+  !> The number of rows that fit into a memory of the given size; at least one.
   pure integer function rows_within(bytes, n_columns) result(rows)
-    integer(long), intent(in) :: bytes   !< size of the memory [bytes]
-    integer, intent(in) :: n_columns   !< numbers in each row, 8 bytes each
+    integer(long), intent(in) :: bytes  !< size of the memory [bytes]
+    integer, intent(in) :: n_columns    !< numbers in each row, 8 bytes each
 
     rows = int(max(1_long, bytes/(8_long*n_columns)))
   end function rows_within
 
   !> Add a quantity.
   subroutine add(self, name, columns, extents, long_name, unit, scales, whole)
-    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    character(len=*), intent(in) :: unit   !< unit of its numbers
-    integer, intent(in) :: columns(:)           !< of the rows that it consists of
-    integer, intent(in) :: extents(:)           !< of one row of it, Fortran order; empty: one number
-    character(len=*), intent(in) :: scales(:)   !< paths of the dimension scales, time first; none: it is one itself
-    logical, intent(in), optional :: whole      !< of whole numbers; not unless given
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
+    character(len=*), intent(in) :: name            !< path of the data set
+    character(len=*), intent(in) :: long_name       !< a few words that describe it
+    character(len=*), intent(in) :: unit            !< unit of its numbers
+    integer, intent(in) :: columns(:)               !< numbers of its columns in a row
+    integer, intent(in) :: extents(:)               !< extents of its part of a row, Fortran order; empty: one number
+    character(len=*), intent(in) :: scales(:)  !< paths of the dimension scales, time first; none: the quantity is a scale itself
+    logical, intent(in), optional :: whole          !< whether its numbers are whole; false if absent
 
     self%count = self%count + 1
     associate (quantity => self%quantities(self%count))
@@ -113,8 +113,8 @@ contains
   !> Make all data sets first and name them afterwards. This is called before anything else is written to
   !> the file, so that one page of memory holds the lengths of all of them.
   subroutine create(self, file)
-    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
     integer :: i, status
 
     do i = 1, self%count
@@ -133,9 +133,9 @@ contains
 
   !> Make an empty data set without a name.
   subroutine create_data_set(self, quantity, file)
-    class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
-    type(quantity_type), intent(inout) :: quantity   !< the quantity, which gets its data set
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    class(hdf5_series_type), intent(in) :: self     !< the quantities over time
+    type(quantity_type), intent(inout) :: quantity  !< the quantity, which gets its data set
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
     integer(hid_t) :: creation, access, space
     integer(hsize_t), dimension(size(quantity%extents) + 1) :: none, most, chunk
     integer :: status, rank
@@ -166,8 +166,8 @@ contains
 
   !> Attach the scales, which are in the file by now.
   subroutine attach(self, file)
-    class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    class(hdf5_series_type), intent(in) :: self  !< the quantities over time
+    type(hdf5_file_type), intent(inout) :: file  !< the open file
     integer :: i
 
     do i = 1, self%count
@@ -178,9 +178,9 @@ contains
 
   !> Append rows. They are written to the file when the buffers are full.
   subroutine append_rows(self, file, rows)
-    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
-    real(wp), intent(in) :: rows(:, :)     !< (columns, rows)
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
+    real(wp), intent(in) :: rows(:, :)              !< (columns, rows) numbers of all rows
     integer :: next, together
 
     next = 1
@@ -192,10 +192,10 @@ contains
     end do
   end subroutine append_rows
 
-  !> Keep rows, each quantity's numbers side by side.
+  !> Copy rows to the buffers of the quantities.
   pure subroutine take(self, rows)
-    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    real(wp), intent(in) :: rows(:, :)   !< (columns, rows) the rows to keep
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
+    real(wp), intent(in) :: rows(:, :)              !< (columns, rows) the rows to keep
     integer :: i, j, k
 
     do i = 1, self%count
@@ -212,9 +212,9 @@ contains
 
   !> Write the rows in the buffers. Compressed rows are written only as whole chunks, except at the end.
   subroutine hand_over(self, file, at_end)
-    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
-    logical, intent(in), optional :: at_end   !< present: write rows that do not fill a chunk, too
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
+    logical, intent(in), optional :: at_end         !< present: write rows that do not fill a chunk, too
     integer :: i
 
     if (self%waiting == 0) return
@@ -227,9 +227,9 @@ contains
   end subroutine hand_over
 
   subroutine write_block(self, quantity, file)
-    class(hdf5_series_type), intent(in) :: self   !< the hdf5 series
-    type(quantity_type), intent(in), target :: quantity   !< the quantity whose buffer is written
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    class(hdf5_series_type), intent(in) :: self          !< the quantities over time
+    type(quantity_type), intent(in), target :: quantity  !< the quantity whose buffer is written
+    type(hdf5_file_type), intent(inout) :: file          !< the open file
     integer(hsize_t), dimension(size(quantity%extents) + 1) :: whole, first, block
     integer(hid_t) :: in_file, in_memory
     integer :: status, rank
@@ -254,8 +254,8 @@ contains
 
   !> Write the rows in the buffers and close the data sets.
   subroutine close_series(self, file)
-    class(hdf5_series_type), intent(inout) :: self   !< the hdf5 series
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
     integer :: i, status
 
     call self%hand_over(file, at_end=.true.)

@@ -18,7 +18,7 @@ module mech9_hdf5_sink
   real(wp), parameter :: longest_wait = 1.0_wp
   !> Number of quantities: time, coordinates and points with their derivatives; poses.
   integer, parameter :: quantities_of_motion = 7 + 3
-  !> Events that one chunk of their data sets holds.
+  !> Number of events in a chunk of their data sets.
   integer, parameter :: most_events = 64
   character, parameter :: directions(3) = ['x', 'y', 'z']
 
@@ -26,9 +26,9 @@ module mech9_hdf5_sink
     type(hdf5_file_type) :: file
     type(hdf5_series_type), private :: series
     type(hdf5_series_type), private :: events
-    logical, private :: begun = .false.     !< rows were written
+    logical, private :: begun = .false.  !< whether rows were written
     type(pacer_type), private :: pacer
-    logical, private :: told = .false.      !< the file's failure was reported
+    logical, private :: reported = .false.  !< whether the failure of the file was reported
   contains
     procedure :: open => open_sink
     procedure :: write_rows
@@ -42,13 +42,13 @@ module mech9_hdf5_sink
 
 contains
 
-  !> Create the file with all its quantities, still without rows.
+  !> Create the file with all its quantities, without rows.
   subroutine open_sink(self, path, mechanism, columns, err)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    character(len=*), intent(in) :: path   !< path of the file
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(columns_type), intent(in) :: columns        !< of the rows to come
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(hdf5_sink_type), intent(inout) :: self       !< the HDF5 sink
+    character(len=*), intent(in) :: path               !< path of the file
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(columns_type), intent(in) :: columns          !< columns of the rows to come
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: scalars
 
     call self%file%create(path, err)
@@ -68,12 +68,12 @@ contains
     call self%tell(err)
   end subroutine open_sink
 
-  !> The quantities over time, each with a scale for every dimension.
+  !> Add the quantities over time, each with a scale for every dimension.
   subroutine add_quantities(self, mechanism, columns, scalars)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(columns_type), intent(in) :: columns   !< columns of the rows to come
-    integer, intent(in) :: scalars           !< columns that belong neither to a coordinate nor to a point
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(columns_type), intent(in) :: columns      !< columns of the rows to come
+    integer, intent(in) :: scalars                 !< how many columns belong neither to a coordinate nor to a point
     character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
     character(len=13), parameter :: words(0:2) = ['coordinates  ', 'rates        ', 'accelerations']
     character(len=12), parameter :: of_points(0:2) = ['position    ', 'velocity    ', 'acceleration']
@@ -98,11 +98,11 @@ contains
 
   !> Add a quantity of all coordinates.
   subroutine add_of_coordinates(self, columns, name, long_name, order)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(columns_type), intent(in) :: columns   !< columns of the rows to come
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    integer, intent(in) :: order             !< 0, 1 or 2 derivatives
+    class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
+    type(columns_type), intent(in) :: columns     !< columns of the rows to come
+    character(len=*), intent(in) :: name          !< path of the data set
+    character(len=*), intent(in) :: long_name     !< a few words that describe it
+    integer, intent(in) :: order                  !< number of derivatives by time: 0, 1 or 2
     integer :: before, n, i
 
     n = size(columns%coordinates)
@@ -114,11 +114,11 @@ contains
   !> Add a quantity of all points, with three components.
   subroutine add_of_points(self, mechanism, columns, name, unit, order)
     class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(columns_type), intent(in) :: columns   !< columns of the rows to come
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: unit   !< unit of its numbers
-    integer, intent(in) :: order             !< 0, 1 or 2 derivatives
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(columns_type), intent(in) :: columns      !< columns of the rows to come
+    character(len=*), intent(in) :: name           !< path of the data set
+    character(len=*), intent(in) :: unit           !< unit of its numbers
+    integer, intent(in) :: order                   !< number of derivatives by time: 0, 1 or 2
     character(len=:), allocatable :: plural
     integer :: before, each, i, k
 
@@ -133,8 +133,8 @@ contains
 
   !> Add poses of links, and the vertices of their drawing.
   subroutine add_poses(self, columns)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(columns_type), intent(in) :: columns   !< columns of the rows to come
+    class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
+    type(columns_type), intent(in) :: columns     !< columns of the rows to come
     integer :: n, vertices, i
 
     n = columns%poses%n_links
@@ -152,9 +152,9 @@ contains
   !> Write scales of the poses, and to which links vertices and lines belong. A scale stands in the group of the data set
   !> that it scales, or above: readers that follow the rules of netCDF look for it nowhere else.
   subroutine add_pose_scales(file, poses, has_axes)
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
-    type(poses_type), intent(in) :: poses   !< links, vertices and lines that are written
-    logical, intent(in) :: has_axes             !< the axes of the fixed frame are in the file
+    type(hdf5_file_type), intent(inout) :: file  !< the open file
+    type(poses_type), intent(in) :: poses        !< links, vertices and lines that are written
+    logical, intent(in) :: has_axes              !< whether the axes of the fixed frame are in the file already
     integer :: line_link(size(poses%lines, 2)), i
 
     line_link = poses%vertex_link(poses%lines(1, :))
@@ -177,9 +177,9 @@ contains
   end subroutine add_pose_scales
 
   subroutine put_axes(file, name, long_name)
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
-    character(len=*), intent(in) :: name   !< path of the data set
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    type(hdf5_file_type), intent(inout) :: file  !< the open file
+    character(len=*), intent(in) :: name         !< path of the data set
+    character(len=*), intent(in) :: long_name    !< a few words that describe it
     type(string_type) :: axes(3)
     integer :: i
 
@@ -191,9 +191,9 @@ contains
   end subroutine put_axes
 
   subroutine add_coordinate_scales(file, mechanism, columns)
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(columns_type), intent(in) :: columns   !< columns of the rows to come
+    type(hdf5_file_type), intent(inout) :: file    !< the open file
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(columns_type), intent(in) :: columns      !< columns of the rows to come
     type(string_type) :: kinds(size(columns%coordinates))
     integer :: i
 
@@ -209,8 +209,8 @@ contains
   end subroutine add_coordinate_scales
 
   subroutine add_point_scales(file, mechanism)
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(hdf5_file_type), intent(inout) :: file    !< the open file
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(string_type) :: names(size(mechanism%points))
     integer :: i
 
@@ -226,7 +226,7 @@ contains
 
   !> The unit if it is the same for all; otherwise the list of units, and `coordinate_unit` tells that of each.
   pure function common_unit(units) result(text)
-    type(string_type), intent(in) :: units(:)   !< units of the coordinates
+    type(string_type), intent(in) :: units(:)  !< units of the coordinates
     character(len=:), allocatable :: text
     integer :: i
 
@@ -240,7 +240,7 @@ contains
 
   !> The name of a column as an identifier that programs accept: E_kinetic for E.kinetic.
   pure function identifier(name) result(text)
-    character(len=*), intent(in) :: name   !< heading of a column
+    character(len=*), intent(in) :: name  !< heading of a column
     character(len=len(name)) :: text
     integer :: i
 
@@ -252,8 +252,8 @@ contains
 
   !> Make data sets for the events of a run: the times at which other coordinates became independent, and their numbers.
   subroutine begin_events(self, n_independent)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    integer, intent(in) :: n_independent   !< how many coordinates are independent
+    class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
+    integer, intent(in) :: n_independent          !< how many coordinates are independent
     integer :: i
 
     call self%events%start(2, 1 + n_independent, most_events, 0)
@@ -269,9 +269,9 @@ contains
 
   !> Write the events of the run.
   subroutine write_events(self, times, independent)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    real(wp), intent(in) :: times(:)           !< [s]
-    integer, intent(in) :: independent(:, :)   !< (degrees of freedom, events)
+    class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
+    real(wp), intent(in) :: times(:)              !< times of the events [s]
+    integer, intent(in) :: independent(:, :)      !< (degrees of freedom, events) numbers of the independent coordinates then
     real(wp) :: rows(1 + size(independent, 1), size(times))
 
     rows(1, :) = times
@@ -282,9 +282,9 @@ contains
   !> Append rows. They are flushed about once a second, and the first ones at once, because the first flush
   !> determines where the later data stand in the file.
   subroutine write_rows(self, rows, err)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    real(wp), intent(in) :: rows(:, :)   !< (columns, rows)
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(hdf5_sink_type), intent(inout) :: self       !< the HDF5 sink
+    real(wp), intent(in) :: rows(:, :)                 !< (columns, rows) numbers of the rows
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call self%series%append_rows(self%file, rows)
     if (self%pacer%due() .or. .not. self%begun) then
@@ -297,8 +297,8 @@ contains
 
   !> Write all rows to the file.
   subroutine flush_sink(self, err)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(hdf5_sink_type), intent(inout) :: self       !< the HDF5 sink
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call self%series%hand_over(self%file, at_end=.true.)
     call self%file%flush()
@@ -306,8 +306,8 @@ contains
   end subroutine flush_sink
 
   subroutine close_sink(self, err)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(hdf5_sink_type), intent(inout) :: self       !< the HDF5 sink
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     if (.not. self%file%is_open()) return
     call self%series%close(self%file)
@@ -317,7 +317,7 @@ contains
   end subroutine close_sink
 
   function words(self)
-    class(hdf5_sink_type), intent(in) :: self   !< the HDF5 sink
+    class(hdf5_sink_type), intent(in) :: self  !< the HDF5 sink
     character(len=:), allocatable :: words
 
     words = 'HDF5 file: '//self%file%path
@@ -325,11 +325,11 @@ contains
 
   !> Return the first failure of the file, only once.
   subroutine tell(self, err)
-    class(hdf5_sink_type), intent(inout) :: self   !< the HDF5 sink
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(hdf5_sink_type), intent(inout) :: self       !< the HDF5 sink
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
-    if (self%told .or. .not. allocated(self%file%failure)) return
-    self%told = .true.
+    if (self%reported .or. .not. allocated(self%file%failure)) return
+    self%reported = .true.
     err = self%file%failure
   end subroutine tell
 end module mech9_hdf5_sink

@@ -27,9 +27,9 @@ module mech9_json
     private
     type(page_type) :: page
     integer :: depth = 0
-    character :: closing(deepest) = ' '   !< what ends the object or array at each depth
-    logical :: empty = .true.         !< nothing stands yet in the innermost object or array
-    logical :: wrong = .false.        !< the calls do not make a document
+    character :: closing(deepest) = ' '   !< the bracket that ends the object or array at each depth
+    logical :: empty = .true.   !< whether the innermost object or array has no element yet
+    logical :: wrong = .false.  !< whether the calls do not compose a correct document
   contains
     procedure :: begin_object
     procedure :: end_object
@@ -47,75 +47,75 @@ module mech9_json
 contains
 
   subroutine begin_object(self, name)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in), optional :: name   !< name in the object around it; absent in an array and for the whole document
+    class(json_type), intent(inout) :: self         !< the document
+    character(len=*), intent(in), optional :: name  !< name in the object around it; absent in an array and for the whole document
 
     call self%begin('{', '}', name)
   end subroutine begin_object
 
   subroutine end_object(self)
-    class(json_type), intent(inout) :: self   !< the json
+    class(json_type), intent(inout) :: self  !< the document
 
     call self%finish('}')
   end subroutine end_object
 
   subroutine begin_array(self, name)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in), optional :: name   !< name in the object around it; absent in an array and for the whole document
+    class(json_type), intent(inout) :: self         !< the document
+    character(len=*), intent(in), optional :: name  !< name in the object around it; absent in an array and for the whole document
 
     call self%begin('[', ']', name)
   end subroutine begin_array
 
   subroutine end_array(self)
-    class(json_type), intent(inout) :: self   !< the json
+    class(json_type), intent(inout) :: self  !< the document
 
     call self%finish(']')
   end subroutine end_array
 
   subroutine add_real(self, name, value)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name   !< name in the object
-    real(wp), intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    character(len=*), intent(in) :: name     !< name in the object
+    real(wp), intent(in) :: value            !< the value to add
 
     call self%put_item(number_text(value), name)
   end subroutine add_real
 
   subroutine add_integer(self, name, value)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name   !< name in the object
-    integer, intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    character(len=*), intent(in) :: name     !< name in the object
+    integer, intent(in) :: value             !< the value to add
 
     call self%put_item(to_text(value), name)
   end subroutine add_integer
 
   subroutine add_long(self, name, value)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name   !< name in the object
-    integer(long), intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    character(len=*), intent(in) :: name     !< name in the object
+    integer(long), intent(in) :: value       !< the value to add
 
     call self%put_item(to_text(value), name)
   end subroutine add_long
 
   subroutine add_logical(self, name, value)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name   !< name in the object
-    logical, intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    character(len=*), intent(in) :: name     !< name in the object
+    logical, intent(in) :: value             !< the value to add
 
     call self%put_item(trim(merge('true ', 'false', value)), name)
   end subroutine add_logical
 
   subroutine add_text(self, name, value)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name   !< name in the object
-    character(len=*), intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    character(len=*), intent(in) :: name     !< name in the object
+    character(len=*), intent(in) :: value    !< the value to add
 
     call self%put_item(quoted(value), name)
   end subroutine add_text
 
   subroutine add_reals(self, name, values)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: name   !< name in the object
-    real(wp), intent(in) :: values(:)   !< the numbers
+    class(json_type), intent(inout) :: self  !< the document
+    character(len=*), intent(in) :: name     !< name in the object
+    real(wp), intent(in) :: values(:)        !< the numbers
     integer :: i
 
     call self%begin_array(name)
@@ -126,45 +126,45 @@ contains
   end subroutine add_reals
 
   subroutine item_real(self, value)
-    class(json_type), intent(inout) :: self   !< the json
-    real(wp), intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    real(wp), intent(in) :: value            !< the value to add
 
     call self%put_item(number_text(value))
   end subroutine item_real
 
   subroutine item_integer(self, value)
-    class(json_type), intent(inout) :: self   !< the json
-    integer, intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    integer, intent(in) :: value             !< the value to add
 
     call self%put_item(to_text(value))
   end subroutine item_integer
 
   subroutine item_long(self, value)
-    class(json_type), intent(inout) :: self   !< the json
-    integer(long), intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    integer(long), intent(in) :: value       !< the value to add
 
     call self%put_item(to_text(value))
   end subroutine item_long
 
   subroutine item_logical(self, value)
-    class(json_type), intent(inout) :: self   !< the json
-    logical, intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    logical, intent(in) :: value             !< the value to add
 
     call self%put_item(trim(merge('true ', 'false', value)))
   end subroutine item_logical
 
   subroutine item_text(self, value)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: value   !< the value to add
+    class(json_type), intent(inout) :: self  !< the document
+    character(len=*), intent(in) :: value    !< the value to add
 
     call self%put_item(quoted(value))
   end subroutine item_text
 
   !> Write the finished document to a file.
   subroutine save_document(self, path, err)
-    class(json_type), intent(in) :: self   !< the json
-    character(len=*), intent(in) :: path   !< '-' is standard output
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(json_type), intent(in) :: self               !< the document
+    character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     if (self%wrong .or. self%depth /= 0 .or. self%page%is_empty()) then
       call raise(err, exit_internal, 'the report '//path//' was not composed as a whole document')
@@ -174,10 +174,10 @@ contains
   end subroutine save_document
 
   subroutine begin(self, opening, closing, name)
-    class(json_type), intent(inout) :: self   !< the json
-    character, intent(in) :: opening   !< the bracket that opens it
-    character, intent(in) :: closing   !< the bracket that will close it
-    character(len=*), intent(in), optional :: name   !< name in the object around it; absent in an array and for the whole document
+    class(json_type), intent(inout) :: self         !< the document
+    character, intent(in) :: opening                !< the bracket that opens it
+    character, intent(in) :: closing                !< the bracket that will close it
+    character(len=*), intent(in), optional :: name  !< name in the object around it; absent in an array and for the whole document
 
     call self%put_item(opening, name)
     if (self%depth == deepest) self%wrong = .true.
@@ -188,8 +188,8 @@ contains
   end subroutine begin
 
   subroutine finish(self, closing)
-    class(json_type), intent(inout) :: self   !< the json
-    character, intent(in) :: closing   !< the bracket that closes it
+    class(json_type), intent(inout) :: self  !< the document
+    character, intent(in) :: closing         !< the bracket that closes it
 
     if (self%depth == 0) self%wrong = .true.
     if (self%wrong) return
@@ -205,9 +205,9 @@ contains
 
   !> Write a value that is JSON already, with its name, comma and indentation.
   subroutine put_item(self, value, name)
-    class(json_type), intent(inout) :: self   !< the json
-    character(len=*), intent(in) :: value   !< the value as JSON
-    character(len=*), intent(in), optional :: name   !< name in the object; absent in an array
+    class(json_type), intent(inout) :: self         !< the document
+    character(len=*), intent(in) :: value           !< the value as JSON
+    character(len=*), intent(in), optional :: name  !< name in the object; absent in an array
     logical :: in_object
 
     in_object = .false.
@@ -225,14 +225,14 @@ contains
   !> The number with the fewest digits, from 15 to 17, that reads back as the same number. JSON has no NaN and no
   !> infinity; they become null.
   pure function number_text(value) result(text)
-    real(wp), intent(in) :: value   !< any number, also one that is not finite
+    real(wp), intent(in) :: value  !< any number, also one that is not finite
     character(len=:), allocatable :: text
     real(wp) :: read_back
     integer :: digits, status
 
     text = 'null'
     if (.not. is_finite(value)) return
-    ! rounded to fewer digits, the very largest numbers would overflow
+    ! the largest numbers, rounded to fewer digits, would overflow
     do digits = merge(15, 17, abs(value) < 1.0e308_wp), 17
       text = to_text(value, digits)
       read (text, *, iostat=status) read_back
@@ -242,14 +242,14 @@ contains
 
   !> Whether a number is finite, by its bits: a comparison with NaN would stop a program that traps invalid operations.
   pure logical function is_finite(value)
-    real(wp), intent(in) :: value   !< any number, also one that is not finite
+    real(wp), intent(in) :: value  !< any number, also one that is not finite
 
     is_finite = ibits(transfer(value, 0_long), 52, 11) /= 2047
   end function is_finite
 
   !> A text as a JSON string; bytes that are not UTF-8 become the replacement character.
   pure function quoted(text) result(json)
-    character(len=*), intent(in) :: text   !< any bytes
+    character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: json
     integer :: i, length
 
@@ -269,7 +269,7 @@ contains
 
   !> One character, escaped where JSON requires it.
   pure function escaped(letter) result(json)
-    character(len=*), intent(in) :: letter   !< the bytes of one character
+    character(len=*), intent(in) :: letter  !< the bytes of one character
     character(len=:), allocatable :: json
     character(len=2) :: code
 

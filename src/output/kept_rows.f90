@@ -11,11 +11,11 @@ module mech9_kept_rows
 
   type :: kept_rows_type
     character(len=:), allocatable :: title
-    type(string_type), allocatable :: names(:), units(:)   !< of the columns, time first
-    real(wp), allocatable :: rows(:, :)                    !< rows(:, i): row i; `count` of them are filled
-    integer :: count = 0                                   !< rows kept
-    integer :: stride = 1                 !< one row of so many is kept
-    integer :: seen = 0                                    !< rows taken
+    type(string_type), allocatable :: names(:), units(:)  !< headings and units of the columns, time first
+    real(wp), allocatable :: rows(:, :)                   !< rows(:, i): row i; `count` of them are filled
+    integer :: count = 0                                  !< how many rows are kept
+    integer :: stride = 1                                 !< one row of so many is kept
+    integer :: seen = 0                                   !< how many rows were taken, with those not kept
   contains
     procedure :: begin
     procedure :: take
@@ -26,11 +26,11 @@ contains
 
   !> Begin without rows; earlier ones are removed.
   pure subroutine begin(self, title, names, units, expected)
-    class(kept_rows_type), intent(inout) :: self   !< the kept rows
-    character(len=*), intent(in) :: title   !< title of the mechanism
-    type(string_type), intent(in) :: names(:)   !< headings of the columns, time first
-    type(string_type), intent(in) :: units(:)   !< units of the columns
-    integer, intent(in) :: expected                        !< how many rows will come at most
+    class(kept_rows_type), intent(inout) :: self  !< the kept rows
+    character(len=*), intent(in) :: title         !< title of the mechanism
+    type(string_type), intent(in) :: names(:)     !< headings of the columns, time first
+    type(string_type), intent(in) :: units(:)     !< units of the columns
+    integer, intent(in) :: expected               !< most rows to come
 
     self%title = title
     self%names = names
@@ -44,8 +44,8 @@ contains
 
   !> Keep rows, which follow the earlier ones.
   pure subroutine take(self, rows)
-    class(kept_rows_type), intent(inout) :: self   !< the kept rows
-    real(wp), intent(in) :: rows(:, :)                     !< (columns, rows)
+    class(kept_rows_type), intent(inout) :: self  !< the kept rows
+    real(wp), intent(in) :: rows(:, :)            !< (columns, rows) numbers of the rows
     integer :: i
 
     do i = 1, size(rows, 2)
@@ -59,10 +59,10 @@ contains
 
   !> Number of the column with a name; if there is none, 0 and the nearest name.
   pure subroutine column(self, name, number, meant)
-    class(kept_rows_type), intent(in) :: self   !< the kept rows
-    character(len=*), intent(in) :: name   !< heading of the column
-    integer, intent(out) :: number   !< number of the column; 0: there is none
-    character(len=:), allocatable, intent(out) :: meant    !< empty where no name is near
+    class(kept_rows_type), intent(in) :: self            !< the kept rows
+    character(len=*), intent(in) :: name                 !< heading of the column
+    integer, intent(out) :: number                       !< number of the column; 0: there is none
+    character(len=:), allocatable, intent(out) :: meant  !< the nearest heading; empty where none is near
     character(len=len(name) + 8) :: known(size(self%names))
 
     meant = ''

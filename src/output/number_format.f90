@@ -66,7 +66,7 @@ contains
   end function new_number_format
 
   pure subroutine multiply_by_5(number)
-    integer(long), intent(inout) :: number(limbs)   !< long integer, least limb first
+    integer(long), intent(inout) :: number(limbs)  !< long integer, least limb first
     integer(long) :: carry
     integer :: i
 
@@ -79,7 +79,7 @@ contains
   end subroutine multiply_by_5
 
   pure subroutine divide_by_5(number)
-    integer(long), intent(inout) :: number(limbs)   !< long integer, least limb first
+    integer(long), intent(inout) :: number(limbs)  !< long integer, least limb first
     integer(long) :: rest
     integer :: i
 
@@ -93,9 +93,9 @@ contains
 
   !> The first 120 bits of a long integer (which has more than that), in two halves.
   pure subroutine leading_bits(number, high, low)
-    integer(long), intent(in) :: number(limbs)   !< least limb first
-    integer(long), intent(out) :: high   !< the first 60 bits
-    integer(long), intent(out) :: low   !< the next 60 bits
+    integer(long), intent(in) :: number(limbs)  !< long integer, least limb first
+    integer(long), intent(out) :: high          !< the first 60 bits
+    integer(long), intent(out) :: low           !< the next 60 bits
     integer(long) :: aligned(4)
     integer :: top, bits, i
 
@@ -115,9 +115,9 @@ contains
   !> Write a number into a field, at its right end: `-1.2345678901234567E+00`. A number that is not finite
   !> becomes `NaN`, `Infinity` or `-Infinity`.
   pure subroutine put(self, number, field)
-    class(number_format_type), intent(in) :: self   !< the number format
-    real(wp), intent(in) :: number   !< any number, also one that is not finite
-    character(len=number_width), intent(out) :: field   !< the number as text, at the right end
+    class(number_format_type), intent(in) :: self      !< the table of powers of ten
+    real(wp), intent(in) :: number                     !< any number, also one that is not finite
+    character(len=number_width), intent(out) :: field  !< the number as text, at the right end
     integer(long) :: bits, mantissa, digits
     integer :: binary_exponent, exponent, shift
     logical :: decided
@@ -145,8 +145,8 @@ contains
   end subroutine put
 
   pure function not_finite(is_nan, negative) result(field)
-    logical, intent(in) :: is_nan   !< whether it is not a number
-    logical, intent(in) :: negative   !< whether its sign bit is set
+    logical, intent(in) :: is_nan    !< whether it is not a number
+    logical, intent(in) :: negative  !< whether its sign bit is set
     character(len=number_width) :: field
 
     if (is_nan) then
@@ -161,12 +161,12 @@ contains
 
   !> The 17 digits of mantissa 2^binary_exponent, and the power of ten of the first of them.
   pure subroutine find_digits(self, mantissa, binary_exponent, digits, exponent, decided)
-    type(number_format_type), intent(in) :: self   !< the number format
-    integer(long), intent(in) :: mantissa   !< 2^52 <= mantissa < 2^53
-    integer, intent(in) :: binary_exponent   !< power of 2 that multiplies the mantissa
-    integer(long), intent(out) :: digits    !< 10^16 <= digits < 10^17
-    integer, intent(out) :: exponent   !< power of ten of the first digit
-    logical, intent(out) :: decided         !< false: 120 bits do not tell which way to round
+    type(number_format_type), intent(in) :: self  !< the table of powers of ten
+    integer(long), intent(in) :: mantissa         !< the mantissa as an integer, from 2^52 to 2^53 - 1
+    integer, intent(in) :: binary_exponent        !< power of 2 that multiplies the mantissa
+    integer(long), intent(out) :: digits          !< the digits as an integer, from 10^16 to 10^17 - 1
+    integer, intent(out) :: exponent              !< power of ten of the first digit
+    logical, intent(out) :: decided               !< whether 120 bits decide the rounding
     integer(wide) :: product
     integer(long) :: fraction, half
     integer :: p, shift
@@ -188,8 +188,8 @@ contains
     half = shiftl(1_long, shift - 1)
     decided = .true.
     if (p >= 0 .and. p <= 24) then
-      ! the product is exact, and only here can a half be met exactly: m 5^p, an odd number below
-      ! 2 10^17, has no room for more fives; it goes to the even digit, as in every formatted write
+      ! the product is exact, and a tie is possible only here: m 5^p, an odd number below
+      ! 2 10^17, has no more factors 5; a tie is rounded to the even digit, as by every formatted write
       if (fraction > half .or. (fraction == half .and. btest(digits, 0))) digits = digits + 1
     else
       if (fraction >= half) digits = digits + 1
@@ -201,11 +201,11 @@ contains
     end if
   end subroutine find_digits
 
-  !> The digits by the compiler's formatted write: exact for every number, but slow.
+  !> Find the digits by the compiler's formatted write, which is exact for every number but slow.
   pure subroutine read_digits(number, digits, exponent)
-    real(wp), intent(in) :: number   !< a finite number other than zero
-    integer(long), intent(out) :: digits   !< the 17 digits as an integer
-    integer, intent(out) :: exponent   !< power of ten of the first digit
+    real(wp), intent(in) :: number        !< a finite number other than zero
+    integer(long), intent(out) :: digits  !< the 17 digits as an integer
+    integer, intent(out) :: exponent      !< power of ten of the first digit
     character(len=24) :: text
     character(len=17) :: digits_text
 
@@ -215,12 +215,12 @@ contains
     read (text(21:24), '(i4)') exponent
   end subroutine read_digits
 
-  !> Lay the digits out; two digits of exponent where they are enough, else three.
+  !> Write the digits into a field, with an exponent of two digits, or three where two are not enough.
   pure subroutine put_digits(digits, exponent, negative, field)
-    integer(long), intent(in) :: digits   !< the 17 digits as an integer
-    integer, intent(in) :: exponent   !< power of ten of the first digit
-    logical, intent(in) :: negative   !< whether the number has a minus sign
-    character(len=number_width), intent(out) :: field   !< the number as text, at the right end
+    integer(long), intent(in) :: digits                !< the 17 digits as an integer
+    integer, intent(in) :: exponent                    !< power of ten of the first digit
+    logical, intent(in) :: negative                    !< whether the number has a minus sign
+    character(len=number_width), intent(out) :: field  !< the number as text, at the right end
     integer(long) :: first, upper, rest
     integer :: at, size
 
@@ -245,8 +245,8 @@ contains
   end subroutine put_digits
 
   pure subroutine put_8_digits(number, text)
-    integer, intent(in) :: number   !< from 0 to 99999999
-    character(len=8), intent(out) :: text   !< its digits, with leading zeros
+    integer, intent(in) :: number          !< from 0 to 99999999
+    character(len=8), intent(out) :: text  !< its digits, with leading zeros
     integer :: upper, lower, a, c
 
     upper = number/10000

@@ -25,8 +25,8 @@ contains
 
   !> Append text.
   pure subroutine put(self, text)
-    class(page_type), intent(inout) :: self   !< the page
-    character(len=*), intent(in) :: text   !< the text to append
+    class(page_type), intent(inout) :: self  !< the page
+    character(len=*), intent(in) :: text     !< the text to append
     character(len=:), allocatable :: grown
 
     if (.not. allocated(self%buffer)) allocate (character(len=65536) :: self%buffer)
@@ -41,8 +41,8 @@ contains
 
   !> Append text and end the line.
   pure subroutine line(self, text)
-    class(page_type), intent(inout) :: self   !< the page
-    character(len=*), intent(in) :: text   !< the text to append
+    class(page_type), intent(inout) :: self  !< the page
+    character(len=*), intent(in) :: text     !< the text to append
 
     call self%put(text)
     call self%put(line_end)
@@ -50,7 +50,7 @@ contains
 
   !> The whole text.
   pure function text_of_page(self) result(text)
-    class(page_type), intent(in) :: self   !< the page
+    class(page_type), intent(in) :: self  !< the page
     character(len=:), allocatable :: text
 
     text = ''
@@ -59,16 +59,16 @@ contains
 
   !> Whether the page has no text yet.
   pure logical function is_empty(self)
-    class(page_type), intent(in) :: self   !< the page
+    class(page_type), intent(in) :: self  !< the page
 
     is_empty = self%used == 0
   end function is_empty
 
   !> Write the page into a file; '-' is standard output. Errors are exit_file.
   subroutine save_page(self, path, err)
-    class(page_type), intent(in) :: self   !< the page
-    character(len=*), intent(in) :: path   !< path of the file; '-' is standard output
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(page_type), intent(in) :: self               !< the page
+    character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call save_text(path, self%text(), err)
   end subroutine save_page

@@ -12,13 +12,13 @@ module mech9_poses
   private
   public :: poses_type, poses_of
 
-  !> Columns: origins of the links, their rotations by rows, the vertices. Without links there are none.
+  !> The columns: origins of the links, their rotations by rows, the vertices. Without links there are no columns.
   type :: poses_type
     integer :: n_links = 0
-    integer, allocatable :: vertex_link(:)   !< (V) link that the vertex belongs to
-    integer, allocatable :: carrier(:)       !< (V) link that carries the vertex: another one for user pairs
-    real(wp), allocatable :: local(:, :)     !< (3,V) its place in the carrier's system [m]
-    integer, allocatable :: lines(:, :)      !< (2,L) vertices joined by a line
+    integer, allocatable :: vertex_link(:)  !< (V) link that each vertex belongs to
+    integer, allocatable :: carrier(:)      !< (V) link that each vertex moves with: another one for user pairs
+    real(wp), allocatable :: local(:, :)    !< (3,V) position of the vertex in the frame of its carrier [m]
+    integer, allocatable :: lines(:, :)     !< (2,L) vertices joined by a line
   contains
     procedure :: width
     procedure :: fill
@@ -28,7 +28,7 @@ contains
 
   !> Vertices and lines of all links.
   pure function poses_of(mechanism) result(poses)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(poses_type) :: poses
     type(screw_factors_type) :: factors
     type(pose_type) :: in_moving
@@ -63,10 +63,10 @@ contains
     poses%lines = lines_through(poses%n_links, poses%vertex_link)
   end function poses_of
 
-  !> The vertices of each link joined in their order, and the last one with the first where there are three or more.
+  !> Lines that join the vertices of each link in their order, and the last one with the first where there are three or more.
   pure function lines_through(n_links, vertex_link) result(lines)
-    integer, intent(in) :: n_links   !< number of links
-    integer, intent(in) :: vertex_link(:)   !< (V) link that each vertex belongs to
+    integer, intent(in) :: n_links         !< number of links
+    integer, intent(in) :: vertex_link(:)  !< (V) link that each vertex belongs to
     integer, allocatable :: lines(:, :)
     integer, dimension(n_links) :: first, latest, number
     integer :: joined(2, 2*size(vertex_link)), n, i, link
@@ -95,7 +95,7 @@ contains
 
   !> Number of columns.
   pure integer function width(self)
-    class(poses_type), intent(in) :: self   !< the poses
+    class(poses_type), intent(in) :: self  !< the poses
 
     width = 12*self%n_links
     if (self%n_links > 0) width = width + 3*size(self%vertex_link)
@@ -103,10 +103,10 @@ contains
 
   !> Set the columns.
   pure subroutine fill(self, plan, state, columns)
-    class(poses_type), intent(in) :: self   !< the poses
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(inout) :: columns(:)   !< gets origins [m], rotations by rows, and vertices [m], all in the fixed frame
+    class(poses_type), intent(in) :: self  !< the poses
+    type(plan_type), intent(in) :: plan    !< the plan of the mechanism
+    type(state_type), intent(in) :: state  !< position and motion of the mechanism
+    real(wp), intent(inout) :: columns(:)  !< gets origins [m], rotations by rows, and vertices [m], all in the fixed frame
     real(wp) :: r(3, 3, self%n_links), p(3, self%n_links), omega(3), v(3)
     integer :: i, at
 

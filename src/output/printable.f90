@@ -7,9 +7,9 @@ module mech9_printable
 contains
 
   !> The text without bytes that could end or break a line or stop a reader: control characters
-  !> become blanks, bytes that are not UTF-8 become question marks. The length stays.
+  !> become blanks, and bytes that are not UTF-8 become question marks. The length does not change.
   pure function printable(text) result(clean)
-    character(len=*), intent(in) :: text   !< any bytes
+    character(len=*), intent(in) :: text  !< any bytes
     character(len=len(text)) :: clean
     integer :: i, length
 
@@ -29,7 +29,7 @@ contains
   !> The text as the name of a column: printable, and with underscores for blanks, quotes and `#`, which split
   !> names or end a line for readers of tables.
   pure function column_name(text) result(name)
-    character(len=*), intent(in) :: text   !< any bytes
+    character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: name
     integer :: i
 
@@ -42,9 +42,9 @@ contains
 
   !> Length of the text after some letters are replaced by escapes.
   pure integer function escaped_length(text, letters, escapes) result(length)
-    character(len=*), intent(in) :: text   !< any bytes
-    character(len=*), intent(in) :: letters   !< the letters that are replaced
-    character(len=*), intent(in) :: escapes(:)   !< what replaces each of them, without trailing blanks
+    character(len=*), intent(in) :: text        !< any bytes
+    character(len=*), intent(in) :: letters     !< the letters that are replaced
+    character(len=*), intent(in) :: escapes(:)  !< what replaces each of them, without trailing blanks
     integer :: i, k
 
     length = len(text)
@@ -56,9 +56,9 @@ contains
 
   !> The text with escapes for the letters that have a special meaning in the file.
   pure function with_escapes(text, letters, escapes) result(safe)
-    character(len=*), intent(in) :: text   !< any bytes
-    character(len=*), intent(in) :: letters      !< those
-    character(len=*), intent(in) :: escapes(:)   !< for each of them, padded with blanks
+    character(len=*), intent(in) :: text        !< any bytes
+    character(len=*), intent(in) :: letters     !< the letters that are replaced
+    character(len=*), intent(in) :: escapes(:)  !< what replaces each of them, padded with blanks
     character(len=:), allocatable :: safe
     integer :: i, k, n, length
 
@@ -78,16 +78,16 @@ contains
   end function with_escapes
 
   pure logical function is_control(letter)
-    character, intent(in) :: letter   !< one byte
+    character, intent(in) :: letter  !< one byte
 
     is_control = iachar(letter) < 32 .or. iachar(letter) == 127
   end function is_control
 
-  !> Bytes of the UTF-8 character that begins at a place; 0 where none does (a stray or missing
+  !> Number of bytes of the UTF-8 character that begins at a place; 0 where none does (a stray or missing
   !> continuation, an overlong form, a surrogate, or a number beyond the last one).
   pure integer function utf8_length(text, place) result(length)
-    character(len=*), intent(in) :: text   !< any bytes
-    integer, intent(in) :: place   !< number of the byte where the character may begin
+    character(len=*), intent(in) :: text  !< any bytes
+    integer, intent(in) :: place          !< number of the byte where the character may begin
     integer :: first, second, low, high, i
 
     first = ichar(text(place:place))

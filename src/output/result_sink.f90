@@ -26,16 +26,16 @@ module mech9_result_sink
     !> Take rows, which follow the earlier ones; they may be held back for a moment. Errors name the file.
     subroutine rows_interface(self, rows, err)
       import :: result_sink_type, error_type, wp
-      class(result_sink_type), intent(inout) :: self   !< the result sink
-      real(wp), intent(in) :: rows(:, :)      !< (columns, rows), the columns as they were announced
-      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+      class(result_sink_type), intent(inout) :: self     !< the result sink
+      real(wp), intent(in) :: rows(:, :)                 !< (columns, rows) numbers of the rows, in the columns given at the opening
+      type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     end subroutine rows_interface
 
     !> Write all rows and close the files, even when writing fails. Does nothing to a sink that is closed.
     subroutine close_interface(self, err)
       import :: result_sink_type, error_type
-      class(result_sink_type), intent(inout) :: self   !< the result sink
-      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+      class(result_sink_type), intent(inout) :: self     !< the result sink
+      type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     end subroutine close_interface
   end interface
 
@@ -43,13 +43,13 @@ contains
 
   !> Write the rows that are held back; by default there are none.
   subroutine flush_nothing(self, err)
-    class(result_sink_type), intent(inout) :: self   !< the result sink
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(result_sink_type), intent(inout) :: self     !< the result sink
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
   end subroutine flush_nothing
 
   !> A line for the user about the files written, after the sink is closed; by default there is none.
   function no_words(self) result(words)
-    class(result_sink_type), intent(in) :: self   !< the result sink
+    class(result_sink_type), intent(in) :: self  !< the result sink
     character(len=:), allocatable :: words
 
     words = ''
@@ -57,7 +57,7 @@ contains
 
   !> Append a sink.
   subroutine append_sink(slots, sink)
-    type(sink_slot_type), allocatable, intent(inout) :: slots(:)   !< the open sinks of a run
+    type(sink_slot_type), allocatable, intent(inout) :: slots(:)  !< the open sinks of a run
     class(result_sink_type), allocatable, intent(inout) :: sink   !< the sink to append; not allocated afterwards
     type(sink_slot_type), allocatable :: grown(:)
     integer :: i

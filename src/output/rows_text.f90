@@ -14,9 +14,9 @@ contains
 
   !> Names, units and the last rows, as whole lines.
   pure function rows_text(kept, columns, last) result(text)
-    type(kept_rows_type), intent(in) :: kept   !< the kept rows of a run
+    type(kept_rows_type), intent(in) :: kept  !< the kept rows of a run
     integer, intent(in) :: columns(:)         !< numbers of the columns to show
-    integer, intent(in) :: last               !< how many rows
+    integer, intent(in) :: last               !< most rows shown
     character(len=:), allocatable :: text
     integer :: i, k, shown
 
@@ -43,7 +43,7 @@ contains
 
   !> A text in its column, with a blank before it even where it is too long.
   pure function at_right(text) result(padded)
-    character(len=*), intent(in) :: text   !< the text of one column
+    character(len=*), intent(in) :: text  !< the text of one column
     character(len=:), allocatable :: padded
 
     padded = repeat(' ', max(1, column_width - len(text)))//text

@@ -7,21 +7,21 @@ module mech9_run_comparison
   private
   public :: difference_type, comparison_type, compare_runs, comparison_text
 
-  !> How two runs differ in one column.
+  !> The difference of two runs in one column.
   type :: difference_type
-    integer :: column = 0                 !< of the later run
-    real(wp) :: difference = 0.0_wp       !< largest |later - earlier|, in the column's unit
-    real(wp) :: time = 0.0_wp             !< where it is [s]
+    integer :: column = 0            !< number of the column in the later run
+    real(wp) :: difference = 0.0_wp  !< largest |later - earlier|, in the column's unit
+    real(wp) :: time = 0.0_wp        !< time of the largest difference [s]
     real(wp) :: before = 0.0_wp, after = 0.0_wp
-    real(wp) :: share = 0.0_wp            !< of the largest absolute value of this unit in either run
+    real(wp) :: share = 0.0_wp  !< the difference over the largest absolute value of this unit in either run
   end type difference_type
 
   !> Two runs, at the times that they have in common.
   type :: comparison_type
     integer :: times = 0
-    integer :: same = 0                                !< columns that do not differ at all
-    integer :: alike = 0                               !< columns that differ by no more than round-off
-    type(difference_type), allocatable :: columns(:)   !< that differ by more, the greatest share first
+    integer :: same = 0                               !< columns that do not differ at all
+    integer :: alike = 0                              !< columns that differ by no more than round-off
+    type(difference_type), allocatable :: columns(:)  !< columns that differ by more, the greatest share first
   end type comparison_type
 
   !> Output times that differ by less than this share are equal: they are computed from start, end and number, with round-off.
@@ -38,9 +38,9 @@ contains
 
   !> Compare the columns that two runs have in common by name.
   pure subroutine compare_runs(earlier, later, comparison)
-    type(kept_rows_type), intent(in) :: earlier   !< rows of the earlier run
-    type(kept_rows_type), intent(in) :: later   !< rows of the later run
-    type(comparison_type), intent(out) :: comparison   !< the differences
+    type(kept_rows_type), intent(in) :: earlier       !< rows of the earlier run
+    type(kept_rows_type), intent(in) :: later         !< rows of the later run
+    type(comparison_type), intent(out) :: comparison  !< the differences
     integer :: pairs(2, min(earlier%count, later%count))
     type(difference_type) :: difference
     character(len=:), allocatable :: meant
@@ -72,10 +72,10 @@ contains
 
   !> The rows of the two runs at each common time.
   pure subroutine pair_times(earlier, later, pairs, n)
-    type(kept_rows_type), intent(in) :: earlier   !< rows of the earlier run
-    type(kept_rows_type), intent(in) :: later   !< rows of the later run
-    integer, intent(inout) :: pairs(:, :)   !< (2,:) row of the earlier run and row of the later one
-    integer, intent(out) :: n   !< how many pairs there are
+    type(kept_rows_type), intent(in) :: earlier  !< rows of the earlier run
+    type(kept_rows_type), intent(in) :: later    !< rows of the later run
+    integer, intent(inout) :: pairs(:, :)        !< (2,:) row of the earlier run and row of the later one
+    integer, intent(out) :: n                    !< how many pairs there are
     real(wp) :: one, other
     integer :: i, j
 
@@ -99,7 +99,7 @@ contains
   end subroutine pair_times
 
   pure type(difference_type) function difference_in(before, after, times) result(difference)
-    real(wp), intent(in) :: before(:)   !< the column in the earlier run, at the common times
+    real(wp), intent(in) :: before(:)  !< the column in the earlier run, at the common times
     real(wp), intent(in) :: after(:)   !< the column in the later run, at the common times
     real(wp), intent(in) :: times(:)   !< the common times [s]
     integer :: i
@@ -114,7 +114,7 @@ contains
   !> For each column the largest absolute value in all columns of its unit. A quantity that is zero except for round-off,
   !> such as the height of a planar motion, is small compared with it.
   pure function greatest_of_unit(kept) result(greatest)
-    type(kept_rows_type), intent(in) :: kept   !< rows of a run
+    type(kept_rows_type), intent(in) :: kept  !< rows of a run
     real(wp) :: greatest(size(kept%names))
     real(wp) :: own(size(kept%names))
     integer :: i, k
@@ -133,8 +133,8 @@ contains
 
   !> Insert a difference into the sorted list.
   pure subroutine insert(list, difference)
-    type(difference_type), allocatable, intent(inout) :: list(:)   !< differences, the greatest share first
-    type(difference_type), intent(in) :: difference   !< the difference to insert
+    type(difference_type), allocatable, intent(inout) :: list(:)  !< differences, the greatest share first
+    type(difference_type), intent(in) :: difference               !< the difference to insert
     integer :: place
 
     place = count(list%share >= difference%share)
@@ -143,8 +143,8 @@ contains
 
   !> A comparison in words, as whole lines of at most 79 letters.
   pure function comparison_text(comparison, later) result(text)
-    type(comparison_type), intent(in) :: comparison   !< the differences
-    type(kept_rows_type), intent(in) :: later   !< rows of the later run
+    type(comparison_type), intent(in) :: comparison  !< the differences
+    type(kept_rows_type), intent(in) :: later        !< rows of the later run
     character(len=:), allocatable :: text
     character(len=79) :: line
     integer :: i

@@ -36,10 +36,10 @@ module mech9_table
     type(number_format_type) :: format
     type(pacer_type) :: pacer
     character(len=:), allocatable :: buffer
-    integer :: used = 0      !< bytes waiting in the buffer
+    integer :: used = 0  !< bytes waiting in the buffer
     integer :: columns = 0
-    integer :: row_size = 0  !< bytes; of the longest row
-    logical :: commas = .false.  !< a file of comma-separated values
+    integer :: row_size = 0      !< length of the longest row [bytes]
+    logical :: commas = .false.  !< whether the file has comma-separated values
   contains
     procedure :: open => open_table
     procedure :: write_row
@@ -52,13 +52,13 @@ contains
 
   !> Create the file and write the lines above the rows.
   subroutine open_table(self, path, title, program, names, units, err)
-    class(table_type), intent(inout) :: self   !< the table
-    character(len=*), intent(in) :: path          !< '-' is standard output
-    character(len=*), intent(in) :: title         !< any text; a comment line for each of its lines
-    character(len=*), intent(in) :: program       !< name and version
-    type(string_type), intent(in) :: names(:)     !< of the columns
-    type(string_type), intent(in) :: units(:)     !< of the columns; empty for a plain number
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(table_type), intent(inout) :: self           !< the table
+    character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
+    character(len=*), intent(in) :: title              !< title of the mechanism; each of its lines becomes a comment line
+    character(len=*), intent(in) :: program            !< name and version of the program
+    type(string_type), intent(in) :: names(:)          !< headings of the columns
+    type(string_type), intent(in) :: units(:)          !< units of the columns; empty for a plain number
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     if (size(names) == 0 .or. size(names) /= size(units)) then
       call raise(err, exit_internal, 'a table needs columns, and as many units as names')
@@ -84,9 +84,9 @@ contains
 
   !> Write one row, a value for each column. It may stay in the buffer for a moment.
   subroutine write_row(self, values, err)
-    class(table_type), intent(inout) :: self   !< the table
-    real(wp), intent(in) :: values(:)   !< one number for each column
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(table_type), intent(inout) :: self           !< the table
+    real(wp), intent(in) :: values(:)                  !< one number for each column
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: at
 
     if (size(values) /= self%columns .or. .not. self%file%is_open()) then
@@ -110,10 +110,10 @@ contains
 
   !> Append numbers in columns of equal width to the first `at` bytes of the buffer.
   pure subroutine put_in_fields(format, values, buffer, at)
-    type(number_format_type), intent(in) :: format   !< the number format
-    real(wp), intent(in) :: values(:)   !< the numbers of one row
-    character(len=*), intent(inout) :: buffer   !< the text, which gets the row
-    integer, intent(inout) :: at   !< number of bytes used in the buffer
+    type(number_format_type), intent(in) :: format  !< the number format
+    real(wp), intent(in) :: values(:)               !< the numbers of one row
+    character(len=*), intent(inout) :: buffer       !< the text, which gets the row
+    integer, intent(inout) :: at                    !< number of bytes used in the buffer
     integer :: i
 
     do i = 1, size(values)
@@ -124,10 +124,10 @@ contains
 
   !> Append numbers without blanks and with commas between them to the first `at` bytes of the buffer.
   pure subroutine put_with_commas(format, values, buffer, at)
-    type(number_format_type), intent(in) :: format   !< the number format
-    real(wp), intent(in) :: values(:)   !< the numbers of one row
-    character(len=*), intent(inout) :: buffer   !< the text, which gets the row
-    integer, intent(inout) :: at   !< number of bytes used in the buffer
+    type(number_format_type), intent(in) :: format  !< the number format
+    real(wp), intent(in) :: values(:)               !< the numbers of one row
+    character(len=*), intent(inout) :: buffer       !< the text, which gets the row
+    integer, intent(inout) :: at                    !< number of bytes used in the buffer
     character(len=number_width) :: field
     integer :: i, first
 
@@ -145,9 +145,9 @@ contains
 
   !> Write rows, one after the other.
   subroutine write_rows(self, rows, err)
-    class(table_type), intent(inout) :: self   !< the table
-    real(wp), intent(in) :: rows(:, :)   !< (columns, rows)
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(table_type), intent(inout) :: self           !< the table
+    real(wp), intent(in) :: rows(:, :)                 !< (columns, rows) numbers of the rows
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: i
 
     do i = 1, size(rows, 2)
@@ -159,8 +159,8 @@ contains
   !> Write the last rows and close the file; does nothing to a table that is not open. The file is closed
   !> even when writing fails.
   subroutine close_table(self, err)
-    class(table_type), intent(inout) :: self   !< the table
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(table_type), intent(inout) :: self           !< the table
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(error_type), allocatable :: close_error
 
     if (.not. self%file%is_open()) return
@@ -170,11 +170,11 @@ contains
     deallocate (self%buffer)
   end subroutine close_table
 
-  !> Empty the buffer into the file. Rows that cannot be written are dropped: the run is about to
-  !> end with this error, and must not meet it again when it closes the table.
+  !> Write the buffer to the file. Rows that cannot be written are dropped: the run is about to
+  !> end with this error, which must not occur a second time when the table is closed.
   subroutine hand_over(self, err)
-    class(table_type), intent(inout) :: self   !< the table
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(table_type), intent(inout) :: self           !< the table
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: used
 
     used = self%used
@@ -184,7 +184,7 @@ contains
 
   !> Text as comment lines; it is split at line ends of all kinds.
   pure function comment_lines(text) result(lines)
-    character(len=*), intent(in) :: text   !< any text, of several lines
+    character(len=*), intent(in) :: text  !< any text, of several lines
     character(len=:), allocatable :: lines
     integer :: first, length
 
@@ -201,7 +201,7 @@ contains
 
   !> The units, each above its column.
   pure function unit_line(units) result(line)
-    type(string_type), intent(in) :: units(:)   !< units of the columns
+    type(string_type), intent(in) :: units(:)  !< units of the columns
     character(len=:), allocatable :: line
     character(len=*), parameter :: beginning = '# units:'
     integer :: i
@@ -214,7 +214,7 @@ contains
   end function unit_line
 
   pure function unit_name(unit) result(name)
-    character(len=*), intent(in) :: unit   !< unit of a column; empty where it has none
+    character(len=*), intent(in) :: unit  !< unit of a column; empty where it has none
     character(len=:), allocatable :: name
 
     if (unit == '') then
@@ -225,7 +225,7 @@ contains
   end function unit_name
 
   pure function name_line(names) result(line)
-    type(string_type), intent(in) :: names(:)   !< headings of the columns
+    type(string_type), intent(in) :: names(:)  !< headings of the columns
     character(len=:), allocatable :: line
     integer :: i
 
@@ -238,7 +238,7 @@ contains
 
   !> The names with commas between, in quotes where they hold a comma or a quote.
   pure function comma_line(names) result(line)
-    type(string_type), intent(in) :: names(:)   !< headings of the columns
+    type(string_type), intent(in) :: names(:)  !< headings of the columns
     character(len=:), allocatable :: line
     character(len=:), allocatable :: name
     integer :: i, k
@@ -263,8 +263,8 @@ contains
 
   !> A word at the right end of a field; a word that fills the field keeps a blank before it.
   pure function right_aligned(word, width) result(field)
-    character(len=*), intent(in) :: word   !< the text to set
-    integer, intent(in) :: width   !< width of the field
+    character(len=*), intent(in) :: word  !< the text to set
+    integer, intent(in) :: width          !< width of the field
     character(len=max(width, len(word) + 1)) :: field
 
     field = repeat(' ', len(field) - len(word))//word

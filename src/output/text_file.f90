@@ -30,20 +30,20 @@ module mech9_text_file
   interface
     integer(c_int) function c_creat(path, mode) bind(c, name='creat')
       import :: c_int, c_char
-      character(kind=c_char), intent(in) :: path(*)   !< path of the file, ended by a zero
-      integer(c_int), value :: mode   !< permissions, mode_t: an unsigned integer of the same size
+      character(kind=c_char), intent(in) :: path(*)  !< path of the file, ended by a zero
+      integer(c_int), value :: mode                  !< permissions, mode_t: an unsigned integer of the same size
     end function c_creat
 
     integer(c_long) function c_write(descriptor, bytes, count) bind(c, name='write')
       import :: c_int, c_long, c_size_t, c_char
-      integer(c_int), value :: descriptor   !< number of the open file
-      character(kind=c_char), intent(in) :: bytes(*)   !< the bytes to write
-      integer(c_size_t), value :: count   !< how many bytes
+      integer(c_int), value :: descriptor             !< number of the open file
+      character(kind=c_char), intent(in) :: bytes(*)  !< the bytes to write
+      integer(c_size_t), value :: count               !< how many bytes
     end function c_write
 
     integer(c_int) function c_close(descriptor) bind(c, name='close')
       import :: c_int
-      integer(c_int), value :: descriptor   !< number of the open file
+      integer(c_int), value :: descriptor  !< number of the open file
     end function c_close
   end interface
 
@@ -51,10 +51,10 @@ contains
 
   !> Create the file, or empty it if it exists.
   subroutine open_file(self, path, err, name)
-    class(text_file_type), intent(inout) :: self   !< the text file
-    character(len=*), intent(in) :: path             !< '-' is standard output
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    character(len=*), intent(in), optional :: name   !< what messages call it; its path unless given
+    class(text_file_type), intent(inout) :: self       !< the text file
+    character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    character(len=*), intent(in), optional :: name     !< name of the file in messages; its path if absent
 
     if (path == '-') then
       self%path = 'standard output'
@@ -74,16 +74,16 @@ contains
   end subroutine open_file
 
   pure logical function is_open(self)
-    class(text_file_type), intent(in) :: self   !< the text file
+    class(text_file_type), intent(in) :: self  !< the text file
 
     is_open = self%descriptor >= 0
   end function is_open
 
   !> Write all bytes to the file.
   subroutine write_text(self, text, err)
-    class(text_file_type), intent(inout) :: self   !< the text file
-    character(len=*), intent(in) :: text   !< the bytes to write
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(text_file_type), intent(inout) :: self       !< the text file
+    character(len=*), intent(in) :: text               !< the bytes to write
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: done
     integer(c_long) :: written
 
@@ -101,8 +101,8 @@ contains
 
   !> Close the file; does nothing to one that is not open. Some disks report only at this moment that they are full.
   subroutine close_file(self, err)
-    class(text_file_type), intent(inout) :: self   !< the text file
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(text_file_type), intent(inout) :: self       !< the text file
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer(c_int) :: descriptor
 
     descriptor = self%descriptor
@@ -112,11 +112,11 @@ contains
       call raise(err, exit_file, 'cannot finish '//self%path//': '//reason(error_number()))
   end subroutine close_file
 
-  !> Write a file of this text. Errors are exit_file; the first one is told, and the file is closed in any case.
+  !> Write a file with this text. Errors are exit_file; the first one is returned, and the file is closed in any case.
   subroutine save_text(path, text, err)
-    character(len=*), intent(in) :: path   !< '-' is standard output
-    character(len=*), intent(in) :: text   !< of whole lines
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
+    character(len=*), intent(in) :: text               !< the text, as whole lines
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(error_type), allocatable :: at_close
     type(text_file_type) :: file
 
@@ -130,9 +130,9 @@ contains
   !> Replace a file by one with this text; the old file stays unchanged until the new one is complete. Errors are
   !> exit_file.
   subroutine replace_text(path, text, err)
-    character(len=*), intent(in) :: path   !< path of the file
-    character(len=*), intent(in) :: text   !< of whole lines
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path               !< path of the file
+    character(len=*), intent(in) :: text               !< the text, as whole lines
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(error_type), allocatable :: at_close
     type(replacement_type) :: replacement
     type(text_file_type) :: file

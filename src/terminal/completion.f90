@@ -12,7 +12,7 @@ contains
 
   !> The word being typed at the end of a text; empty where none is.
   pure function beginning_of_word(text) result(beginning)
-    character(len=*), intent(in) :: text   !< the line up to the cursor
+    character(len=*), intent(in) :: text  !< the line up to the cursor
     character(len=:), allocatable :: beginning
 
     beginning = text(scan(text, separators, back=.true.) + 1:)
@@ -20,9 +20,9 @@ contains
 
   !> The words with the same beginning, in their order.
   pure subroutine completions(words, beginning, found)
-    type(string_type), intent(in) :: words(:)   !< the words offered
-    character(len=*), intent(in) :: beginning   !< the beginning of the word that is typed
-    type(string_type), allocatable, intent(out) :: found(:)   !< those that begin with it, in their order
+    type(string_type), intent(in) :: words(:)                !< the words offered
+    character(len=*), intent(in) :: beginning                !< the beginning of the word that is typed
+    type(string_type), allocatable, intent(out) :: found(:)  !< those that begin with it, in their order
     integer :: i, n
 
     n = 0
@@ -40,7 +40,7 @@ contains
 
   !> The longest text with which all of the words begin; empty where there are none.
   pure function common_beginning(words) result(text)
-    type(string_type), intent(in) :: words(:)   !< the words offered
+    type(string_type), intent(in) :: words(:)  !< the words offered
     character(len=:), allocatable :: text
     integer :: i, n
 
@@ -59,8 +59,8 @@ contains
 
   !> The words side by side in columns, as whole lines.
   pure function in_columns(words, width) result(text)
-    type(string_type), intent(in) :: words(:)   !< the words offered
-    integer, intent(in) :: width   !< letters in a line
+    type(string_type), intent(in) :: words(:)  !< the words offered
+    integer, intent(in) :: width               !< letters in a line
     character(len=:), allocatable :: text
     integer :: i, column, columns
 

@@ -22,7 +22,7 @@ module mech9_input_bytes
   type :: input_bytes_type
     private
     character(len=buffer_size) :: buffer
-    integer :: place = 0    !< of the byte given last
+    integer :: place = 0  !< place of the last byte that was returned
     integer :: filled = 0
   contains
     procedure :: next_byte
@@ -33,23 +33,23 @@ module mech9_input_bytes
   !> The request to `poll` (struct pollfd).
   type, bind(c) :: poll_type
     integer(c_int) :: descriptor = standard_input
-    integer(c_short) :: events = 1    !< POLLIN
+    integer(c_short) :: events = 1  !< POLLIN
     integer(c_short) :: answer = 0
   end type poll_type
 
   interface
     integer(c_int) function c_poll(asked, count, timeout) bind(c, name='poll')
       import :: c_int, c_long, poll_type
-      type(poll_type), intent(inout) :: asked   !< the file to wait for, and the answer
-      integer(c_long), value :: count   !< how many files: 1
-      integer(c_int), value :: timeout   !< longest time to wait [ms]
+      type(poll_type), intent(inout) :: asked  !< the file to wait for, and the answer
+      integer(c_long), value :: count          !< how many files: 1
+      integer(c_int), value :: timeout         !< longest time to wait [ms]
     end function c_poll
 
     integer(c_long) function c_read(descriptor, bytes, count) bind(c, name='read')
       import :: c_int, c_long, c_size_t, c_char
-      integer(c_int), value :: descriptor   !< number of the open file
-      character(kind=c_char), intent(out) :: bytes(*)   !< gets the bytes
-      integer(c_size_t), value :: count   !< most bytes to read
+      integer(c_int), value :: descriptor              !< number of the open file
+      character(kind=c_char), intent(out) :: bytes(*)  !< gets the bytes
+      integer(c_size_t), value :: count                !< most bytes to read
     end function c_read
   end interface
 
@@ -58,10 +58,10 @@ contains
   !> Wait for the next byte. With `disturbed`, the procedure also returns, without a byte, after a signal that does not
   !> interrupt: the program was stopped and continued, or the size of the window changed.
   subroutine next_byte(self, byte, status, disturbed)
-    class(input_bytes_type), intent(inout) :: self   !< the input bytes
-    character, intent(out) :: byte   !< the byte; zero where there is none
-    integer, intent(out) :: status   !< input_read, or why there is none
-    logical, intent(out), optional :: disturbed   !< a signal ended the wait, and there is no byte
+    class(input_bytes_type), intent(inout) :: self  !< standard input
+    character, intent(out) :: byte                  !< the byte; zero where there is none
+    integer, intent(out) :: status                  !< input_read, or the reason why there is none
+    logical, intent(out), optional :: disturbed     !< a signal ended the wait, and there is no byte
     logical :: by_signal
 
     byte = achar(0)
@@ -81,16 +81,16 @@ contains
 
   !> Return the last byte again at the next request.
   subroutine step_back(self)
-    class(input_bytes_type), intent(inout) :: self   !< the input bytes
+    class(input_bytes_type), intent(inout) :: self  !< standard input
 
     if (self%place > 0) self%place = self%place - 1
   end subroutine step_back
 
   !> Wait for input and read it; `disturbed` is true where a signal ended the wait.
   subroutine refill(self, status, disturbed)
-    class(input_bytes_type), intent(inout) :: self   !< the input bytes
-    integer, intent(out) :: status   !< input_read, input_ended or input_interrupted
-    logical, intent(out) :: disturbed   !< whether a signal ended the wait
+    class(input_bytes_type), intent(inout) :: self  !< standard input
+    integer, intent(out) :: status                  !< input_read, input_ended or input_interrupted
+    logical, intent(out) :: disturbed               !< whether a signal ended the wait
     type(poll_type) :: asked
     integer :: ready, got
 

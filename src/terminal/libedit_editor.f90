@@ -32,10 +32,10 @@ module mech9_libedit_editor
   !> Data for the functions that libedit calls.
   type :: box_type
     type(input_bytes_type) :: bytes
-    integer :: status = input_read     !< input_read, or the reason why there are no more keys
+    integer :: status = input_read  !< input_read, or the reason why there are no more keys
     integer(wide), allocatable :: prompt(:)
     type(string_type), allocatable :: words(:)
-    integer(wide), allocatable :: name(:)  !< of the function for completion, which libedit keeps by address
+    integer(wide), allocatable :: name(:)  !< name of the function for completion, whose address libedit keeps
   end type box_type
 
   !> One editor, on standard input and standard error.
@@ -43,7 +43,7 @@ module mech9_libedit_editor
     private
     type(c_ptr) :: editor = c_null_ptr
     type(c_ptr) :: history = c_null_ptr
-    type(c_ptr) :: input = c_null_ptr, output = c_null_ptr   !< streams of C
+    type(c_ptr) :: input = c_null_ptr, output = c_null_ptr  !< streams of C
     type(history_event_type) :: event
     type(box_type), pointer :: box => null()
   contains
@@ -56,9 +56,9 @@ contains
 
   !> Start the editor; `ready` is false where the terminal cannot be used.
   subroutine start(self, program_name, ready)
-    class(line_editor_type), intent(inout) :: self   !< the line editor
-    character(len=*), intent(in) :: program_name   !< name for the user's settings of libedit
-    logical, intent(out) :: ready   !< whether lines can be edited
+    class(line_editor_type), intent(inout) :: self  !< the line editor
+    character(len=*), intent(in) :: program_name    !< name for the user's settings of libedit
+    logical, intent(out) :: ready                   !< whether lines can be edited
 
     call take_letters_of_user()
     self%input = c_fdopen(c_dup(int(standard_input, c_int)), 'r'//c_null_char)
@@ -87,7 +87,7 @@ contains
     name = c_setlocale(lc_ctype, c_null_char)
     if (c_associated(name)) then
       call c_f_pointer(name, letters, [2])
-      ! any name but C
+      ! the user has chosen a locale other than C
       if (letters(1) /= 'C' .or. letters(2) /= c_null_char) return
     end if
     name = c_setlocale(lc_ctype, 'C.UTF-8'//c_null_char)
@@ -95,7 +95,7 @@ contains
 
   !> Change the settings of libedit that differ from its defaults.
   subroutine set_up(self)
-    class(line_editor_type), intent(inout) :: self   !< the line editor
+    class(line_editor_type), intent(inout) :: self  !< the line editor
     integer(c_int) :: status
 
     status = history_w(self%history, self%event, h_setsize, history_size)
@@ -123,9 +123,9 @@ contains
   !> Store the data of a prompt. This is a procedure of its own because gfortran 12 does not allocate a component on assignment
   !> when it is reached through a pointer in a polymorphic variable.
   subroutine fill_box(box, prompt, words)
-    type(box_type), intent(inout) :: box   !< gets the data
-    character(len=*), intent(in) :: prompt   !< text before the line
-    type(string_type), intent(in), optional :: words(:)   !< words offered for completion; absent: none
+    type(box_type), intent(inout) :: box                 !< gets the data
+    character(len=*), intent(in) :: prompt               !< text before the line
+    type(string_type), intent(in), optional :: words(:)  !< words offered for completion; absent: none
 
     box%status = input_read
     box%prompt = to_wide(prompt)
@@ -138,18 +138,18 @@ contains
 
   !> Show the prompt and wait for a line.
   subroutine read_line(self, prompt, words, line, status)
-    class(line_editor_type), intent(inout) :: self   !< the line editor
-    character(len=*), intent(in) :: prompt              !< one line
-    type(string_type), intent(in) :: words(:)           !< what may be completed here
-    character(len=:), allocatable, intent(out) :: line  !< without its end
-    integer, intent(out) :: status                      !< as that of next_byte
+    class(line_editor_type), intent(inout) :: self      !< the line editor
+    character(len=*), intent(in) :: prompt              !< text before the line, without a line end
+    type(string_type), intent(in) :: words(:)           !< words offered for completion
+    character(len=:), allocatable, intent(out) :: line  !< the line without its end
+    integer, intent(out) :: status                      !< see next_byte of mech9_input_bytes
     integer(wide), pointer :: points(:)
     integer(wide), allocatable, target :: remembered(:)
     type(c_ptr) :: address
     integer(c_int) :: count, ignored
 
     call fill_box(self%box, prompt, words)
-    ! from before the prompt is seen: the system would show once more what is typed meanwhile
+    ! set before the prompt appears, or the terminal would show again the letters that are typed meanwhile
     ignored = el_wset(self%editor, el_prep_term, 1_c_intptr_t, nothing, nothing)
     address = el_wgets(self%editor, count)
     line = ''
@@ -169,7 +169,7 @@ contains
 
   !> Free editor, history, streams and data.
   subroutine stop_editor(self)
-    class(line_editor_type), intent(inout) :: self   !< the line editor
+    class(line_editor_type), intent(inout) :: self  !< the line editor
     integer(c_int) :: ignored
 
     if (c_associated(self%editor)) call el_end(self%editor)
@@ -185,7 +185,7 @@ contains
 
   !> The prompt; libedit calls this function.
   type(c_ptr) function show_prompt(editor) bind(c)
-    type(c_ptr), value :: editor   !< address of the editor
+    type(c_ptr), value :: editor  !< address of the editor
     type(box_type), pointer :: box
 
     box => box_of(editor)
@@ -194,8 +194,8 @@ contains
 
   !> Read the next key, one code point, and return how many were read; libedit calls this function.
   integer(c_int) function get_key(editor, key) bind(c)
-    type(c_ptr), value :: editor   !< address of the editor
-    integer(wide), intent(out) :: key   !< code point of the key
+    type(c_ptr), value :: editor       !< address of the editor
+    integer(wide), intent(out) :: key  !< code point of the key
     type(box_type), pointer :: box
     logical :: disturbed
 
@@ -216,7 +216,7 @@ contains
 
   !> Draw prompt and line again, from the beginning of the line that the cursor is in.
   subroutine draw_again(editor)
-    type(c_ptr), intent(in) :: editor   !< address of the editor
+    type(c_ptr), intent(in) :: editor  !< address of the editor
     integer(c_int) :: ignored
 
     write (error_unit, '(a)', advance='no') achar(13)
@@ -226,14 +226,14 @@ contains
 
   !> Whether a key is a letter and not a command.
   pure logical function is_letter(key)
-    integer(wide), intent(in) :: key   !< code point of the key
+    integer(wide), intent(in) :: key  !< code point of the key
 
     is_letter = key >= 32 .and. key /= 127
   end function is_letter
 
   !> Number of letters of the present line.
   integer function line_length(editor)
-    type(c_ptr), intent(in) :: editor   !< address of the editor
+    type(c_ptr), intent(in) :: editor  !< address of the editor
     type(line_info_type), pointer :: info
 
     call c_f_pointer(el_wline(editor), info)
@@ -242,10 +242,10 @@ contains
 
   !> Read one UTF-8 character; it is unknown_character where the bytes form none.
   subroutine read_character(bytes, point, status, disturbed)
-    type(input_bytes_type), intent(inout) :: bytes   !< standard input
-    integer(wide), intent(out) :: point   !< code point of the character
-    integer, intent(out) :: status   !< input_read, input_ended or input_interrupted
-    logical, intent(out) :: disturbed     !< as that of next_byte
+    type(input_bytes_type), intent(inout) :: bytes  !< standard input
+    integer(wide), intent(out) :: point             !< code point of the character
+    integer, intent(out) :: status                  !< input_read, input_ended or input_interrupted
+    logical, intent(out) :: disturbed               !< see next_byte of mech9_input_bytes
     character(len=4) :: letter
     integer :: length, i
 
@@ -269,8 +269,8 @@ contains
   !> Insert the letters that all fitting words have in common, or list these words where there are none. libedit calls this
 !> function for the key Tab.
   integer(c_signed_char) function complete_word(editor, key) bind(c)
-    type(c_ptr), value :: editor   !< address of the editor
-    integer(c_int), value :: key   !< code of the key, not used
+    type(c_ptr), value :: editor  !< address of the editor
+    integer(c_int), value :: key  !< code of the key, not used
     type(box_type), pointer :: box
     type(string_type), allocatable :: found(:)
     character(len=:), allocatable :: beginning, common
@@ -294,7 +294,7 @@ contains
 
   !> The text before the cursor.
   function line_to_cursor(editor) result(text)
-    type(c_ptr), intent(in) :: editor   !< address of the editor
+    type(c_ptr), intent(in) :: editor  !< address of the editor
     character(len=:), allocatable :: text
     type(line_info_type), pointer :: info
     integer(wide), pointer :: points(:)
@@ -306,7 +306,7 @@ contains
   end function line_to_cursor
 
   function box_of(editor) result(box)
-    type(c_ptr), intent(in) :: editor   !< address of the editor
+    type(c_ptr), intent(in) :: editor  !< address of the editor
     type(box_type), pointer :: box
     type(c_ptr) :: address
 
@@ -316,10 +316,10 @@ contains
 
   !> Change a setting that takes texts. libedit reads them only during this call.
   subroutine set_text(editor, what, first, second)
-    type(c_ptr), intent(in) :: editor   !< address of the editor
-    integer(c_int), intent(in) :: what   !< number of the setting, such as el_bind
-    character(len=*), intent(in) :: first   !< its first text
-    character(len=*), intent(in), optional :: second   !< its second text; absent: none
+    type(c_ptr), intent(in) :: editor                 !< address of the editor
+    integer(c_int), intent(in) :: what                !< number of the setting, such as el_bind
+    character(len=*), intent(in) :: first             !< its first text
+    character(len=*), intent(in), optional :: second  !< its second text; absent: none
     integer(wide), allocatable, target :: one(:), other(:)
     integer(c_int) :: ignored
 
@@ -334,7 +334,7 @@ contains
 
   !> An address as a machine word.
   pure integer(c_intptr_t) function word_of(address)
-    type(c_ptr), intent(in) :: address   !< any address
+    type(c_ptr), intent(in) :: address  !< any address
 
     word_of = transfer(address, 0_c_intptr_t)
   end function word_of
@@ -342,7 +342,7 @@ contains
   !> The address of a function as a machine word. The argument is passed by value: gfortran would otherwise place the address
   !> of a function of a shared library where the loader cannot set it.
   pure integer(c_intptr_t) function function_word(address)
-    type(c_funptr), value :: address   !< address of the function
+    type(c_funptr), value :: address  !< address of the function
 
     function_word = transfer(address, 0_c_intptr_t)
   end function function_word

@@ -33,7 +33,7 @@ contains
   !> Open the input. After this call Ctrl-C and a closed terminal are results of `read_line` and do not end
   !> the program.
   subroutine open_input(self, program_name)
-    class(line_input_type), intent(inout) :: self   !< the line input
+    class(line_input_type), intent(inout) :: self  !< standard input as lines
     character(len=*), intent(in) :: program_name   !< name for the user's settings of libedit
 
     call catch_interrupts()
@@ -45,18 +45,18 @@ contains
 
   !> Show the prompt and wait for a line. A last line without a line end is a line too.
   subroutine read_line(self, prompt, words, line, status)
-    class(line_input_type), intent(inout) :: self   !< the line input
-    character(len=*), intent(in) :: prompt             !< may have several lines
-    type(string_type), intent(in) :: words(:)          !< what may be completed here
-    character(len=:), allocatable, intent(out) :: line !< without its end; whatever bytes it has
-    integer, intent(out) :: status                     !< line_read, line_ended or line_interrupted
+    class(line_input_type), intent(inout) :: self       !< standard input as lines
+    character(len=*), intent(in) :: prompt              !< text before the line; it may have several lines
+    type(string_type), intent(in) :: words(:)           !< words offered for completion
+    character(len=:), allocatable, intent(out) :: line  !< the line without its end, of any bytes
+    integer, intent(out) :: status                      !< line_read, line_ended or line_interrupted
     integer :: last_line
 
     if (self%edits) then
       last_line = index(prompt, line_feed, back=.true.)
       call say(prompt(:last_line))
       call self%editor%read_line(prompt(last_line + 1:), words, line, status)
-      ! nobody ended that line
+      ! the line on the screen has no end yet
       if (status /= line_read) call say(line_feed)
     else
       call say(prompt)
@@ -67,7 +67,7 @@ contains
 
   !> End the reading of lines.
   subroutine close_input(self)
-    class(line_input_type), intent(inout) :: self   !< the line input
+    class(line_input_type), intent(inout) :: self  !< standard input as lines
 
     if (self%edits) call self%editor%stop()
     self%edits = .false.
@@ -80,15 +80,15 @@ contains
 
     call get_environment_variable('TERM', name, status=status)
     dumb_terminal = name == '' .or. lower(name) == 'dumb'
-    ! a longer name than this one is another one
+    ! status is not zero for a longer name, which is another one
     if (status == -1) dumb_terminal = .false.
   end function dumb_terminal
 
   !> Read a line of any length without editing.
   subroutine read_plain(bytes, line, status)
-    type(input_bytes_type), intent(inout) :: bytes   !< standard input
-    character(len=:), allocatable, intent(out) :: line   !< the line without its end
-    integer, intent(out) :: status   !< line_read, line_ended or line_interrupted
+    type(input_bytes_type), intent(inout) :: bytes      !< standard input
+    character(len=:), allocatable, intent(out) :: line  !< the line without its end
+    integer, intent(out) :: status                      !< line_read, line_ended or line_interrupted
     character(len=:), allocatable :: grown
     character :: byte
     integer :: n
@@ -115,7 +115,7 @@ contains
 
   !> Write a text to standard error. A failure is ignored: there is no other place for a message.
   subroutine say(text)
-    character(len=*), intent(in) :: text   !< the text, without a line end
+    character(len=*), intent(in) :: text  !< the text, without a line end
     integer :: status
 
     if (len(text) == 0) return

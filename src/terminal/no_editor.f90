@@ -18,18 +18,18 @@ contains
 
   !> Answer that lines cannot be edited.
   subroutine start(program_name, ready)
-    character(len=*), intent(in) :: program_name   !< not used
-    logical, intent(out) :: ready   !< always false
+    character(len=*), intent(in) :: program_name  !< not used
+    logical, intent(out) :: ready                 !< always false
 
     ready = .false.
   end subroutine start
 
   !> Return the end of the input; this procedure is not called, since the editor is never ready.
   subroutine read_line(prompt, words, line, status)
-    character(len=*), intent(in) :: prompt   !< not used
-    type(string_type), intent(in) :: words(:)   !< not used
-    character(len=:), allocatable, intent(out) :: line   !< always empty
-    integer, intent(out) :: status   !< always input_ended
+    character(len=*), intent(in) :: prompt              !< not used
+    type(string_type), intent(in) :: words(:)           !< not used
+    character(len=:), allocatable, intent(out) :: line  !< always empty
+    integer, intent(out) :: status                      !< always input_ended
 
     line = ''
     status = input_ended

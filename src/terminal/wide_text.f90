@@ -12,7 +12,7 @@ contains
 
   !> The code points of a text with a zero at the end, the form of strings in C.
   pure function to_wide(text) result(points)
-    character(len=*), intent(in) :: text   !< a text in UTF-8
+    character(len=*), intent(in) :: text  !< a text in UTF-8
     integer, allocatable :: points(:)
     integer :: i, n, length
 
@@ -30,7 +30,7 @@ contains
 
   !> The code point of one UTF-8 character; unknown_character where the bytes are none.
   pure integer function code_point(bytes) result(point)
-    character(len=*), intent(in) :: bytes   !< the bytes of one character
+    character(len=*), intent(in) :: bytes  !< the bytes of one character
     integer :: i
 
     point = unknown_character
@@ -46,7 +46,7 @@ contains
 
   !> Code points as UTF-8.
   pure function to_bytes(points) result(text)
-    integer, intent(in) :: points(:)   !< code points, without a zero at the end
+    integer, intent(in) :: points(:)  !< code points, without a zero at the end
     character(len=:), allocatable :: text
     character(len=4*size(points)) :: buffer
     integer :: i, used, length, k
@@ -69,7 +69,7 @@ contains
   end function to_bytes
 
   pure integer function bytes_of(point)
-    integer, intent(in) :: point   !< a code point
+    integer, intent(in) :: point  !< a code point
 
     select case (point)
     case (128:2047)

@@ -12,7 +12,7 @@ contains
 
   !> The script, as whole lines. Bash passes it the command line, split at each `=`; names of files may have any letters.
   pure function bash_completion(program_name) result(script)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: script
 
     script = '# Completion of '//program_name//' in bash; made from its tables of options and of the data file.'//eol// &
@@ -50,7 +50,7 @@ contains
 
   !> Completion after each option that takes an argument.
   pure function arguments(program_name) result(text)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text, label
     integer :: i
 
@@ -75,10 +75,10 @@ contains
 
   !> One branch of the `case` of bash, which offers these words.
   pure function choice(label, words, also, condition) result(text)
-    character(len=*), intent(in) :: label   !< pattern of bash that the option must match
-    character(len=*), intent(in) :: words   !< words offered, with blanks between them
-    character(len=*), intent(in), optional :: also        !< another command
-    character(len=*), intent(in), optional :: condition   !< without which it goes on as if nothing stood before
+    character(len=*), intent(in) :: label                !< pattern of bash that the option must match
+    character(len=*), intent(in) :: words                !< words offered, with blanks between them
+    character(len=*), intent(in), optional :: also       !< another command of bash in the branch
+    character(len=*), intent(in), optional :: condition  !< condition of the branch; if it is false, bash goes on after the `case`
     character(len=:), allocatable :: text
 
     text = '    '//label//')'
@@ -89,7 +89,7 @@ contains
   end function choice
 
   pure function options_of(program_name) result(text)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
     integer :: i
 
@@ -112,7 +112,7 @@ contains
 
   !> Every GROUP.NAME once, with an ending.
   pure function names_of_data(ending) result(text)
-    character(len=*), intent(in) :: ending   !< text appended to each name
+    character(len=*), intent(in) :: ending  !< text appended to each name
     character(len=:), allocatable :: text
     integer :: i
 
@@ -123,7 +123,7 @@ contains
   end function names_of_data
 
   pure function data_name(row) result(text)
-    integer, intent(in) :: row   !< row of item_table
+    integer, intent(in) :: row  !< row of item_table
     character(len=:), allocatable :: text
 
     text = trim(item_table(row)%group)//'.'//trim(item_table(row)%name)

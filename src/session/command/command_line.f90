@@ -11,13 +11,13 @@ module mech9_command_line
   !> An option as it was given.
   type :: given_type
     character(len=len(options_table%name)) :: name = ''
-    character(len=:), allocatable :: argument         !< empty where it has none
+    character(len=:), allocatable :: argument  !< its argument; empty where it has none
   end type given_type
 
   !> The content of a command line: a data file, and options by the names of the table of options.
   type :: command_line_type
-    character(len=:), allocatable :: file             !< the data file; empty where none is given
-    character(len=:), allocatable :: line       !< all words as a line for a shell
+    character(len=:), allocatable :: file  !< the data file; empty where none is given
+    character(len=:), allocatable :: line  !< all words as a line for a shell
     type(given_type), allocatable, private :: given(:)
   contains
     procedure :: has
@@ -32,7 +32,7 @@ contains
 
   !> The words of this program's own command line, without the program's name.
   subroutine get_command_words(words)
-    type(string_type), allocatable, intent(out) :: words(:)   !< the words, without the program's name
+    type(string_type), allocatable, intent(out) :: words(:)  !< the words, without the program's name
     integer :: i, length
 
     allocate (words(command_argument_count()))
@@ -45,10 +45,10 @@ contains
 
   !> Read the words. An error is a wrong command line (exit_usage).
   pure subroutine parse_command_line(words, program_name, options, err)
-    type(string_type), intent(in) :: words(:)      !< without the program's name
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d: whose options count
-    type(command_line_type), intent(out) :: options   !< the data file and the options
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(string_type), intent(in) :: words(:)          !< the words, without the program's name
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d: whose options count
+    type(command_line_type), intent(out) :: options    !< the data file and the options
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: i
     logical :: only_files
 
@@ -74,7 +74,7 @@ contains
 
   !> Words as one line that a shell splits into the same words.
   pure function shell_line(words) result(line)
-    type(string_type), intent(in) :: words(:)   !< as a program is given them
+    type(string_type), intent(in) :: words(:)  !< the words as a program receives them
     character(len=:), allocatable :: line
     integer :: i, n, at
 
@@ -94,7 +94,7 @@ contains
 
   !> Length of a word in the form for a shell, with its quotes.
   pure integer function shell_length(word)
-    character(len=*), intent(in) :: word   !< one word of the command line
+    character(len=*), intent(in) :: word  !< one word of the command line
     integer :: i
 
     shell_length = len(word)
@@ -107,8 +107,8 @@ contains
 
   !> A word in the form for a shell: in quotes where it holds letters with a meaning for the shell.
   pure subroutine write_for_shell(word, text)
-    character(len=*), intent(in) :: word   !< one word of the command line
-    character(len=*), intent(inout) :: text   !< of length shell_length(word)
+    character(len=*), intent(in) :: word     !< one word of the command line
+    character(len=*), intent(inout) :: text  !< the word for the shell, of length shell_length(word)
     character(len=*), parameter :: quote = "'\''"
     integer :: i, at
 
@@ -130,7 +130,7 @@ contains
 
   !> Whether a word has only letters without a special meaning for a shell.
   pure logical function is_harmless(word)
-    character(len=*), intent(in) :: word   !< one word of the command line
+    character(len=*), intent(in) :: word  !< one word of the command line
     character(len=*), parameter :: harmless = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+%@'
 
     is_harmless = word /= '' .and. verify(word, harmless) == 0
@@ -138,15 +138,15 @@ contains
 
   !> Whether a word is an option; a single dash is none: it means standard input or output.
   pure logical function is_option(word)
-    character(len=*), intent(in) :: word   !< one word of the command line
+    character(len=*), intent(in) :: word  !< one word of the command line
 
     is_option = starts_with(word, '-') .and. len(word) > 1
   end function is_option
 
   pure subroutine take_file(word, options, err)
-    character(len=*), intent(in) :: word   !< the path of the data file
-    type(command_line_type), intent(inout) :: options   !< gets the data file
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: word               !< the path of the data file
+    type(command_line_type), intent(inout) :: options  !< gets the data file
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     if (word == '') then
       call raise(err, exit_usage, 'the name of the data file is empty')
@@ -160,11 +160,11 @@ contains
 
   !> Read the option that begins at words(i), and step over it.
   pure subroutine read_option(words, i, program_name, options, err)
-    type(string_type), intent(in) :: words(:)   !< the words of the command line
-    integer, intent(inout) :: i   !< position of the option; afterwards that of the next word
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(command_line_type), intent(inout) :: options   !< gets the option
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(string_type), intent(in) :: words(:)          !< the words of the command line
+    integer, intent(inout) :: i                        !< position of the option; afterwards that of the next word
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    type(command_line_type), intent(inout) :: options  !< gets the option
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: name, argument
     integer :: equals, place
     logical :: has_argument
@@ -196,9 +196,9 @@ contains
   end subroutine read_option
 
   pure subroutine raise_unknown(name, program_name, err)
-    character(len=*), intent(in) :: name   !< with its dashes
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: name               !< the option as it was given, with its dashes
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: nearest, hint
     integer :: i
 
@@ -213,11 +213,11 @@ contains
 
   !> Check the argument of an option, and whether the option may be repeated.
   pure subroutine judge_argument(option, argument, has_argument, options, err)
-    type(option_type), intent(in) :: option   !< the option, as a row of its table
-    character(len=*), intent(in) :: argument   !< its argument; empty where it has none
-    logical, intent(in) :: has_argument   !< whether an argument is given
-    type(command_line_type), intent(in) :: options   !< what was given before
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(option_type), intent(in) :: option            !< the option, as a row of its table
+    character(len=*), intent(in) :: argument           !< its argument; empty where it has none
+    logical, intent(in) :: has_argument                !< whether an argument is given
+    type(command_line_type), intent(in) :: options     !< the options given before
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: name
 
     name = '--'//trim(option%name)
@@ -239,7 +239,7 @@ contains
 
   !> Whether a text is a whole number from 1 on that an integer can hold.
   pure logical function is_whole_number(text)
-    character(len=*), intent(in) :: text   !< the argument of an option
+    character(len=*), intent(in) :: text  !< the argument of an option
     integer :: value, status
 
     is_whole_number = .false.
@@ -250,7 +250,7 @@ contains
 
   !> Whether a text has the form GROUP.NAME=VALUE. The reader of the data file checks the names.
   pure logical function is_assignment(text)
-    character(len=*), intent(in) :: text   !< the argument of an option
+    character(len=*), intent(in) :: text  !< the argument of an option
     integer :: equals, dot
 
     equals = index(text, '=')
@@ -260,9 +260,9 @@ contains
 
   !> Append an option. An array constructor would be shorter, but gfortran 12 leaks its content.
   pure subroutine append(given, name, argument)
-    type(given_type), allocatable, intent(inout) :: given(:)   !< the options given so far
-    character(len=*), intent(in) :: name   !< name of the option, without the dashes
-    character(len=*), intent(in) :: argument   !< its argument; empty where it has none
+    type(given_type), allocatable, intent(inout) :: given(:)  !< the options given so far
+    character(len=*), intent(in) :: name                      !< name of the option, without the dashes
+    character(len=*), intent(in) :: argument                  !< its argument; empty where it has none
     type(given_type), allocatable :: longer(:)
     integer :: i
 
@@ -278,16 +278,16 @@ contains
 
   !> Whether an option is given.
   pure logical function has(self, name)
-    class(command_line_type), intent(in) :: self   !< the command line
-    character(len=*), intent(in) :: name    !< without the dashes
+    class(command_line_type), intent(in) :: self  !< the command line
+    character(len=*), intent(in) :: name          !< name of the option, without the dashes
 
     has = place_of(self, name) > 0
   end function has
 
   !> The argument of an option that is given at most once; empty where it, or the option, is not given.
   pure function argument(self, name) result(text)
-    class(command_line_type), intent(in) :: self   !< the command line
-    character(len=*), intent(in) :: name    !< without the dashes
+    class(command_line_type), intent(in) :: self  !< the command line
+    character(len=*), intent(in) :: name          !< name of the option, without the dashes
     character(len=:), allocatable :: text
     integer :: place
 
@@ -298,9 +298,9 @@ contains
 
   !> The arguments of an option that may be repeated, in their order.
   pure subroutine arguments(self, name, texts)
-    class(command_line_type), intent(in) :: self   !< the command line
-    character(len=*), intent(in) :: name    !< without the dashes
-    type(string_type), allocatable, intent(out) :: texts(:)   !< the arguments, in their order
+    class(command_line_type), intent(in) :: self             !< the command line
+    character(len=*), intent(in) :: name                     !< name of the option, without the dashes
+    type(string_type), allocatable, intent(out) :: texts(:)  !< the arguments, in their order
     integer :: i, n
 
     allocate (texts(count(self%given%name == name)))
@@ -314,9 +314,9 @@ contains
 
   !> The argument of an option that takes a whole number; `default` where it is not given.
   pure integer function number(self, name, default)
-    class(command_line_type), intent(in) :: self   !< the command line
-    character(len=*), intent(in) :: name    !< without the dashes
-    integer, intent(in) :: default   !< the result where the option is not given
+    class(command_line_type), intent(in) :: self  !< the command line
+    character(len=*), intent(in) :: name          !< name of the option, without the dashes
+    integer, intent(in) :: default                !< the result where the option is not given
     integer :: place
 
     number = default
@@ -326,8 +326,8 @@ contains
 
   !> Position of an option among the given ones; 0 where it is not given.
   pure integer function place_of(self, name)
-    class(command_line_type), intent(in) :: self   !< the command line
-    character(len=*), intent(in) :: name   !< name of the option, without the dashes
+    class(command_line_type), intent(in) :: self  !< the command line
+    character(len=*), intent(in) :: name          !< name of the option, without the dashes
 
     do place_of = size(self%given), 1, -1
       if (self%given(place_of)%name == name) return
@@ -336,9 +336,9 @@ contains
 
   !> Check the options for contradictions.
   pure subroutine judge(program_name, options, err)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(command_line_type), intent(in) :: options   !< the data file and the options
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options     !< the data file and the options
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     if (options%has('help') .or. options%has('version') .or. options%has('help-data')) return
     if (options%has('quiet') .and. options%has('verbose')) then
@@ -354,7 +354,7 @@ contains
 
   !> The option that replaces the run by an answer, the first one where there are several; empty where none is given.
   pure function answer(self) result(name)
-    class(command_line_type), intent(in) :: self   !< the command line
+    class(command_line_type), intent(in) :: self  !< the command line
     character(len=:), allocatable :: name
     character(len=*), parameter :: answers(*) = [character(len=9) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph']
     integer :: i
@@ -367,16 +367,16 @@ contains
 
   !> Whether the program holds a conversation instead of working on a data file.
   pure logical function converses(self)
-    class(command_line_type), intent(in) :: self   !< the command line
+    class(command_line_type), intent(in) :: self  !< the command line
 
     converses = self%file == '' .or. self%has('dialogue') .or. self%has('edit') .or. self%has('resume')
   end function converses
 
   !> Check the options of a conversation: it takes one data file or none, and no option that replaces the run by an answer.
   pure subroutine judge_conversation(program_name, options, err)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(command_line_type), intent(in) :: options   !< the data file and the options
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options     !< the data file and the options
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: missing
     character(len=9), parameter :: generic(6) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'set']
     integer :: i

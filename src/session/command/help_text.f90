@@ -34,7 +34,7 @@ contains
 
   !> The purpose of a program, in one line.
   pure function purpose(program_name) result(text)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
 
     text = 'kinematics of mechanisms from structural data'
@@ -43,7 +43,7 @@ contains
 
   !> The text of --help, as whole lines; the last one has no line end.
   pure function help_text(program_name) result(text)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
     character(len=28) :: left
     integer :: i
@@ -83,7 +83,7 @@ contains
 
   !> An option in the form of the help: "--table PATH", "--help-data [GROUP[.NAME]]".
   pure function option_form(option) result(form)
-    type(option_type), intent(in) :: option   !< the option, as a row of its table
+    type(option_type), intent(in) :: option  !< the option, as a row of its table
     character(len=:), allocatable :: form
 
     form = '--'//trim(option%name)

@@ -17,7 +17,7 @@ contains
 
   !> The whole page, as whole lines.
   pure function manual_page(program_name) result(page)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: page
 
     page = '.TH '//program_name//' 1 "" "MECH9 '//version//'" "User Commands"'//eol// &
@@ -28,7 +28,7 @@ contains
   end function manual_page
 
   pure function description(program_name) result(text)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
 
     text = '.SH DESCRIPTION'//eol
@@ -48,7 +48,7 @@ contains
   end function description
 
   pure function options_of(program_name) result(text)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
     integer :: i
 
@@ -60,7 +60,7 @@ contains
   end function options_of
 
   pure function conversation(program_name) result(text)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
 
     text = '.SH CONVERSATION'//eol// &
@@ -104,7 +104,7 @@ contains
   end function data_file
 
   pure function item(row) result(text)
-    type(item_row_type), intent(in) :: row   !< the name, as a row of item_table
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=:), allocatable :: text, example
 
     example = trim(row%name)//' = '//trim(row%example)
@@ -113,7 +113,7 @@ contains
   end function item
 
   pure function examples(program_name) result(text)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
 
     text = '.SH EXAMPLES'//eol// &
@@ -140,15 +140,15 @@ contains
 
   !> A term with its explanation, indented below it.
   pure function entry(label, words) result(text)
-    character(len=*), intent(in) :: label   !< the term
-    character(len=*), intent(in) :: words   !< its explanation
+    character(len=*), intent(in) :: label  !< the term
+    character(len=*), intent(in) :: words  !< its explanation
     character(len=:), allocatable :: text
 
     text = '.TP'//eol//'.B "'//escaped(label)//'"'//eol//line(words)
   end function entry
 
   pure function paragraph(words) result(text)
-    character(len=*), intent(in) :: words   !< the sentences
+    character(len=*), intent(in) :: words  !< the sentences
     character(len=:), allocatable :: text
 
     text = '.PP'//eol//line(words)
@@ -156,7 +156,7 @@ contains
 
   !> Sentences as a line of text that does not begin with a command of roff.
   pure function line(words) result(text)
-    character(len=*), intent(in) :: words   !< the sentences
+    character(len=*), intent(in) :: words  !< the sentences
     character(len=:), allocatable :: text
 
     text = escaped(words)//eol
@@ -165,7 +165,7 @@ contains
 
   !> The text with escapes for the letters that roff would take for commands or replace by others.
   pure function escaped(words) result(text)
-    character(len=*), intent(in) :: words   !< text without commands of roff
+    character(len=*), intent(in) :: words  !< text without commands of roff
     character(len=:), allocatable :: text
 
     text = with_escapes(words, '\-''"^~`', [character(len=5) :: '\e', '\-', '\(aq', '\(dq', '\(ha', '\(ti', '\(ga'])

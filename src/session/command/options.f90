@@ -11,13 +11,13 @@ module mech9_options
 
   !> One option.
   type :: option_type
-    character(len=12) :: name             !< without the dashes
-    integer :: takes = no_argument        !< whether it takes an argument
+    character(len=12) :: name       !< name of the option, without the dashes
+    integer :: takes = no_argument  !< whether it takes an argument
     character(len=18) :: argument = ''    !< the argument's name in the help
-    integer :: form = any_text      !< the form of the argument
-    logical :: repeats = .false.          !< whether it may be given more than once
+    integer :: form = any_text    !< the form of the argument
+    logical :: repeats = .false.  !< whether it may be given more than once
     character(len=13) :: programs = ''    !< the programs that have it
-    character(len=72) :: help = ''        !< one line
+    character(len=72) :: help = ''        !< its explanation, in one line
   end type option_type
 
   character(len=*), parameter :: both = 'mech9k mech9d'
@@ -76,8 +76,8 @@ contains
 
   !> Place of an option in the table; 0 where the program has none of that name.
   pure integer function find_option(name, program_name) result(place)
-    character(len=*), intent(in) :: name           !< without the dashes
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: name          !< name of the option, without the dashes
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
 
     do place = 1, size(options_table)
       if (options_table(place)%name == name &
@@ -88,7 +88,7 @@ contains
 
   !> The names of all options of a program, without the dashes.
   pure function option_names(program_name) result(names)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=len(options_table%name)), allocatable :: names(:)
     integer :: i
 

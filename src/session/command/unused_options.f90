@@ -14,10 +14,10 @@ contains
 
   !> Write a line for each reason why options are without effect.
   subroutine print_unused_options(unit, program_name, options, mechanism)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(command_line_type), intent(in) :: options   !< the command line
-    type(mechanism_type), intent(in) :: mechanism     !< may ask for pictures, too
+    integer, intent(in) :: unit                     !< Fortran unit to write to
+    character(len=*), intent(in) :: program_name    !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options  !< the command line
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism, whose data file may request pictures, too
     character(len=:), allocatable :: answer, names
     logical :: drawn
 
@@ -40,7 +40,7 @@ contains
 
   !> Whether the data file requests pictures of the mechanism.
   pure logical function pictures_of(mechanism)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
 
     pictures_of = .false.
     if (allocated(mechanism%output%sketch)) pictures_of = mechanism%output%sketch /= ''
@@ -49,9 +49,9 @@ contains
 
   !> The given ones of some options, as a list: "--table, --hdf5".
   pure subroutine list_given(options, names, list)
-    type(command_line_type), intent(in) :: options   !< the command line
-    character(len=*), intent(in) :: names(:)   !< names of options, without the dashes
-    character(len=:), allocatable, intent(out) :: list   !< those that are given, with dashes and commas
+    type(command_line_type), intent(in) :: options      !< the command line
+    character(len=*), intent(in) :: names(:)            !< names of options, without the dashes
+    character(len=:), allocatable, intent(out) :: list  !< those that are given, with dashes and commas
     integer :: i
 
     list = ''

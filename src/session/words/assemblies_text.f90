@@ -15,11 +15,11 @@ contains
   !> Find the assemblies for the independent coordinates of the start and print each as groups &initial. An assembly becomes
   !> the start when its groups are put into the data file.
   subroutine print_assemblies(unit, mechanism, plan, start, n_starts)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start      !< assembled
-    integer, intent(in) :: n_starts   !< number of random starts
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(state_type), intent(in) :: start          !< the closed position at the start
+    integer, intent(in) :: n_starts                !< number of random starts
     type(assembly_list_type) :: list
     character(len=24) :: number
     character(len=:), allocatable :: words

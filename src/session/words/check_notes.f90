@@ -23,9 +23,9 @@ contains
 
   !> Write a line for each note.
   subroutine print_notes(unit, mechanism, with_masses)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    logical, intent(in) :: with_masses       !< bodies and initial velocities count in this program, else drives
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    logical, intent(in) :: with_masses  !< true: notes for mech9d, on bodies and initial velocities; false: for mech9k, on drives
     type(error_type), allocatable :: err
     real(wp) :: q, dq, ddq
     integer :: i, k
@@ -47,12 +47,12 @@ contains
 
   !> Note an angle or a rate that seems to be in the other unit.
   subroutine note_angle(unit, mechanism, k, what, q, dq)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: k                 !< the coordinate
-    character(len=*), intent(in) :: what     !< 'the drive' or 'the start'
-    real(wp), intent(in) :: q   !< value of the coordinate [rad]
-    real(wp), intent(in) :: dq   !< its rate [rad/s]
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    integer, intent(in) :: k                       !< number of the coordinate
+    character(len=*), intent(in) :: what           !< 'the drive' or 'the start'
+    real(wp), intent(in) :: q                      !< value of the coordinate [rad]
+    real(wp), intent(in) :: dq                     !< its rate [rad/s]
     character(len=:), allocatable :: begin
     real(wp) :: quarters
 
@@ -76,8 +76,8 @@ contains
 
   !> Note a body of the frame, and links without mass beside links with mass.
   subroutine note_bodies(unit, mechanism)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     logical :: massless(mechanism%structure%n_links)
     integer :: i
@@ -89,7 +89,7 @@ contains
     if (.not. massless(1)) write (unit, '(a)') 'note: link 1 is the frame, which does not move: its &body has no effect'
     massless(1) = .false.
     if (count(massless) == mechanism%structure%n_links - 1) return
-    ! links between axes that meet are parts of a ball or universal joint
+    ! a link between axes that meet is part of a ball or universal joint, which needs no mass
     call link_dimensions(mechanism, dimensions)
     do i = 1, size(dimensions)
       associate (d => dimensions(i))

@@ -1,4 +1,4 @@
-!> Mechanisms assembled at the start of a motion; where that fails, the error tells what is odd about their geometry.
+!> Assembly of a mechanism at the start of a motion, with an error that explains oddities of its geometry where it fails.
 module mech9_explained_assembly
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
@@ -15,10 +15,10 @@ contains
 
   !> Plan and closed position at the start of a driven motion.
   subroutine assemble_driven_start(mechanism, plan, state, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism, with a drive for each independent coordinate
-    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
-    type(state_type), intent(out) :: state              !< the closed position
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism, with a drive for each independent coordinate
+    type(plan_type), intent(out) :: plan               !< the plan of the mechanism
+    type(state_type), intent(out) :: state             !< the closed position
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call assemble_driven(mechanism, plan, state, err)
     call explain_geometry(mechanism, err)
@@ -26,10 +26,10 @@ contains
 
   !> Plan and closed position at the start of a free motion, with the rates of the independent coordinates.
   subroutine assemble_free_start(mechanism, plan, state, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
-    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
-    type(state_type), intent(out) :: state              !< the closed position and these rates
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(plan_type), intent(out) :: plan               !< the plan of the mechanism
+    type(state_type), intent(out) :: state             !< the closed position and these rates
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call assemble_free(mechanism, plan, state, err)
     call explain_geometry(mechanism, err)

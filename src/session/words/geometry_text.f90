@@ -22,8 +22,8 @@ contains
 
   !> Write the dimensions of the links, in which a wrong number of the data file is noticed.
   subroutine print_dimensions(unit, mechanism)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     character(len=3) :: angle_name
     real(wp) :: largest, shown(3)
@@ -50,15 +50,15 @@ contains
 
   !> A text at the left of a column.
   pure character(len=12) function left(text)
-    character(len=*), intent(in) :: text   !< the text; of a longer one the beginning remains
+    character(len=*), intent(in) :: text  !< the text; of a longer one the beginning remains
 
     left = text
   end function left
 
   !> A number at the right of a column; a dash where there is none.
   pure character(len=16) function right(number, given)
-    real(wp), intent(in) :: number   !< the number
-    logical, intent(in) :: given   !< whether there is a number
+    real(wp), intent(in) :: number  !< the number
+    logical, intent(in) :: given    !< whether there is a number
 
     right = '-'
     if (given) right = to_text(number, digits)
@@ -68,8 +68,8 @@ contains
   !> Add the oddity of a geometry to the error of a mechanism that cannot be assembled or cannot move: before the message, with
   !> the place of the pair that is probably wrong. Other errors, and those of mechanisms without oddities, do not change.
   subroutine explain_geometry(mechanism, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
+    type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+    type(error_type), allocatable, intent(inout) :: err  !< allocated if it failed
     type(oddity_type) :: oddity
 
     if (.not. allocated(err)) return
@@ -82,7 +82,7 @@ contains
 
   !> A sentence about an oddity.
   pure function words_of(oddity) result(words)
-    type(oddity_type), intent(in) :: oddity   !< the oddity, with pairs, link, angle or distance by its kind
+    type(oddity_type), intent(in) :: oddity  !< the oddity, with pairs, link, angle or distance by its kind
     character(len=:), allocatable :: words, chain, pairs
 
     chain = ' of the closed chain of pairs '//to_text(oddity%pairs)
@@ -113,9 +113,9 @@ contains
     end select
   end function words_of
 
-  !> "5.71 degrees".
+  !> The angle in words: "5.71 degrees".
   pure function degrees(angle) result(words)
-    real(wp), intent(in) :: angle           !< [rad]
+    real(wp), intent(in) :: angle  !< the angle [rad]
     character(len=:), allocatable :: words
 
     words = to_text(angle/radians_per_degree, 3)//' degrees'

@@ -20,10 +20,10 @@ contains
 
   !> Write the blocks in order, each with its chains, unknowns, equations and rank, and the computations left out.
   subroutine print_plan(unit, mechanism, plan, requested)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan          !< of the whole mechanism
-    type(requested_type), intent(in) :: requested        !< what the run asks for
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the whole mechanism
+    type(requested_type), intent(in) :: requested  !< the quantities that the run records
     logical :: needed(size(plan%blocks))
     integer :: b, i
 
@@ -45,11 +45,11 @@ contains
 
   !> Write one block: its links, equations and chains.
   subroutine print_block(unit, plan, block, number, is_needed)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    integer, intent(in) :: number   !< number of the block
-    logical, intent(in) :: is_needed   !< whether a result or load depends on the block
+    integer, intent(in) :: unit            !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan    !< the plan of the mechanism
+    type(block_type), intent(in) :: block  !< the block
+    integer, intent(in) :: number          !< number of the block
+    logical, intent(in) :: is_needed       !< whether a result or load depends on the block
     integer :: c, i
 
     write (unit, '(a)') 'block '//to_text(number)//': links '// &
@@ -77,9 +77,9 @@ contains
   !> Write the directions in which the links of a chain can move, as in "turning about (0, 0, 1), sliding along (1, 0, 0),
 !> (0, 1, 0) of link 1"; nothing where all six motions are possible.
   subroutine print_basis(unit, plan, closure)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(closure_type), intent(in) :: closure   !< the closed chain
+    integer, intent(in) :: unit                !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    type(closure_type), intent(in) :: closure  !< the closed chain
     character(len=:), allocatable :: turning, sliding
     real(wp) :: turns(3, 3), slides(3, 3), to_link(3, 3)
     integer :: n_turns, n_slides, link
@@ -87,7 +87,7 @@ contains
 
     link = 1
     if (closure%base > 0) link = plan%steps(closure%base)%link
-    ! only the first frame of a link keeps its place in the link
+    ! directions are known in the axes of a link only for its first frame
     if (closure%rank == 6 .or. plan%frame_of(link) /= closure%base) return
     to_link = transpose(plan%link_in_frame(link)%r)
     call split_space(closure%rows(:, :closure%rank), turns, n_turns, slides, n_slides, screws)
@@ -100,9 +100,9 @@ contains
     write (unit, '(4x,a)') turning//sliding//' of link '//to_text(link)
   end subroutine print_basis
 
-  !> "(1, 0, 0), (0, 1, 0)", or "all directions".
+  !> Directions in words: "(1, 0, 0), (0, 1, 0)", or "all directions".
   pure function directions_in_words(directions) result(words)
-    real(wp), intent(in) :: directions(:, :)    !< (3,n)
+    real(wp), intent(in) :: directions(:, :)  !< (3,n) directions of length 1, in the axes of a link
     character(len=:), allocatable :: words
     integer :: i
 
@@ -114,9 +114,9 @@ contains
     if (size(directions, 2) == 3) words = 'all directions'
   end function directions_in_words
 
-  !> "(0, 0, 1)"; round-off is shown as zero.
+  !> A direction in words: "(0, 0, 1)"; round-off is shown as zero.
   pure function direction_in_words(direction) result(words)
-    real(wp), intent(in) :: direction(3)   !< direction in the axes of a link, of length 1
+    real(wp), intent(in) :: direction(3)  !< direction in the axes of a link, of length 1
     character(len=:), allocatable :: words
     real(wp) :: clean(3)
 
@@ -127,8 +127,8 @@ contains
 
   !> Write whether the arithmetic is planar or spatial, and why.
   subroutine print_arithmetic(unit, plan)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: unit          !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan  !< the plan of the mechanism
 
     if (plan%planar%used) then
       write (unit, '(a)') 'planar arithmetic: all pairs turn about or slide across the direction '// &
@@ -140,9 +140,9 @@ contains
 
   !> Write which terms Lagrange's equations leave out.
   subroutine print_dynamics_plan(unit, mechanism, plan)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(dynamics_plan_type) :: dynamics
     logical :: has_mass(plan%n_links), idle(plan%n_links), without_effect(size(mechanism%loads))
     integer :: i
@@ -154,7 +154,7 @@ contains
     do i = 1, size(dynamics%bodies)
       has_mass(dynamics%bodies(i)%link) = .true.
     end do
-    ! link 1 does not move
+    ! link 1 is fixed and needs no mass
     has_mass(1) = .true.
     idle = .not. dynamics%carries(plan%frame_of)
     idle(1) = .false.

@@ -20,10 +20,10 @@ contains
 
   !> Write a line for each independent coordinate: start, lower and upper end, unit, and the cause of its limits.
   subroutine print_ranges(unit, mechanism, plan, start)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start      !< assembled
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(state_type), intent(in) :: start          !< the closed position at the start
     type(motion_range_type) :: range
     character(len=:), allocatable :: name
     real(wp) :: factor
@@ -44,8 +44,8 @@ contains
   end subroutine print_ranges
 
   pure function column(text, width) result(padded)
-    character(len=*), intent(in) :: text   !< the text of the column
-    integer, intent(in) :: width   !< letters of the column
+    character(len=*), intent(in) :: text  !< the text of the column
+    integer, intent(in) :: width          !< letters of the column
     character(len=max(width, len(text) + 1)) :: padded
 
     padded = text
@@ -53,8 +53,8 @@ contains
 
   !> The value of an end; a dash where there is none.
   pure function value_of(found, factor) result(text)
-    type(end_type), intent(in) :: found   !< one end of the range
-    real(wp), intent(in) :: factor   !< from rad or m to the unit of the file
+    type(end_type), intent(in) :: found  !< one end of the range
+    real(wp), intent(in) :: factor       !< factor from rad or m to the unit of the file
     character(len=:), allocatable :: text
 
     text = '-'
@@ -63,10 +63,10 @@ contains
 
   !> The causes of the limits of a coordinate on both sides.
   pure function reasons(plan, range, factor, unit) result(text)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(motion_range_type), intent(in) :: range   !< the range of the coordinate
-    real(wp), intent(in) :: factor   !< from rad or m to the unit of the file
-    character(len=*), intent(in) :: unit   !< unit of the coordinate in the file
+    type(plan_type), intent(in) :: plan           !< the plan of the mechanism
+    type(motion_range_type), intent(in) :: range  !< the range of the coordinate
+    real(wp), intent(in) :: factor                !< factor from rad or m to the unit of the file
+    character(len=*), intent(in) :: unit          !< unit of the coordinate in the file
     character(len=:), allocatable :: text, lower, upper
 
     lower = reason(plan, range%lower, factor, unit)
@@ -78,8 +78,8 @@ contains
   pure function reason(plan, found, factor, unit) result(text)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(end_type), intent(in) :: found   !< one end of the range
-    real(wp), intent(in) :: factor   !< from rad or m to the unit of the file
-    character(len=*), intent(in) :: unit   !< unit of the coordinate in the file
+    real(wp), intent(in) :: factor        !< factor from rad or m to the unit of the file
+    character(len=*), intent(in) :: unit  !< unit of the coordinate in the file
     character(len=:), allocatable :: text
 
     select case (found%kind)

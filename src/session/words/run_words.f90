@@ -15,9 +15,9 @@ module mech9_run_words
 
 contains
 
-  !> ", 1.2 us each".
+  !> The mean time in words: ", 1.2 us each".
   pure function each(total, count) result(text)
-    real(wp), intent(in) :: total   !< time of all of them [s]
+    real(wp), intent(in) :: total  !< time of all of them [s]
     integer, intent(in) :: count   !< how many there are
     character(len=:), allocatable :: text
 
@@ -27,7 +27,7 @@ contains
 
   !> A time span in a readable unit.
   pure function duration(seconds) result(text)
-    real(wp), intent(in) :: seconds   !< a time span [s]
+    real(wp), intent(in) :: seconds  !< a time span [s]
     character(len=:), allocatable :: text
 
     if (seconds < 1.0e-3_wp) then
@@ -41,11 +41,11 @@ contains
 
   !> Write the beginning of a report: the program, the mechanism, the exit code and the errors.
   subroutine begin_report(json, program_name, mechanism, diagnostics, table_path)
-    type(json_type), intent(inout) :: json   !< the report, which is being composed
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
-    character(len=*), intent(in) :: table_path          !< '-' is standard output; empty: no table
+    type(json_type), intent(inout) :: json             !< the report, which is being composed
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(diagnostics_type), intent(in) :: diagnostics  !< all errors, which determine the exit code
+    character(len=*), intent(in) :: table_path         !< path of the table; '-' is standard output; empty: no table
 
     call json%begin_object()
     call add_outcome(json, program_name, mechanism, diagnostics%code())
@@ -57,13 +57,13 @@ contains
 
   !> Write the report of a program that made no run, because of an option such as --check or because of an error.
   subroutine save_short_report(path, program_name, mechanism, exit_code, choice, diagnostics, err)
-    character(len=*), intent(in) :: path   !< path of the report
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(mechanism_type), intent(in) :: mechanism       !< as far as it was read
-    integer, intent(in) :: exit_code                    !< that the program is going to answer
-    type(diagnostics_type), intent(in) :: choice   !< errors of the command line or the choice of an answer
-    type(diagnostics_type), intent(in) :: diagnostics   !< errors of the data file
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path               !< path of the report
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism, as far as it was read
+    integer, intent(in) :: exit_code                   !< exit code of the program
+    type(diagnostics_type), intent(in) :: choice       !< errors of the choice of the independent coordinates
+    type(diagnostics_type), intent(in) :: diagnostics  !< errors of the data file
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(json_type) :: json
 
     call json%begin_object()
@@ -78,10 +78,10 @@ contains
 
   !> Add the program with its version, and the exit code.
   subroutine add_outcome(json, program_name, mechanism, exit_code)
-    type(json_type), intent(inout) :: json   !< the report, which is being composed
+    type(json_type), intent(inout) :: json         !< the report, which is being composed
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: exit_code   !< exit code of the program
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    integer, intent(in) :: exit_code               !< exit code of the program
 
     call json%add('program', program_name)
     call json%add('version', version)
@@ -93,8 +93,8 @@ contains
 
   !> Add each error: its message, and its place where it has one.
   subroutine add_errors(json, diagnostics)
-    type(json_type), intent(inout) :: json   !< the report, which is being composed
-    type(diagnostics_type), intent(in) :: diagnostics   !< gets what is wrong
+    type(json_type), intent(inout) :: json             !< the report, which is being composed
+    type(diagnostics_type), intent(in) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: message
     type(span_type) :: span
     type(place_type) :: place
@@ -120,9 +120,9 @@ contains
 
   !> Add the structural vectors and the blocks.
   subroutine add_structure(json, mechanism, plan)
-    type(json_type), intent(inout) :: json   !< the report, which is being composed
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(json_type), intent(inout) :: json         !< the report, which is being composed
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     integer :: b, i
 
     call json%add('links', plan%n_links)
@@ -147,9 +147,9 @@ contains
   end subroutine add_structure
 
   subroutine add_integers(json, name, numbers)
-    type(json_type), intent(inout) :: json   !< the report, which is being composed
-    character(len=*), intent(in) :: name   !< name of the list in the report
-    integer, intent(in) :: numbers(:)   !< the numbers of the list
+    type(json_type), intent(inout) :: json  !< the report, which is being composed
+    character(len=*), intent(in) :: name    !< name of the list in the report
+    integer, intent(in) :: numbers(:)       !< the numbers of the list
     integer :: i
 
     call json%begin_array(name)

@@ -21,8 +21,8 @@ contains
 
   !> Write the structural vectors, one in each line: "nrg = 1 2 3 ...".
   subroutine print_structure(unit, vectors)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(structural_vectors_type), intent(in) :: vectors   !< the structural vectors
+    integer, intent(in) :: unit                           !< Fortran unit to write to
+    type(structural_vectors_type), intent(in) :: vectors  !< the structural vectors
 
     write (unit, '(2a)') 'nrg = ', to_text(vectors%nrg, ' ')
     write (unit, '(2a)') 'nws = ', to_text(vectors%nws, ' ')
@@ -32,7 +32,7 @@ contains
 
   !> Write the meaning of the structural vectors, one in each line.
   subroutine print_names_of_vectors(unit)
-    integer, intent(in) :: unit   !< Fortran unit to write to
+    integer, intent(in) :: unit  !< Fortran unit to write to
 
     write (unit, '(a)') 'The structural vectors, an element for each place in the order of computation:'
     write (unit, '(a)') '  nrg  number of the link that is reached; a chain that closes ends on a link that was reached before'
@@ -43,8 +43,8 @@ contains
 
   !> Write counts, mobility and redundancy.
   subroutine print_mobility(unit, plan)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: unit          !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan  !< the plan of the mechanism
     integer :: b, unknowns, equations
 
     unknowns = 0
@@ -60,18 +60,18 @@ contains
   end subroutine print_mobility
 
   subroutine print_counts(unit, plan)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: unit          !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan  !< the plan of the mechanism
 
     write (unit, '(a)') to_text(plan%n_links)//' links, '//counted(plan%n_coordinates, 'coordinate')//', '// &
       counted(size(plan%closures), 'closed chain')
     write (unit, '(a)') 'independent: '//to_text(plan%independent)
   end subroutine print_counts
 
-  !> "1 coordinate", "2 coordinates".
+  !> A number with its noun: "1 coordinate", "2 coordinates".
   pure function counted(number, noun) result(words)
-    integer, intent(in) :: number   !< how many there are
-    character(len=*), intent(in) :: noun   !< the noun in the singular
+    integer, intent(in) :: number         !< how many there are
+    character(len=*), intent(in) :: noun  !< the noun in the singular
     character(len=:), allocatable :: words
 
     words = trim(to_text(number)//' '//noun//merge(' ', 's', number == 1))
@@ -79,9 +79,9 @@ contains
 
   !> Write counts, ranks, redundant equations, and which coordinates can be independent or cannot move.
   subroutine print_mobility_report(unit, plan, report)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(mobility_report_type), intent(in) :: report   !< mobility and ranks
+    integer, intent(in) :: unit                       !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    type(mobility_report_type), intent(in) :: report  !< mobility and ranks
     integer :: i, c
 
     call print_counts(unit, plan)
@@ -109,9 +109,9 @@ contains
 
   !> Write equations and rank of each block; of many blocks only those that are singular at the start.
   subroutine print_ranks(unit, plan, report)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(mobility_report_type), intent(in) :: report   !< mobility and ranks
+    integer, intent(in) :: unit                       !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    type(mobility_report_type), intent(in) :: report  !< mobility and ranks
     integer :: b, left_out
 
     left_out = 0
@@ -132,10 +132,10 @@ contains
 
   !> Write which coordinates could be independent instead of one that is.
   subroutine print_alternatives(unit, plan, report, i)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(mobility_report_type), intent(in) :: report   !< mobility and ranks
-    integer, intent(in) :: i                  !< its place among the independent ones
+    integer, intent(in) :: unit                       !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    type(mobility_report_type), intent(in) :: report  !< mobility and ranks
+    integer, intent(in) :: i                          !< position of the coordinate among the independent ones
     integer :: k
     integer, allocatable :: others(:)
 
@@ -150,10 +150,10 @@ contains
 
   !> Write a text and the numbers that are marked; nothing where none is.
   subroutine print_marked(unit, mask, words, more)
-    integer, intent(in) :: unit   !< Fortran unit to write to
-    logical, intent(in) :: mask(:)   !< whether each number is in the list
-    character(len=*), intent(in) :: words   !< text before the list
-    character(len=*), intent(in), optional :: more    !< words after the numbers
+    integer, intent(in) :: unit                     !< Fortran unit to write to
+    logical, intent(in) :: mask(:)                  !< whether each number is in the list
+    character(len=*), intent(in) :: words           !< text before the list
+    character(len=*), intent(in), optional :: more  !< text after the list
     integer :: k
 
     if (.not. any(mask)) return
