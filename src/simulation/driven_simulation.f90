@@ -9,7 +9,8 @@ module mech9_driven_simulation
   use mech9_planning, only: make_plan
   use mech9_requested, only: requested_by_results, leave_out
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, set_inputs
-  use mech9_dynamics_plan, only: dynamics_plan_type, make_dynamics_plan
+  use mech9_lagrange_types, only: dynamics_plan_type
+  use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_generalized_forces, only: show_state
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_simulation, only: simulation_type, simulation_statistics_type
