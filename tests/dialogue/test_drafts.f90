@@ -35,7 +35,7 @@ program test_drafts
 contains
 
   subroutine give_and_take(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(draft_type) :: draft
 
     call draft%clear()
@@ -62,8 +62,8 @@ contains
   end subroutine give_and_take
 
   subroutine read_text(text, draft)
-    character(len=*), intent(in) :: text
-    type(draft_type), intent(out) :: draft
+    character(len=*), intent(in) :: text     !< of a data file
+    type(draft_type), intent(out) :: draft   !< read from it
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
@@ -73,7 +73,7 @@ contains
 
   !> A data file as a draft, written, and read again: the second writing is the first.
   subroutine there_and_back(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(draft_type) :: draft, again
     type(draft_text_type) :: first, second
 
@@ -95,7 +95,7 @@ contains
 
   !> Bytes of the text belong to their entries, and errors to theirs.
   subroutine places(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(draft_type) :: draft
     type(draft_text_type) :: written
     type(mechanism_type) :: mechanism
@@ -124,7 +124,7 @@ contains
 
   !> The example and the default of each row are answers; texts do without quotes.
   subroutine answers(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=:), allocatable :: text, problem
     integer :: i
 
@@ -148,7 +148,7 @@ contains
   end subroutine answers
 
   subroutine names_of_files(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer :: unit
 
     call tester%is_true(stem_of_title("'Fig. 1: two closed chains'") == 'fig_1', 'a title up to its colon')

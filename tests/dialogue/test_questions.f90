@@ -30,7 +30,7 @@ contains
 
   !> Each group belongs to one topic.
   subroutine the_topics(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer :: times(size(group_table)), i
 
     times = 0
@@ -42,7 +42,7 @@ contains
 
   !> Four-bars given in each way, with groups of every kind there is.
   subroutine all_names(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(interview_type) :: interview
     character(len=6), parameter :: programs(2) = ['mech9k', 'mech9d']
     character(len=10), parameter :: drives(4) = [character(len=10) :: 'polynomial', 'harmonic', 'table', 'user']
@@ -68,8 +68,10 @@ contains
   end subroutine all_names
 
   subroutine begin(program_name, way, drive, interview)
-    character(len=*), intent(in) :: program_name, way, drive
-    type(interview_type), intent(out) :: interview
+    character(len=*), intent(in) :: program_name     !< mech9k or mech9d
+    character(len=*), intent(in) :: way              !< in which the structure is given
+    character(len=*), intent(in) :: drive            !< kind of the drive
+    type(interview_type), intent(out) :: interview   !< about to ask its first question
     type(draft_type) :: draft
     character(len=10), parameter :: pairs(4) = [character(len=10) :: 'revolute', 'prismatic', 'helical', 'user']
     character(len=10), parameter :: loads(5) = [character(len=10) :: 'force', 'torque', 'spring', 'coordinate', 'user']
@@ -102,8 +104,8 @@ contains
 
   !> The structure of a four-bar, driven at its first pair.
   subroutine structure_in(way, draft)
-    character(len=*), intent(in) :: way
-    type(draft_type), intent(inout) :: draft
+    character(len=*), intent(in) :: way        !< in which the structure is given
+    type(draft_type), intent(inout) :: draft   !< gets the structure
 
     if (way == 'matrix') then
       call draft%give('structure', 1, 'c(1,:)', '0, 1, 0, 4')
@@ -120,9 +122,9 @@ contains
 
   !> Labels, prompts and help of all questions; the names that are asked for.
   subroutine look_at(tester, interview, asked)
-    type(tester_type), intent(inout) :: tester
-    type(interview_type), intent(in) :: interview
-    logical, intent(inout) :: asked(:)
+    type(tester_type), intent(inout) :: tester      !< counts the checks
+    type(interview_type), intent(in) :: interview   !< with all its questions
+    logical, intent(inout) :: asked(:)              !< of each row of the grammar: a question asks for it
     type(string_type), allocatable :: words(:)
     type(question_type) :: question
     integer :: i
@@ -151,7 +153,7 @@ contains
 
   !> Each row of the grammar has an explanation, and each explanation a row; they are sentences, and their examples answers.
   subroutine explained_names(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer :: row, place, times(size(explanations))
 
     times = 0
@@ -173,16 +175,16 @@ contains
 
   !> Whether a text begins with a capital and ends with a full stop.
   pure logical function ends_sentence(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !< of an explanation
 
     ends_sentence = text(1:1) >= 'A' .and. text(1:1) <= 'Z' .and. text(len(text):) == '.'
   end function ends_sentence
 
   !> What stands before the parenthesis of an example can be typed.
   subroutine is_answer(tester, row, example)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, intent(in) :: row                   !< in item_table
-    character(len=*), intent(in) :: example
+    character(len=*), intent(in) :: example      !< of an explanation
     character(len=:), allocatable :: text, problem
 
     call read_answer(item_table(row), example(:index(example//' (', ' (') - 1), text, problem)
@@ -193,7 +195,7 @@ contains
   !> A constant rate is explained in degrees, in rad and in m, as the coordinate that is asked about has it: a turn a second
   !> is 360 degrees or 2 pi rad in a second.
   subroutine units_of_examples(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call tester%is_true(index(help_on('drive(1).coefficients', 'revolute', 'rad'), '6.2832 (begins at 0 rad') > 0, 'rad')
     call tester%is_true(index(help_on('drive(1).coefficients', 'revolute', 'deg'), '360 (begins at 0 deg') > 0, 'degrees')
@@ -206,7 +208,7 @@ contains
   !> What ? says of a question in a four-bar whose first pair is of this kind.
   function help_on(label, kind, angle_unit) result(text)
     character(len=*), intent(in) :: label        !< of the question
-    character(len=*), intent(in) :: kind
+    character(len=*), intent(in) :: kind         !< of the first pair
     character(len=*), intent(in) :: angle_unit   !< rad or deg
     character(len=:), allocatable :: text
     type(interview_type) :: interview
@@ -228,7 +230,7 @@ contains
 
   !> A load that was begun is left by going back before its first question, a complete one is not; any is by `leave_out`.
   subroutine leaving_out(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(interview_type) :: interview
     logical :: done
 
@@ -253,7 +255,7 @@ contains
   !> After a slide neither its kind nor its axis is proposed; after a hinge its axis is, also over a slide between.
   !> Gravity has no proposal.
   subroutine proposals(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(interview_type) :: interview
     integer :: i
 
@@ -281,8 +283,8 @@ contains
 
   !> What Enter answers to a question, as a data file writes it; empty: nothing.
   function proposal(interview, label) result(text)
-    type(interview_type), intent(in) :: interview
-    character(len=*), intent(in) :: label        !< of the question
+    type(interview_type), intent(in) :: interview   !< at the question
+    character(len=*), intent(in) :: label           !< of the question
     character(len=:), allocatable :: text
     type(default_type) :: default
 
@@ -293,7 +295,7 @@ contains
 
   !> Where other coordinates become independent, a drive of which something was entered is named as dropped; others are not.
   subroutine dropped_drives(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(interview_type) :: interview
 
     call begin('mech9k', 'pairs', 'polynomial', interview)

@@ -15,11 +15,12 @@ contains
 
   !> Compare the full form of an answer with what it should be.
   subroutine becomes(tester, group, name, kind, typed, full)
-    type(tester_type), intent(inout) :: tester
-    character(len=*), intent(in) :: group, name      !< that are asked about
-    character(len=*), intent(in) :: kind             !< of the group; empty: of any
-    character(len=*), intent(in) :: typed
-    character(len=*), intent(in) :: full             !< what a data file should hold
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: group        !< that is asked about
+    character(len=*), intent(in) :: name         !< that is asked about
+    character(len=*), intent(in) :: kind         !< of the group; empty: of any
+    character(len=*), intent(in) :: typed        !< the short answer
+    character(len=*), intent(in) :: full         !< what a data file should hold
 
     call tester%is_true(full_form(item_table(item_row_for_kind(group, name, kind)), typed) == full, &
                         group//' '//name//': '//typed//' is '//full)
@@ -27,7 +28,7 @@ contains
 
   !> The beginning of one word is that word; of several or of none, it stays.
   subroutine words(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call becomes(tester, 'pair', 'kind', '', 'rev', 'revolute')
     call becomes(tester, 'pair', 'kind', '', 'P', 'prismatic')
@@ -44,7 +45,7 @@ contains
   end subroutine words
 
   subroutine directions(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call becomes(tester, 'pair', 'axis', 'revolute', 'z', '0, 0, 1')
     call becomes(tester, 'pair', 'axis', 'prismatic', '-X', '-1, 0, 0')
@@ -58,7 +59,7 @@ contains
   end subroutine directions
 
   subroutine links(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call becomes(tester, 'pair', 'links', '', '1-2', '1, 2')
     call becomes(tester, 'load', 'links', 'spring', '10 - 12', '10, 12')

@@ -29,7 +29,7 @@ contains
 
   !> All that diagnostics print.
   function printed(diagnostics) result(text)
-    type(diagnostics_type), intent(in) :: diagnostics
+    type(diagnostics_type), intent(in) :: diagnostics   !< of an input
     character(len=:), allocatable :: text
     integer :: unit, length
 
@@ -44,8 +44,8 @@ contains
 
   !> The whole text of an open file of lines.
   subroutine read_back(unit, text)
-    integer, intent(in) :: unit
-    character(len=*), intent(out) :: text
+    integer, intent(in) :: unit             !< of the file
+    character(len=*), intent(out) :: text   !< its lines, with the ends of lines
     character(len=256) :: piece
     integer :: n, at, status
 
@@ -66,9 +66,9 @@ contains
 
   !> The mechanism that the text of a data file describes.
   subroutine mechanism_from_text(text, mechanism, diagnostics)
-    character(len=*), intent(in) :: text
-    type(mechanism_type), intent(out) :: mechanism
-    type(diagnostics_type), intent(out) :: diagnostics
+    character(len=*), intent(in) :: text                 !< of a data file
+    type(mechanism_type), intent(out) :: mechanism       !< that it describes
+    type(diagnostics_type), intent(out) :: diagnostics   !< errors in it
     type(document_type) :: document
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
@@ -77,7 +77,8 @@ contains
 
   !> How often a piece occurs in a text.
   pure integer function count_of(piece, text) result(n)
-    character(len=*), intent(in) :: piece, text
+    character(len=*), intent(in) :: piece   !< not empty
+    character(len=*), intent(in) :: text    !< in which it is counted
     integer :: at, found
 
     n = 0

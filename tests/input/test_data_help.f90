@@ -78,9 +78,9 @@ contains
   end subroutine the_help
 
   subroutine help_of(group, text, err)
-    character(len=*), intent(in) :: group
-    character(len=:), allocatable, intent(out) :: text
-    type(error_type), allocatable, intent(out) :: err
+    character(len=*), intent(in) :: group                !< or group.name; empty for the list of groups
+    character(len=:), allocatable, intent(out) :: text   !< the help
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(source_type) :: source
     type(error_type), allocatable :: trouble
     integer :: unit

@@ -19,9 +19,12 @@ program test_diagnostics
 contains
 
   subroutine shows(text, first, last, expected, why, name)
-    character(len=*), intent(in) :: text, expected, why
-    integer, intent(in) :: first, last
-    character(len=*), intent(in), optional :: name
+    character(len=*), intent(in) :: text             !< of the file
+    character(len=*), intent(in) :: expected         !< the right lines
+    character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
+    integer, intent(in) :: first                     !< first byte of the error in the text
+    integer, intent(in) :: last                      !< last byte of the error in the text
+    character(len=*), intent(in), optional :: name   !< of the file
     type(diagnostics_type) :: g
     integer :: number
 
@@ -128,8 +131,8 @@ contains
   end subroutine failures_from_elsewhere
 
   function rendered(diagnostics, i) result(text)
-    type(diagnostics_type), intent(in) :: diagnostics
-    integer, intent(in) :: i
+    type(diagnostics_type), intent(in) :: diagnostics   !< of an input
+    integer, intent(in) :: i                            !< number of the error
     character(len=:), allocatable :: text
 
     call diagnostics%render(i, text)

@@ -60,14 +60,14 @@ contains
 
   !> A whole number from 1 to n.
   integer function dice(n)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< greatest number
 
     dice = min(n, 1 + int(0.5_wp*(random%symmetric() + 1.0_wp)*n))
   end function dice
 
   !> One to four changes.
   subroutine damage(text)
-    character(len=:), allocatable, intent(inout) :: text
+    character(len=:), allocatable, intent(inout) :: text   !< of a data file, changed
     integer :: i
 
     do i = 1, dice(4)
@@ -90,7 +90,7 @@ contains
   end subroutine damage
 
   subroutine change_byte(text)
-    character(len=*), intent(inout) :: text
+    character(len=*), intent(inout) :: text   !< of a data file, changed
     integer :: at
 
     at = dice(len(text))
@@ -98,7 +98,7 @@ contains
   end subroutine change_byte
 
   subroutine put_piece(text)
-    character(len=:), allocatable, intent(inout) :: text
+    character(len=:), allocatable, intent(inout) :: text   !< of a data file, made longer
     integer :: at
 
     at = dice(len(text))
@@ -106,8 +106,8 @@ contains
   end subroutine put_piece
 
   subroutine cut_or_double(text, double)
-    character(len=:), allocatable, intent(inout) :: text
-    logical, intent(in) :: double
+    character(len=:), allocatable, intent(inout) :: text   !< of a data file, changed
+    logical, intent(in) :: double                          !< a part of it is doubled, not cut
     integer :: first, last
 
     first = dice(len(text))
@@ -121,7 +121,7 @@ contains
 
   !> Take the line around some place and put it before another one.
   subroutine move_line(text)
-    character(len=:), allocatable, intent(inout) :: text
+    character(len=:), allocatable, intent(inout) :: text   !< of a data file, changed
     character(len=:), allocatable :: line
     integer :: at, first, last
 
@@ -137,8 +137,8 @@ contains
   end subroutine move_line
 
   subroutine try(text, number)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: number
+    character(len=*), intent(in) :: text   !< of a damaged data file
+    integer, intent(in) :: number          !< of the trial
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics, again
     type(mechanism_type) :: mechanism
@@ -156,13 +156,13 @@ contains
   end subroutine try
 
   subroutine forget(diagnostics)
-    type(diagnostics_type), intent(out) :: diagnostics
+    type(diagnostics_type), intent(out) :: diagnostics   !< emptied
   end subroutine forget
 
   !> Either nothing is wrong and nothing is printed, or there is a message and its code.
   subroutine judge(diagnostics, text)
-    type(diagnostics_type), intent(in) :: diagnostics
-    character(len=*), intent(in) :: text
+    type(diagnostics_type), intent(in) :: diagnostics   !< of the damaged text
+    character(len=*), intent(in) :: text                !< of the damaged data file
     character(len=:), allocatable :: answer
 
     answer = printed(diagnostics)
@@ -175,7 +175,7 @@ contains
   end subroutine judge
 
   logical function is_whole(mechanism)
-    type(mechanism_type), intent(in) :: mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< read without an error
     integer :: k
 
     is_whole = size(mechanism%pairs) == mechanism%structure%n_coordinates .and. size(mechanism%vectors%nrg) > 1

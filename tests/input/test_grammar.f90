@@ -28,7 +28,7 @@ program test_grammar
 contains
 
   subroutine check_group_row(row)
-    integer, intent(in) :: row
+    integer, intent(in) :: row   !< number of the row among the groups
 
     associate (group => group_table(row))
       call tester%is_true(find_group_row(group%name) == row, trim(group%name)//': is found under its name')
@@ -42,7 +42,8 @@ contains
 
   !> Two rows share no name, or no kind.
   logical function apart(a, b)
-    type(item_row_type), intent(in) :: a, b
+    type(item_row_type), intent(in) :: a   !< first row
+    type(item_row_type), intent(in) :: b   !< second row
     character(len=len(a%kinds)), allocatable :: kinds(:)
     integer :: k
 
@@ -56,14 +57,14 @@ contains
   end function apart
 
   function label(row)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< of the grammar
     character(len=:), allocatable :: label
 
     label = trim(row%group)//'.'//trim(row%name)
   end function label
 
   subroutine check_item_row(row)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< of the grammar
     character(len=:), allocatable :: wrong
 
     call tester%is_true(find_group_row(row%group) > 0, label(row)//': belongs to a group')
@@ -92,7 +93,7 @@ contains
 
   !> The kinds a name belongs to are kinds that the group has.
   subroutine check_kinds(row)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< of the grammar
     character(len=len(row%kinds)), allocatable :: kinds(:)
     integer, allocatable :: rows(:)
     integer :: k
@@ -106,7 +107,7 @@ contains
   end subroutine check_kinds
 
   subroutine check_words(row)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< of the grammar
     character(len=len(row%words)), allocatable :: words(:)
     integer :: k
 
@@ -119,7 +120,7 @@ contains
 
   !> "name = value", or the example where it names itself.
   function example(row) result(text)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< of the grammar
     character(len=:), allocatable :: text
 
     text = assignment_of(row, trim(row%example))
@@ -127,7 +128,7 @@ contains
   end function example
 
   function example_value(row) result(text)
-    type(item_row_type), intent(in) :: row
+    type(item_row_type), intent(in) :: row   !< of the grammar
     character(len=:), allocatable :: text
 
     text = trim(row%example(:index(trim(row%example)//',', ',') - 1))
@@ -135,8 +136,8 @@ contains
 
   !> "name = value value ...": one value stands for as many as are needed.
   function assignment_of(row, value) result(text)
-    type(item_row_type), intent(in) :: row
-    character(len=*), intent(in) :: value
+    type(item_row_type), intent(in) :: row   !< of the grammar
+    character(len=*), intent(in) :: value    !< as the data file writes it
     character(len=:), allocatable :: text
     integer :: k
 
@@ -149,10 +150,10 @@ contains
 
   !> A data file of one group with this item, of a kind that has it.
   subroutine check_text(row, assignment, errors, text)
-    type(item_row_type), intent(in) :: row
-    character(len=*), intent(in) :: assignment
-    integer, intent(out) :: errors                          !< that name this item or stand in its place
-    character(len=:), allocatable, intent(out) :: text      !< what is printed
+    type(item_row_type), intent(in) :: row               !< of the grammar
+    character(len=*), intent(in) :: assignment           !< text within the group
+    integer, intent(out) :: errors                       !< that name this item or stand in its place
+    character(len=:), allocatable, intent(out) :: text   !< what is printed
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     character(len=:), allocatable :: kind
@@ -169,8 +170,9 @@ contains
   end subroutine check_text
 
   subroutine accepted(row, assignment, what)
-    type(item_row_type), intent(in) :: row
-    character(len=*), intent(in) :: assignment, what
+    type(item_row_type), intent(in) :: row       !< of the grammar
+    character(len=*), intent(in) :: assignment   !< text within the group
+    character(len=*), intent(in) :: what         !< that is tried, for the report of a failure
     character(len=:), allocatable :: text
     integer :: errors
 
@@ -180,8 +182,9 @@ contains
   end subroutine accepted
 
   subroutine refused(row, assignment, what)
-    type(item_row_type), intent(in) :: row
-    character(len=*), intent(in) :: assignment, what
+    type(item_row_type), intent(in) :: row       !< of the grammar
+    character(len=*), intent(in) :: assignment   !< text within the group
+    character(len=*), intent(in) :: what         !< that is tried, for the report of a failure
     character(len=:), allocatable :: text
     integer :: errors
 

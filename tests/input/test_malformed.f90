@@ -31,7 +31,7 @@ contains
 
   !> One line of the list: file | exit code | text | text ...
   subroutine check_file(expected)
-    character(len=*), intent(in) :: expected
+    character(len=*), intent(in) :: expected   !< the line of the list
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     type(mechanism_type) :: mechanism
@@ -56,9 +56,9 @@ contains
   end subroutine check_file
 
   subroutine next_field(text, at, field)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: at
-    character(len=:), allocatable, intent(out) :: field
+    character(len=*), intent(in) :: text                  !< the line of the list
+    integer, intent(inout) :: at                          !< where the field begins; then where the next one does
+    character(len=:), allocatable, intent(out) :: field   !< without blanks around it
     integer :: bar
 
     bar = index(text(at:)//' | ', ' | ')

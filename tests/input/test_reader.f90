@@ -28,8 +28,9 @@ program test_reader
 contains
 
   subroutine read_well(text, mechanism, why)
-    character(len=*), intent(in) :: text, why
-    type(mechanism_type), intent(out) :: mechanism
+    character(len=*), intent(in) :: text             !< of a good data file
+    character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
+    type(mechanism_type), intent(out) :: mechanism   !< that it describes
     type(diagnostics_type) :: diagnostics
 
     call mechanism_from_text(text, mechanism, diagnostics)
@@ -39,10 +40,12 @@ contains
 
   !> Pose of a pair at q, held against a rotation and a translation.
   subroutine pose_is(mechanism, k, q, r, p, why)
-    type(mechanism_type), intent(in) :: mechanism
-    integer, intent(in) :: k
-    real(wp), intent(in) :: q, r(3, 3), p(3)
-    character(len=*), intent(in) :: why
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: k                        !< coordinate of the pair
+    real(wp), intent(in) :: q                       !< its value [rad or m]
+    real(wp), intent(in) :: r(3, 3)                 !< the right rotation
+    real(wp), intent(in) :: p(3)                    !< the right translation [m]
+    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
 
@@ -99,8 +102,9 @@ contains
   end subroutine sources_of_structure
 
   subroutine same_structure(a, b, why)
-    type(mechanism_type), intent(in) :: a, b
-    character(len=*), intent(in) :: why
+    type(mechanism_type), intent(in) :: a   !< first mechanism
+    type(mechanism_type), intent(in) :: b   !< second mechanism
+    character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
     integer :: k
 
     call tester%is_true(a%structure%n_links == b%structure%n_links, why//': as many links')
@@ -113,7 +117,7 @@ contains
 
   !> An open chain of one pair.
   function one_pair(rest) result(text)
-    character(len=*), intent(in) :: rest
+    character(len=*), intent(in) :: rest   !< of the group &pair, and further groups
     character(len=:), allocatable :: text
 
     text = "&structure cq=1 / &drive coordinate=1, kind='polynomial', coefficients=0 / &pair coordinate=1, links=1,2, "// &

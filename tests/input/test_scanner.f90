@@ -66,9 +66,9 @@ contains
   end subroutine numerals
 
   subroutine number_is(text, expected, whole)
-    character(len=*), intent(in) :: text
-    real(wp), intent(in) :: expected
-    logical, intent(in) :: whole
+    character(len=*), intent(in) :: text   !< of the number
+    real(wp), intent(in) :: expected       !< its right value
+    logical, intent(in) :: whole           !< it is a whole number
     type(numeral_type) :: numeral
     character(len=30) :: shown
 
@@ -82,7 +82,8 @@ contains
   end subroutine number_is
 
   subroutine is_no_number(text, reason)
-    character(len=*), intent(in) :: text, reason
+    character(len=*), intent(in) :: text     !< that is no number
+    character(len=*), intent(in) :: reason   !< part of the message
     type(numeral_type) :: numeral
 
     call read_numeral(text, numeral)
@@ -91,9 +92,9 @@ contains
   end subroutine is_no_number
 
   subroutine parse(text, document, errors)
-    character(len=*), intent(in) :: text
-    type(document_type), intent(out) :: document
-    integer, intent(out) :: errors
+    character(len=*), intent(in) :: text           !< of a data file
+    type(document_type), intent(out) :: document   !< its groups and items
+    integer, intent(out) :: errors                 !< how many there are
     type(diagnostics_type) :: diagnostics
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
@@ -186,9 +187,10 @@ contains
   end subroutine places
 
   logical function at(diagnostics, value, line, column)
-    type(diagnostics_type), intent(in) :: diagnostics
-    type(value_type), intent(in) :: value
-    integer, intent(in) :: line, column
+    type(diagnostics_type), intent(in) :: diagnostics   !< with the text of the file
+    type(value_type), intent(in) :: value               !< of an item
+    integer, intent(in) :: line                         !< the right line
+    integer, intent(in) :: column                       !< the right column
     type(place_type) :: place
 
     place = diagnostics%place(value%span)

@@ -20,9 +20,9 @@ program test_setting
 contains
 
   subroutine set(setting, mechanism, answer)
-    character(len=*), intent(in) :: setting
-    type(mechanism_type), intent(out) :: mechanism
-    character(len=:), allocatable, intent(out) :: answer    !< what is printed
+    character(len=*), intent(in) :: setting                !< argument of --set
+    type(mechanism_type), intent(out) :: mechanism         !< with it
+    character(len=:), allocatable, intent(out) :: answer   !< what is printed
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
@@ -87,7 +87,8 @@ contains
 
   !> Each message is the first one that is printed; an empty one means that all is well.
   subroutine refused(setting, message)
-    character(len=*), intent(in) :: setting, message
+    character(len=*), intent(in) :: setting   !< argument of --set
+    character(len=*), intent(in) :: message   !< the right first message; empty: none
     type(mechanism_type) :: m
     character(len=:), allocatable :: answer
 

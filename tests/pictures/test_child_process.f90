@@ -21,11 +21,13 @@ contains
 
   !> sh -c SCRIPT NAME WORD, with an input.
   subroutine run_shell(script, word, input, outcome, err, folder, drop_output)
-    character(len=*), intent(in) :: script, word, input
-    type(child_outcome_type), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: err
-    character(len=*), intent(in), optional :: folder
-    logical, intent(in), optional :: drop_output
+    character(len=*), intent(in) :: script              !< of sh
+    character(len=*), intent(in) :: word                !< its first argument
+    character(len=*), intent(in) :: input               !< its standard input
+    type(child_outcome_type), intent(out) :: outcome    !< code and words of the shell
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in), optional :: folder    !< in which it runs; the current one unless given
+    logical, intent(in), optional :: drop_output        !< its standard output is dropped
     type(string_type) :: words(5)
 
     words(1)%text = 'sh'
@@ -37,7 +39,7 @@ contains
   end subroutine run_shell
 
   subroutine test_codes(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(child_outcome_type) :: outcome
     type(error_type), allocatable :: err
     type(string_type) :: words(1)
@@ -61,7 +63,7 @@ contains
   !> A file that is there and cannot be started is an error with its name and why; a program that ends with 127 itself,
   !> as one does that misses a library, was started.
   subroutine test_no_start(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(child_outcome_type) :: outcome
     type(error_type), allocatable :: err
     type(string_type) :: words(1)
@@ -81,7 +83,7 @@ contains
 
   !> A word arrives as it is, whatever a shell would make of it.
   subroutine test_words(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(child_outcome_type) :: outcome
     type(error_type), allocatable :: err
     character(len=*), parameter :: hostile = '`exit 1`; $(exit 1) "''\ *'//achar(10)//'| & < > #'
@@ -94,7 +96,7 @@ contains
 
   !> More than a pipe holds goes in, and more than a pipe holds is said: nothing blocks.
   subroutine test_much_input(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(child_outcome_type) :: outcome
     type(error_type), allocatable :: err
 
@@ -108,7 +110,7 @@ contains
 
   !> Standard output that is dropped goes to another file than that of this program, and blocks nothing.
   subroutine test_dropped_output(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(child_outcome_type) :: outcome
     type(error_type), allocatable :: err
     character(len=*), parameter :: script = &

@@ -27,11 +27,13 @@ contains
 
   !> A film of evenly spaced frames: its decimals, and its first and last time.
   subroutine check_film(tester, start, step, frames, decimals, first, last)
-    type(tester_type), intent(inout) :: tester
-    real(wp), intent(in) :: start, step            !< [s]
-    integer, intent(in) :: frames
-    integer, intent(in) :: decimals                !< that are expected
-    character(len=*), intent(in) :: first, last    !< what the clock must show
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    real(wp), intent(in) :: start                !< time of the first frame [s]
+    real(wp), intent(in) :: step                 !< between frames [s]
+    integer, intent(in) :: frames                !< how many
+    integer, intent(in) :: decimals              !< that are expected
+    character(len=*), intent(in) :: first        !< time of the first frame as the clock shows it
+    character(len=*), intent(in) :: last         !< time of the last frame as the clock shows it
     type(film_type) :: film
     character(len=:), allocatable :: before, now
     integer :: i, equal

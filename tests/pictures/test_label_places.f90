@@ -25,7 +25,7 @@ contains
 
   !> A bar from the joint in any direction: the name lies beside it, near its joint, without a leading line.
   subroutine one_bar(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(obstacles_type) :: obstacles
     type(label_type) :: labels(1)
     integer :: degrees
@@ -46,7 +46,7 @@ contains
 
   !> Two bars in any directions.
   subroutine two_bars(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(obstacles_type) :: obstacles
     type(label_type) :: labels(1)
     integer :: i, j
@@ -68,7 +68,7 @@ contains
 
   !> Near each corner of the page, the whole name is on it.
   subroutine at_the_edge(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(obstacles_type) :: obstacles
     type(label_type) :: labels(1)
     integer :: i
@@ -84,7 +84,7 @@ contains
 
   !> Six names at one joint: no two of them overlap.
   subroutine several(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(obstacles_type) :: obstacles
     type(label_type) :: labels(6)
     integer :: i, j
@@ -105,7 +105,7 @@ contains
 
   !> A joint in a cage: its name stands outside, and a line leads there.
   subroutine surrounded(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(obstacles_type) :: obstacles
     type(label_type) :: labels(1)
     real(wp) :: from(2), to(2)
@@ -124,7 +124,7 @@ contains
 
   !> The number of a link may stand on its own bar, that of another one not.
   subroutine own_link(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(obstacles_type) :: obstacles
     type(label_type) :: labels(1)
     integer :: owner
@@ -140,7 +140,7 @@ contains
 
   !> Two joints side by side, at any angle: each name stands nearer to its own joint than to the other one.
   subroutine neighbours(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(obstacles_type) :: obstacles
     type(label_type) :: labels(2)
     real(wp) :: middle(2)
@@ -162,7 +162,7 @@ contains
 
   !> A label with the spots of a name.
   function named(place) result(label)
-    real(wp), intent(in) :: place(2)             !< the joint [px]
+    real(wp), intent(in) :: place(2)   !< the joint [px]
     type(label_type) :: label
 
     label%at = place
@@ -170,28 +170,28 @@ contains
   end function named
 
   subroutine add_bar(obstacles, degrees)
-    type(obstacles_type), intent(inout) :: obstacles
-    integer, intent(in) :: degrees               !< its direction from the joint
+    type(obstacles_type), intent(inout) :: obstacles   !< the bar is added
+    integer, intent(in) :: degrees                     !< its direction from the joint
 
     call obstacles%add(at, at + 150.0_wp*[cos(degrees*pi/180), sin(degrees*pi/180)], half, 1.0_wp)
   end subroutine add_bar
 
   pure real(wp) function distance(label)
-    type(label_type), intent(in) :: label
+    type(label_type), intent(in) :: label   !< placed
 
     distance = norm2(0.5_wp*(label%spots(label%chosen)%low + label%spots(label%chosen)%high) - at)
   end function distance
 
   pure logical function leads(label)
-    type(label_type), intent(in) :: label
+    type(label_type), intent(in) :: label   !< placed
 
     leads = norm2(label%spots(label%chosen)%to - label%spots(label%chosen)%from) > 0.0_wp
   end function leads
 
   !> Whether the middle line of an obstacle goes through a label, by points of it every half px.
   pure logical function any_covered(obstacles, label)
-    type(obstacles_type), intent(in) :: obstacles
-    type(label_type), intent(in) :: label
+    type(obstacles_type), intent(in) :: obstacles   !< bars and joints
+    type(label_type), intent(in) :: label           !< placed
     real(wp) :: point(2)
     integer :: i, k, n
 

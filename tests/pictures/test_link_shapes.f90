@@ -22,7 +22,7 @@ contains
 
   !> No shape for a point; for points of a line the bar between the outermost.
   subroutine few_points(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: points(3, 5), from(3), along(3)
     integer, allocatable :: order(:)
@@ -43,7 +43,7 @@ contains
 
   !> Corners of a polygon and points within, turned anyhow: around it by turns, all others inside.
   subroutine plates(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: points(3, 40), r(3, 3), normal(3), side(3)
     integer, allocatable :: order(:)
@@ -75,7 +75,7 @@ contains
 
   !> Bars join all points: as many as points but one, and one can go from each to each.
   subroutine points_in_space(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: points(3, 12)
     integer, allocatable :: order(:)
@@ -97,7 +97,7 @@ contains
   !> A long rail and a pin between its ends: the rail stays in one piece, the pin hangs on one of them. Two pins
   !> in a plane with it make a plate, two that are not make bars.
   subroutine rails(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: points(3, 4)
     integer, parameter :: rail(2, 1) = reshape([1, 4], [2, 1])
     integer, allocatable :: order(:)
@@ -120,7 +120,7 @@ contains
   end subroutine rails
 
   subroutine same_points(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: points(3, 6)
 
     points = 0.0_wp

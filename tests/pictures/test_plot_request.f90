@@ -21,7 +21,8 @@ contains
 
   !> Columns: 1 t, 2 q1, 3 q2, 4 dq1, 5 P.x, 6 P.y, 7 a,b.x, 8 a, 9 a:P.x, 10 q12.x, 11 closure
   subroutine set_columns(names, units)
-    type(string_type), allocatable, intent(out) :: names(:), units(:)
+    type(string_type), allocatable, intent(out) :: names(:)   !< of the columns
+    type(string_type), allocatable, intent(out) :: units(:)   !< of the columns
     character(len=8), parameter :: columns(2, 11) = reshape([character(len=8) :: &
       't', 's', 'q1', 'rad', 'q2', 'm', 'dq1', 'rad/s', 'P.x', 'm', 'P.y', 'm', 'a,b.x', 'm', 'a', 'm', &
       'a:P.x', 'm', 'q12.x', 'm', 'closure', 'm'], [2, 11])
@@ -35,9 +36,9 @@ contains
   end subroutine set_columns
 
   subroutine read_text(text, request, err)
-    character(len=*), intent(in) :: text
-    type(plot_request_type), intent(out) :: request
-    type(error_type), allocatable, intent(out) :: err
+    character(len=*), intent(in) :: text                !< argument of --plot
+    type(plot_request_type), intent(out) :: request     !< read from it
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(string_type), allocatable :: names(:), units(:)
 
     call set_columns(names, units)
@@ -45,9 +46,10 @@ contains
   end subroutine read_text
 
   subroutine check_curves(tester, text, x, y)
-    type(tester_type), intent(inout) :: tester
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: x(:), y(:)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: text         !< argument of --plot
+    integer, intent(in) :: x(:)                  !< right columns along the first axis
+    integer, intent(in) :: y(:)                  !< right columns along the second axis
     type(plot_request_type) :: request
     type(error_type), allocatable :: err
 
@@ -60,7 +62,7 @@ contains
   end subroutine check_curves
 
   subroutine test_curves(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call check_curves(tester, 'q1', [1], [2])
     call check_curves(tester, 'q1,P.x', [1, 1], [2, 5])
@@ -76,7 +78,7 @@ contains
   end subroutine test_curves
 
   subroutine test_targets(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(plot_request_type) :: request
     type(error_type), allocatable :: err
 
@@ -95,7 +97,7 @@ contains
   end subroutine test_targets
 
   subroutine test_refusals(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call check_refusal(tester, 'q3', "did you mean 'q1'?")
     call check_refusal(tester, 'p.x', "did you mean 'P.x'?")
@@ -111,8 +113,9 @@ contains
   end subroutine test_refusals
 
   subroutine check_refusal(tester, text, words)
-    type(tester_type), intent(inout) :: tester
-    character(len=*), intent(in) :: text, words   !< of the message
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: text         !< argument of --plot
+    character(len=*), intent(in) :: words        !< of the message
     type(plot_request_type) :: request
     type(error_type), allocatable :: err
 
@@ -122,7 +125,7 @@ contains
   end subroutine check_refusal
 
   subroutine test_panels(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(string_type), allocatable :: names(:), units(:)
     type(plot_request_type) :: request
     type(error_type), allocatable :: err

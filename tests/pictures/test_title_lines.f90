@@ -17,7 +17,7 @@ program test_title_lines
 contains
 
   subroutine short_titles(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
 
     call expect(test, 'Fig. 1', 20, 2, ['Fig. 1'])
     call expect(test, '', 20, 2, [' '])
@@ -26,7 +26,7 @@ contains
   end subroutine short_titles
 
   subroutine long_titles(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(string_type), allocatable :: lines(:)
     integer :: i
 
@@ -42,7 +42,7 @@ contains
 
   !> Characters stay whole, and wide ones count twice.
   subroutine other_letters(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
 
     call expect(test, repeat(face, 4), 4, 2, [repeat(face, 2), repeat(face, 2)])
     call expect(test, repeat(face, 2), 2, 2, [face, face])
@@ -51,9 +51,11 @@ contains
   end subroutine other_letters
 
   subroutine expect(test, title, room, most, expected)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: title, expected(:)
-    integer, intent(in) :: room, most
+    type(tester_type), intent(inout) :: test      !< counts the checks
+    character(len=*), intent(in) :: title         !< the title
+    character(len=*), intent(in) :: expected(:)   !< the right lines
+    integer, intent(in) :: room                   !< letters in a line
+    integer, intent(in) :: most                   !< lines at most
     type(string_type), allocatable :: lines(:)
     integer :: i
 

@@ -22,7 +22,7 @@ contains
 
   !> From everywhere, also from straight above: three directions across each other, and up is up.
   subroutine directions(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(view_type) :: view
     real(wp) :: toward(3), upward(3)
@@ -45,7 +45,7 @@ contains
 
   !> Two axes: the first to the right, the second up.
   subroutine words_for_axes(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(view_type) :: view
     type(error_type), allocatable :: err
     character, parameter :: axes(3) = ['x', 'y', 'z']
@@ -64,7 +64,7 @@ contains
   end subroutine words_for_axes
 
   subroutine words_for_directions(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(view_type) :: view
     type(error_type), allocatable :: err
 
@@ -79,7 +79,7 @@ contains
   end subroutine words_for_directions
 
   subroutine no_views(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     character(len=12), parameter :: wrong(*) = [character(len=12) :: '', 'x', 'xx', 'xw', 'above', '1,2', '1,2,3,4', '0,0,0', &
                                                 '1,2,z', '1 2 3', '1,,3', '1e999,0,0', '3*1', '1,2,3/', 'nan,1,1']
     type(view_type) :: view

@@ -51,7 +51,7 @@ contains
 
   subroutine show_progress(duration, quiet)
     real(wp), intent(in) :: duration   !< [s]
-    logical, intent(in) :: quiet
+    logical, intent(in) :: quiet       !< the line is not wanted
     type(progress_type) :: progress
     real(wp) :: start
 
@@ -65,8 +65,8 @@ contains
 
   !> A table of i, 1/i, ... in 20 columns; ends as a program would, with the error's code.
   subroutine write_table(path, rows)
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: rows
+    character(len=*), intent(in) :: path   !< of the table
+    integer, intent(in) :: rows            !< how many
     type(table_type) :: table
     type(error_type), allocatable :: err, close_error
     type(string_type) :: names(20), units(20)

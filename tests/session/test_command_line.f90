@@ -23,10 +23,10 @@ contains
 
   !> Parse a line whose words are separated by `|`.
   subroutine parse(line, options, err, program_name)
-    character(len=*), intent(in) :: line
+    character(len=*), intent(in) :: line                     !< words with `|` between them
     character(len=*), intent(in), optional :: program_name   !< mech9k unless given
-    type(command_line_type), intent(out) :: options
-    type(error_type), allocatable, intent(out) :: err
+    type(command_line_type), intent(out) :: options          !< that it asks for
+    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
     type(string_type), allocatable :: words(:)
     integer :: first, next, i
 
@@ -45,7 +45,7 @@ contains
   end subroutine parse
 
   subroutine test_good_lines(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(command_line_type) :: options
     type(string_type), allocatable :: settings(:)
     type(error_type), allocatable :: err
@@ -84,7 +84,7 @@ contains
 
   !> Each row of the table is understood and changes what is asked for.
   subroutine test_every_option(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(command_line_type) :: options
     type(error_type), allocatable :: err
     character(len=*), parameter :: argument = 'time.end=3'
@@ -119,7 +119,7 @@ contains
   end subroutine test_every_option
 
   subroutine test_bad_lines(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call refuse(tester, '--edit|a.nml|b.nml', 'more than one data file')
     call refuse(tester, '--edit|a.nml|--resume|b.nml', 'more than one data file')
@@ -157,9 +157,10 @@ contains
 
   !> The line is an error of usage whose message holds some words.
   subroutine refuse(tester, line, words, program_name)
-    type(tester_type), intent(inout) :: tester
-    character(len=*), intent(in) :: line, words
-    character(len=*), intent(in), optional :: program_name
+    type(tester_type), intent(inout) :: tester               !< counts the checks
+    character(len=*), intent(in) :: line                     !< words with `|` between them
+    character(len=*), intent(in) :: words                    !< of the message
+    character(len=*), intent(in), optional :: program_name   !< mech9k unless given
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 
@@ -171,7 +172,7 @@ contains
   !> The help fits a terminal of 100 columns, and its lines end without blanks.
   !> All words as one line. A shell takes 'a'\''b' for a'b.
   subroutine test_line_for_shell(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(command_line_type) :: options
     type(error_type), allocatable :: err
     integer, parameter :: many = 3000000
@@ -186,7 +187,7 @@ contains
   end subroutine test_line_for_shell
 
   subroutine test_help(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=:), allocatable :: text
     integer :: first, next
 

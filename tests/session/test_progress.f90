@@ -19,7 +19,7 @@ contains
   end subroutine run_tests
 
   subroutine test_line(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=79) :: line
 
     line = progress_line('run', 0.25_wp, 60.0_wp)
@@ -40,7 +40,7 @@ contains
 
   !> After a fast stretch, a loop that slows down is noticed at the next look, 64 calls away at most.
   subroutine test_slow_pacer(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(pacer_type) :: pacer
     real(wp) :: pause
     integer :: i, first

@@ -25,8 +25,8 @@ module literal_transformation
 contains
 
   subroutine transform_literally(structure, vectors)
-    type(structure_type), intent(in) :: structure
-    type(structural_vectors_type), intent(out) :: vectors
+    type(structure_type), intent(in) :: structure           !< the structure
+    type(structural_vectors_type), intent(out) :: vectors   !< by the rules, taken literally
     type(work_type) :: work
     type(listing_type) :: closed, approach
     integer :: k
@@ -63,8 +63,8 @@ contains
 
   !> Do the links stay connected if a pair is taken away?
   logical function connected_without(structure, without)
-    type(structure_type), intent(in) :: structure
-    integer, intent(in) :: without
+    type(structure_type), intent(in) :: structure   !< the structure
+    integer, intent(in) :: without                  !< coordinate of the pair that is taken away
     logical :: reached(structure%n_links)
     integer :: turn, k
 
@@ -82,9 +82,9 @@ contains
   !> The best of all chains from known links: of closed ones over pairs of any kind, or of walks over
   !> bridges to a link that has a pair which is none.
   subroutine best_chain(work, over_bridges, listing)
-    type(work_type), intent(in) :: work
-    logical, intent(in) :: over_bridges
-    type(listing_type), intent(out) :: listing
+    type(work_type), intent(in) :: work          !< structure, vectors so far, and the chain in hand
+    logical, intent(in) :: over_bridges          !< walks over bridges, not closed chains
+    type(listing_type), intent(out) :: listing   !< the best chain
     integer :: start
 
     allocate (listing%links(work%structure%n_coordinates + 1), listing%pairs(work%structure%n_coordinates))
@@ -97,9 +97,9 @@ contains
   end subroutine best_chain
 
   recursive subroutine list_from_here(work, over_bridges, listing)
-    type(work_type), intent(in) :: work
-    logical, intent(in) :: over_bridges
-    type(listing_type), intent(inout) :: listing
+    type(work_type), intent(in) :: work            !< structure, vectors so far, and the chain in hand
+    logical, intent(in) :: over_bridges            !< walks over bridges, not closed chains
+    type(listing_type), intent(inout) :: listing   !< the chain in hand and the best one so far
     integer :: k, here, next
     logical :: complete
 
@@ -128,8 +128,8 @@ contains
   end subroutine list_from_here
 
   logical function on_closed_chain(work, link)
-    type(work_type), intent(in) :: work
-    integer, intent(in) :: link
+    type(work_type), intent(in) :: work   !< structure, vectors so far, and the chain in hand
+    integer, intent(in) :: link           !< its number
     integer :: k
 
     on_closed_chain = .false.
@@ -140,8 +140,8 @@ contains
 
   !> Fewest dependent coordinates, fewest coordinates, least start link, least coordinates.
   subroutine keep_better(work, listing)
-    type(work_type), intent(in) :: work
-    type(listing_type), intent(inout) :: listing
+    type(work_type), intent(in) :: work            !< structure, vectors so far, and the chain in hand
+    type(listing_type), intent(inout) :: listing   !< the chain in hand and the best one so far
     integer :: ours(listing%n + 3), best(listing%best_n + 3), i
     logical :: better
 
@@ -161,8 +161,9 @@ contains
   end subroutine keep_better
 
   pure function key(work, start, pairs)
-    type(work_type), intent(in) :: work
-    integer, intent(in) :: start, pairs(:)
+    type(work_type), intent(in) :: work   !< structure, vectors so far, and the chain in hand
+    integer, intent(in) :: start          !< link from which the chain starts
+    integer, intent(in) :: pairs(:)       !< its coordinates
     integer :: key(size(pairs) + 3)
 
     key(1) = count(.not. work%structure%independent(pairs))
@@ -173,8 +174,8 @@ contains
 
   !> An independent coordinate first where one end has it, else the smaller number.
   subroutine put_in_order(work, listing)
-    type(work_type), intent(in) :: work
-    type(listing_type), intent(inout) :: listing
+    type(work_type), intent(in) :: work            !< structure, vectors so far, and the chain in hand
+    type(listing_type), intent(inout) :: listing   !< the chain whose ends may be exchanged
     logical :: turn
     integer :: n, first, last
 
@@ -192,7 +193,7 @@ contains
   end subroutine put_in_order
 
   subroutine take_open_chain(work)
-    type(work_type), intent(inout) :: work
+    type(work_type), intent(inout) :: work   !< structure, vectors so far, and the chain in hand
     integer :: links(work%structure%n_links), pairs(work%structure%n_links)
     integer :: link, pair, n
 
@@ -215,8 +216,8 @@ contains
   end subroutine take_open_chain
 
   integer function open_pair(work, link)
-    type(work_type), intent(in) :: work
-    integer, intent(in) :: link
+    type(work_type), intent(in) :: work   !< structure, vectors so far, and the chain in hand
+    integer, intent(in) :: link           !< at which the pair leaves
     integer :: k
 
     open_pair = 0
@@ -231,8 +232,9 @@ contains
 
   !> Write a chain down; only the last link of a closed chain is one of it or known before.
   subroutine take(work, links, pairs)
-    type(work_type), intent(inout) :: work
-    integer, intent(in) :: links(:), pairs(:)
+    type(work_type), intent(inout) :: work   !< structure, vectors so far, and the chain in hand
+    integer, intent(in) :: links(:)          !< of the chain, in order, the first one known
+    integer, intent(in) :: pairs(:)          !< its coordinates, in order
     integer :: n, kinds(size(pairs)), numbers(size(pairs))
     logical :: closes
 

@@ -30,9 +30,9 @@ contains
 
   !> A whole number from 1 to n.
   subroutine below(self, n, number)
-    class(random_type), intent(inout) :: self
-    integer, intent(in) :: n
-    integer, intent(out) :: number
+    class(random_type), intent(inout) :: self   !< source of the random numbers
+    integer, intent(in) :: n                    !< greatest number
+    integer, intent(out) :: number              !< from 1 to n
     integer, parameter :: modulus = 2147483647, factor = 48271, quotient = 44488, remainder = 3399
 
     ! Schrage's way to multiply without overflow
@@ -42,8 +42,9 @@ contains
   end subroutine below
 
   subroutine join(self, a, b)
-    class(pairs_type), intent(inout) :: self
-    integer, intent(in) :: a, b
+    class(pairs_type), intent(inout) :: self   !< pairs so far
+    integer, intent(in) :: a                   !< first link
+    integer, intent(in) :: b                   !< second link
     integer, allocatable :: grown(:, :)
 
     if (.not. allocated(self%links)) allocate (self%links(2, 16))
@@ -58,8 +59,10 @@ contains
 
   !> A connected structure of a kind (1 to n_kinds) with about n links.
   function random_structure(kind, n, seed, shuffle) result(structure)
-    integer, intent(in) :: kind, n, seed
-    logical, intent(in), optional :: shuffle    !< number links and coordinates at random (default)
+    integer, intent(in) :: kind                !< 1 to n_kinds
+    integer, intent(in) :: n                   !< links, about
+    integer, intent(in) :: seed                !< of the random numbers
+    logical, intent(in), optional :: shuffle   !< number links and coordinates at random (default)
     type(structure_type) :: structure
     type(random_type) :: random
     type(pairs_type) :: pairs
@@ -112,9 +115,9 @@ contains
   end function random_structure
 
   subroutine add_tree(pairs, n, random)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
-    type(random_type), intent(inout) :: random
+    type(pairs_type), intent(inout) :: pairs     !< pairs so far; those of the part are added
+    integer, intent(in) :: n                     !< links
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer :: i, near
 
     do i = 2, n
@@ -124,9 +127,10 @@ contains
   end subroutine add_tree
 
   subroutine add_chords(pairs, n, chords, random)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n, chords
-    type(random_type), intent(inout) :: random
+    type(pairs_type), intent(inout) :: pairs     !< pairs so far; those of the part are added
+    integer, intent(in) :: n                     !< links
+    integer, intent(in) :: chords                !< pairs beyond a tree
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer :: i, a, b
 
     do i = 1, chords
@@ -138,9 +142,9 @@ contains
 
   !> Double some pairs.
   subroutine add_parallel(pairs, more, random)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: more
-    type(random_type), intent(inout) :: random
+    type(pairs_type), intent(inout) :: pairs     !< pairs so far; those of the part are added
+    integer, intent(in) :: more                  !< pairs that are doubled
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer :: i, k, links(2)
 
     do i = 1, more
@@ -152,8 +156,9 @@ contains
 
   !> Rows of `width` links; a width of 2 makes a ladder.
   subroutine add_grid(pairs, n, width)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n, width
+    type(pairs_type), intent(inout) :: pairs   !< pairs so far; those of the part are added
+    integer, intent(in) :: n                   !< links
+    integer, intent(in) :: width               !< links in a row
     integer :: i
 
     do i = 2, max(n, width + 2)
@@ -164,9 +169,9 @@ contains
 
   !> Several walks between two links.
   subroutine add_theta(pairs, n, random)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
-    type(random_type), intent(inout) :: random
+    type(pairs_type), intent(inout) :: pairs     !< pairs so far; those of the part are added
+    integer, intent(in) :: n                     !< links
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer :: last, length, i
 
     call pairs%join(1, 2)
@@ -184,9 +189,9 @@ contains
 
   !> A tree some of whose links carry small rings.
   subroutine add_hanging_parts(pairs, n, random)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
-    type(random_type), intent(inout) :: random
+    type(pairs_type), intent(inout) :: pairs     !< pairs so far; those of the part are added
+    integer, intent(in) :: n                     !< links
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer :: last, tree, size_of_ring, at, i
 
     tree = max(2, n/2)
@@ -206,9 +211,9 @@ contains
 
   !> A ring with as many chords as make three pairs at each link.
   subroutine add_three_a_link(pairs, n, random)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
-    type(random_type), intent(inout) :: random
+    type(pairs_type), intent(inout) :: pairs     !< pairs so far; those of the part are added
+    integer, intent(in) :: n                     !< links
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer :: order(n), i
 
     call add_ring(pairs, n)
@@ -220,10 +225,10 @@ contains
 
   !> Rings that share one link with the ring before, or all with the first link.
   subroutine add_rings(pairs, n, on_path, random)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
-    logical, intent(in) :: on_path
-    type(random_type), intent(inout) :: random
+    type(pairs_type), intent(inout) :: pairs     !< pairs so far; those of the part are added
+    integer, intent(in) :: n                     !< links
+    logical, intent(in) :: on_path               !< each ring shares a link with the ring before, not with the first link
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer :: last, at, length, i
 
     last = 1
@@ -240,8 +245,8 @@ contains
   end subroutine add_rings
 
   subroutine add_ring(pairs, n)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
+    type(pairs_type), intent(inout) :: pairs   !< pairs so far; those of the part are added
+    integer, intent(in) :: n                   !< links
     integer :: i
 
     do i = 2, n
@@ -252,8 +257,8 @@ contains
 
   !> A ring, and a hub that is joined to each of its links.
   subroutine add_wheel(pairs, n)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
+    type(pairs_type), intent(inout) :: pairs   !< pairs so far; those of the part are added
+    integer, intent(in) :: n                   !< links
     integer :: i
 
     call add_ring(pairs, n - 1)
@@ -264,8 +269,8 @@ contains
 
   !> A ring of half of the links, and a ladder of the others across it.
   subroutine add_ladder_in_ring(pairs, n)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
+    type(pairs_type), intent(inout) :: pairs   !< pairs so far; those of the part are added
+    integer, intent(in) :: n                   !< links
     integer :: i, half
 
     half = max(3, n/2)
@@ -280,8 +285,8 @@ contains
 
   !> A ladder whose rungs have about as many links as it has rungs.
   subroutine add_long_rungs(pairs, n)
-    type(pairs_type), intent(inout) :: pairs
-    integer, intent(in) :: n
+    type(pairs_type), intent(inout) :: pairs   !< pairs so far; those of the part are added
+    integer, intent(in) :: n                   !< links
     integer :: rungs, i, j, last
 
     rungs = max(2, int(sqrt(real(n))))
@@ -302,8 +307,8 @@ contains
 
   !> New numbers for links and coordinates, and the links of a pair in either order.
   subroutine renumber(structure, random)
-    type(structure_type), intent(inout) :: structure
-    type(random_type), intent(inout) :: random
+    type(structure_type), intent(inout) :: structure   !< gets new numbers
+    type(random_type), intent(inout) :: random         !< source of the random numbers
     integer :: of_link(structure%n_links), of_pair(structure%n_coordinates), k, turn
     integer :: links(2, structure%n_coordinates)
 
@@ -318,8 +323,8 @@ contains
   end subroutine renumber
 
   subroutine shuffled(numbers, random)
-    integer, intent(out) :: numbers(:)
-    type(random_type), intent(inout) :: random
+    integer, intent(out) :: numbers(:)           !< 1 to their count, in random order
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer :: i, j
 
     do i = 1, size(numbers)

@@ -28,7 +28,9 @@ contains
   end function fig_1
 
   function some_vectors(nrg, nws, rdw) result(vectors)
-    integer, intent(in) :: nrg(:), nws(:), rdw(:)
+    integer, intent(in) :: nrg(:)   !< links in the order of computation
+    integer, intent(in) :: nws(:)   !< coordinates that lead to them
+    integer, intent(in) :: rdw(:)   !< 1 where a coordinate is independent
     type(structural_vectors_type) :: vectors
 
     allocate (vectors%nrg, source=nrg)
@@ -37,7 +39,7 @@ contains
   end function some_vectors
 
   subroutine good_vectors(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
@@ -68,10 +70,12 @@ contains
 
   !> Exactly one finding, with this name, place and text in it.
   subroutine one_finding(tester, vectors, name, position, text, why)
-    type(tester_type), intent(inout) :: tester
-    type(structural_vectors_type), intent(inout) :: vectors
-    character(len=*), intent(in) :: name, text, why
-    integer, intent(in) :: position
+    type(tester_type), intent(inout) :: tester                !< counts the checks
+    type(structural_vectors_type), intent(inout) :: vectors   !< with one mistake
+    character(len=*), intent(in) :: name                      !< of the wrong vector
+    character(len=*), intent(in) :: text                      !< part of the message
+    character(len=*), intent(in) :: why                       !< the statement that is checked, printed where it is wrong
+    integer, intent(in) :: position                           !< of the mistake in it
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
     integer :: i
@@ -88,7 +92,7 @@ contains
   end subroutine one_finding
 
   subroutine wrong_sizes(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors, empty
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
@@ -117,7 +121,7 @@ contains
   end subroutine wrong_sizes
 
   subroutine wrong_numbers(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
@@ -159,7 +163,7 @@ contains
   end subroutine wrong_numbers
 
   subroutine wrong_chains(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors
 
     vectors = some_vectors([1, 2, 3, 1, 4, 3], [0, 1, 2, 3, 4, 5], [1, 1, 0, 0, 0, 0])
@@ -177,8 +181,8 @@ contains
   end subroutine wrong_chains
 
   subroutine check_self_step(tester, vectors)
-    type(tester_type), intent(inout) :: tester
-    type(structural_vectors_type), intent(inout) :: vectors
+    type(tester_type), intent(inout) :: tester                !< counts the checks
+    type(structural_vectors_type), intent(inout) :: vectors   !< good ones, which are changed
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
 
@@ -187,7 +191,7 @@ contains
   end subroutine check_self_step
 
   subroutine wrong_closures(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors
 
     vectors = fig_1()

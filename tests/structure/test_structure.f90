@@ -21,7 +21,8 @@ contains
 
   !> The matrix of pairs, by (7).
   function matrix_of(n, links) result(c)
-    integer, intent(in) :: n, links(:, :)
+    integer, intent(in) :: n             !< links
+    integer, intent(in) :: links(:, :)   !< (2,m) links of each pair
     integer :: c(n, n), k
 
     c = 0
@@ -32,7 +33,7 @@ contains
   end function matrix_of
 
   subroutine good_data(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
     logical, parameter :: independent(7) = [.false., .false., .false., .false., .true., .false., .false.]
@@ -52,10 +53,12 @@ contains
 
   !> Exactly one finding, with this name, this place, and this text in it.
   subroutine one_finding(tester, findings, name, index_, text, why)
-    type(tester_type), intent(inout) :: tester
-    type(finding_type), intent(in) :: findings(:)
-    character(len=*), intent(in) :: name, text, why
-    integer, intent(in) :: index_(2)
+    type(tester_type), intent(inout) :: tester      !< counts the checks
+    type(finding_type), intent(in) :: findings(:)   !< of the check
+    character(len=*), intent(in) :: name            !< of the wrong data
+    character(len=*), intent(in) :: text            !< part of the message
+    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    integer, intent(in) :: index_(2)                !< the place of the mistake in them
     integer :: i
 
     call tester%is_true(size(findings) == 1, why//': one finding, not '//to_text(size(findings)))
@@ -69,7 +72,7 @@ contains
   end subroutine one_finding
 
   subroutine bad_matrices(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
     integer :: c(6, 6)
@@ -121,7 +124,7 @@ contains
   end subroutine bad_matrices
 
   subroutine bad_pairs(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
     integer :: links(2, 7), long_links(2, 19), i
@@ -152,7 +155,7 @@ contains
   end subroutine bad_pairs
 
   subroutine bad_independent(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
 
@@ -165,7 +168,7 @@ contains
   end subroutine bad_independent
 
   subroutine disagreeing_pairs(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
     integer :: links(2, 7)

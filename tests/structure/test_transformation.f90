@@ -22,9 +22,11 @@ contains
 
   !> Transform pairs with the links l(1),l(2), l(3),l(4), ...; they must be good data.
   subroutine transform_pairs(tester, n, l, cq, vectors)
-    type(tester_type), intent(inout) :: tester
-    integer, intent(in) :: n, l(:), cq(:)
-    type(structural_vectors_type), intent(out) :: vectors
+    type(tester_type), intent(inout) :: tester              !< counts the checks
+    integer, intent(in) :: n                                !< links
+    integer, intent(in) :: l(:)                             !< two links for each pair, in the order of the coordinates
+    integer, intent(in) :: cq(:)                            !< independent coordinates
+    type(structural_vectors_type), intent(out) :: vectors   !< of the second set
     type(structure_type) :: structure
     type(finding_type), allocatable :: findings(:)
 
@@ -35,7 +37,7 @@ contains
   end subroutine transform_pairs
 
   subroutine fig_1(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, parameter :: c(6, 6) = reshape([0, 5, 0, 6, 0, 1, 5, 0, 4, 0, 0, 0, 0, 4, 0, 7, 3, 0, &
                                              6, 0, 7, 0, 0, 0, 0, 0, 3, 0, 0, 2, 1, 0, 0, 0, 2, 0], [6, 6])
     type(structure_type) :: structure
@@ -60,7 +62,7 @@ contains
 
   !> Cases worked out by hand from the rules.
   subroutine small_cases(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors
 
     call transform_pairs(tester, 2, [2, 1], [1], vectors)
@@ -96,7 +98,7 @@ contains
 
   !> The rules taken literally give the same on small structures.
   subroutine follows_rules(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structure_type) :: structure
     type(structural_vectors_type) :: vectors, literal
     integer :: kind, seed, n
@@ -118,7 +120,7 @@ contains
 
   !> The definitions hold, and the vectors give their structure back.
   subroutine holds_definitions(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structure_type) :: structure, back
     type(structural_vectors_type) :: vectors
     type(finding_type), allocatable :: findings(:)
@@ -142,7 +144,8 @@ contains
   end subroutine holds_definitions
 
   logical function same_structure(a, b)
-    type(structure_type), intent(in) :: a, b
+    type(structure_type), intent(in) :: a   !< first structure
+    type(structure_type), intent(in) :: b   !< second structure
 
     same_structure = a%n_links == b%n_links .and. a%n_coordinates == b%n_coordinates
     if (.not. same_structure) return
@@ -151,14 +154,17 @@ contains
   end function same_structure
 
   logical function same(a, b)
-    integer, intent(in) :: a(:), b(:)
+    integer, intent(in) :: a(:)   !< first vector
+    integer, intent(in) :: b(:)   !< second vector
 
     same = size(a) == size(b)
     if (same) same = all(a == b)
   end function same
 
   function named(kind, n, seed) result(text)
-    integer, intent(in) :: kind, n, seed
+    integer, intent(in) :: kind   !< of the random structure
+    integer, intent(in) :: n      !< its links, about
+    integer, intent(in) :: seed   !< of its random numbers
     character(len=:), allocatable :: text
 
     text = trim(kind_names(kind))//', '//to_text(n)//' links, seed '//to_text(seed)

@@ -24,8 +24,8 @@ program test_transformation_growth
 contains
 
   subroutine check_growth(tester, kind)
-    type(tester_type), intent(inout) :: tester
-    integer, intent(in) :: kind
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer, intent(in) :: kind                  !< of the random structures
     real(wp) :: work_small, work_large, time_small, time_large
     real(wp) :: most
     integer(long) :: pairs_small, pairs_large
@@ -44,11 +44,13 @@ contains
 
   !> Mean operations and least time of some structures.
   subroutine measure(tester, kind, n, seeds, work, time, pairs)
-    type(tester_type), intent(inout) :: tester
-    integer, intent(in) :: kind, n, seeds
-    real(wp), intent(out) :: work     !< operations
-    real(wp), intent(out) :: time     !< [s]
-    integer(long), intent(out) :: pairs
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer, intent(in) :: kind                  !< of the random structures
+    integer, intent(in) :: n                     !< links, about
+    integer, intent(in) :: seeds                 !< structures
+    real(wp), intent(out) :: work                !< operations
+    real(wp), intent(out) :: time                !< [s]
+    integer(long), intent(out) :: pairs          !< of all structures together
     type(structure_type) :: structure
     type(structural_vectors_type) :: vectors
     character(len=:), allocatable :: wrong

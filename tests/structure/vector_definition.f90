@@ -11,8 +11,8 @@ contains
 
   !> The first thing that is wrong, or nothing.
   function what_is_wrong(structure, vectors) result(text)
-    type(structure_type), intent(in) :: structure
-    type(structural_vectors_type), intent(in) :: vectors
+    type(structure_type), intent(in) :: structure          !< from which the vectors come
+    type(structural_vectors_type), intent(in) :: vectors   !< that are held against the definitions
     character(len=:), allocatable :: text
     logical :: known(structure%n_links), used(structure%n_coordinates)
     logical :: closes, over
@@ -62,7 +62,7 @@ contains
   !> N + 2 L1 + L2 - 1. Every pair beyond the N - 1 that reach the links closes a chain, and a leaf (a
   !> link of one pair) can only be the end of an open one, so there are at least as many.
   integer function least_length(structure)
-    type(structure_type), intent(in) :: structure
+    type(structure_type), intent(in) :: structure   !< the structure
     integer :: pairs_of(structure%n_links), k, i, l1, l2
 
     pairs_of = 0

@@ -17,7 +17,7 @@ contains
   end subroutine run_tests
 
   subroutine test_beginning(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call tester%is_true(beginning_of_word('') == '', 'nothing typed, nothing begun')
     call tester%is_true(beginning_of_word('rev') == 'rev', 'the first word')
@@ -28,7 +28,7 @@ contains
   end subroutine test_beginning
 
   subroutine test_completions(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(string_type) :: words(4)
     type(string_type), allocatable :: found(:)
 
@@ -50,7 +50,7 @@ contains
   end subroutine test_completions
 
   subroutine test_columns(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(string_type) :: words(3)
     character, parameter :: eol = achar(10)
 

@@ -17,7 +17,7 @@ contains
 
   !> One character of each length, and the first and the last of each.
   subroutine test_known(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call one(tester, [65], 65, 'A')
     call one(tester, [195, 169], int(z'E9'), 'e with an acute')
@@ -32,9 +32,10 @@ contains
   end subroutine test_known
 
   subroutine one(tester, bytes, point, why)
-    type(tester_type), intent(inout) :: tester
-    integer, intent(in) :: bytes(:), point
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer, intent(in) :: bytes(:)              !< of one character in UTF-8
+    integer, intent(in) :: point                 !< its code point
+    character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
     character(len=size(bytes)) :: text
     integer :: i
 
@@ -47,7 +48,7 @@ contains
 
   !> Every code point, but for the halves of pairs, which are no characters.
   subroutine test_round_trip(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer :: point, wrong
 
     wrong = 0
@@ -59,7 +60,7 @@ contains
   end subroutine test_round_trip
 
   subroutine test_no_text(tester)
-    type(tester_type), intent(inout) :: tester
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, allocatable :: points(:)
 
     points = to_wide('a'//char(255)//'b'//char(195))

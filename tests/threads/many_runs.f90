@@ -30,9 +30,9 @@ contains
 
   !> Runs of the data files under `folder`, in turn; some of them are to be refused.
   subroutine list_runs(folder, count, runs)
-    character(len=*), intent(in) :: folder
-    integer, intent(in) :: count
-    type(run_type), allocatable, intent(out) :: runs(:)
+    character(len=*), intent(in) :: folder                !< of the data files
+    integer, intent(in) :: count                          !< of runs
+    type(run_type), allocatable, intent(out) :: runs(:)   !< still to be carried out
     character(len=*), parameter :: names(*) = [character(len=40) :: 'reference/kinematics_fig1', &
       'reference/dynamics_fig1', 'cases/malformed/errors_together', 'reference/kinematics_general_7r', &
       'reference/dynamics_fivebar', 'reference/kinematics_bennett', 'reference/dynamics_open_chain', &
@@ -50,7 +50,7 @@ contains
 
   !> Read, plan, assemble, and follow or integrate the motion.
   subroutine carry_out(run)
-    type(run_type), intent(inout) :: run
+    type(run_type), intent(inout) :: run   !< gets its rows, or its failure
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     type(mechanism_type) :: mechanism
@@ -74,9 +74,9 @@ contains
   end subroutine carry_out
 
   subroutine follow(mechanism, rows, err)
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), allocatable, intent(out) :: rows(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    real(wp), allocatable, intent(out) :: rows(:, :)    !< of the results, one in each column
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type) :: plan
     type(state_type) :: start
     type(driven_simulation_type) :: simulation
@@ -88,9 +88,9 @@ contains
   end subroutine follow
 
   subroutine integrate(mechanism, rows, err)
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), allocatable, intent(out) :: rows(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    real(wp), allocatable, intent(out) :: rows(:, :)    !< of the results, one in each column
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type) :: plan
     type(state_type) :: start
     type(free_simulation_type) :: simulation
@@ -102,10 +102,10 @@ contains
   end subroutine integrate
 
   subroutine fill(simulation, mechanism, rows, err)
-    class(simulation_type), intent(inout), target :: simulation
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), allocatable, intent(out) :: rows(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    class(simulation_type), intent(inout), target :: simulation   !< about to start
+    type(mechanism_type), intent(in) :: mechanism                 !< the mechanism
+    real(wp), allocatable, intent(out) :: rows(:, :)              !< of the results, one in each column
+    type(error_type), allocatable, intent(out) :: err             !< allocated if it failed
     type(row_source_type) :: source
     integer :: i
 
@@ -119,7 +119,8 @@ contains
 
   !> Did both end as they should, with the same numbers in every bit, or the same words?
   pure logical function same(a, b)
-    type(run_type), intent(in) :: a, b
+    type(run_type), intent(in) :: a   !< first run
+    type(run_type), intent(in) :: b   !< second run
 
     same = a%done .and. b%done
     if (.not. same) return

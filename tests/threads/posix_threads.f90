@@ -15,16 +15,16 @@ module posix_threads
   interface
     integer(c_int) function pthread_create(thread, attributes, work, argument) bind(c)
       import :: c_int, c_ptr, c_funptr, c_intptr_t
-      integer(c_intptr_t), intent(out) :: thread
-      type(c_ptr), value :: attributes
-      type(c_funptr), value :: work
-      type(c_ptr), value :: argument
+      integer(c_intptr_t), intent(out) :: thread   !< its handle
+      type(c_ptr), value :: attributes             !< a null pointer: none
+      type(c_funptr), value :: work                !< the function that the thread carries out
+      type(c_ptr), value :: argument               !< of this function
     end function pthread_create
 
     integer(c_int) function pthread_join(thread, answer) bind(c)
       import :: c_int, c_intptr_t, c_ptr
-      integer(c_intptr_t), value :: thread
-      type(c_ptr), value :: answer
+      integer(c_intptr_t), value :: thread   !< its handle
+      type(c_ptr), value :: answer           !< gets the result of its function; a null pointer: not wanted
     end function pthread_join
   end interface
 
@@ -32,8 +32,8 @@ contains
 
   !> A thread for each share. `failed` where the system gave no thread.
   subroutine run_in_threads(shares, failed)
-    type(share_type), intent(inout), target :: shares(:)
-    logical, intent(out) :: failed
+    type(share_type), intent(inout), target :: shares(:)   !< of the work
+    logical, intent(out) :: failed                         !< the system gave no thread
     integer(c_intptr_t) :: threads(size(shares))
     integer :: i, started
 
@@ -50,7 +50,7 @@ contains
 
   type(c_ptr) function work_on_share(argument) bind(c) result(answer)
     use, intrinsic :: iso_c_binding, only: c_f_pointer
-    type(c_ptr), value :: argument
+    type(c_ptr), value :: argument   !< address of the share
     type(share_type), pointer :: share
     integer :: i
 

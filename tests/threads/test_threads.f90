@@ -27,10 +27,10 @@ contains
   end subroutine run_tests
 
   subroutine test_side_by_side(tester, folder, alone, threads)
-    type(tester_type), intent(inout) :: tester
-    character(len=*), intent(in) :: folder
-    type(run_type), intent(in) :: alone(:)
-    integer, intent(in) :: threads
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: folder       !< of the data files
+    type(run_type), intent(in) :: alone(:)       !< the same runs, carried out one after the other
+    integer, intent(in) :: threads               !< at once
     type(run_type), allocatable :: runs(:)
     integer :: i
 

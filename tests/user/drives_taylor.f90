@@ -6,10 +6,10 @@ submodule (mech9_user_drive) test_drives
 contains
 
   module subroutine user_drive(coordinate, t, parameters, q)
-    integer, intent(in) :: coordinate
-    type(taylor), intent(in) :: t
-    real(wp), intent(in) :: parameters(:)
-    type(taylor), intent(out) :: q
+    integer, intent(in) :: coordinate       !< selects the function
+    type(taylor), intent(in) :: t           !< time [s]
+    real(wp), intent(in) :: parameters(:)   !< of the function
+    type(taylor), intent(out) :: q          !< value of the coordinate
 
     select case (coordinate)
     case (1)   ! a curve of parameters: p1 t + p2 sin(p3 t)

@@ -6,10 +6,10 @@ submodule (mech9_user_drive_values) test_drives_values
 contains
 
   module subroutine user_drive_values(coordinate, t, parameters, q)
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: parameters(:)
-    real(wp), intent(out) :: q
+    integer, intent(in) :: coordinate       !< selects the function
+    real(wp), intent(in) :: t               !< time [s]
+    real(wp), intent(in) :: parameters(:)   !< of the function
+    real(wp), intent(out) :: q              !< value of the coordinate
 
     select case (coordinate)
     case (1)

@@ -6,10 +6,12 @@ submodule (mech9_user_pair) test_pairs
 contains
 
   module subroutine user_pair(coordinate, q, parameters, r1, r2, r3)
-    integer, intent(in) :: coordinate
-    type(taylor), intent(in) :: q
-    real(wp), intent(in) :: parameters(:)
-    type(taylor), intent(out) :: r1(3), r2(3), r3(3)
+    integer, intent(in) :: coordinate       !< selects the pair
+    type(taylor), intent(in) :: q           !< its coordinate
+    real(wp), intent(in) :: parameters(:)   !< of the pair
+    type(taylor), intent(out) :: r1(3)      !< origin of the moving link [m]
+    type(taylor), intent(out) :: r2(3)      !< a point on its x axis [m]
+    type(taylor), intent(out) :: r3(3)      !< a third point [m]
 
     select case (coordinate)
     case (1)   ! a screw: its frame by columns, its origin, its advance per radian

@@ -6,10 +6,12 @@ submodule (mech9_user_pair_values) test_pairs_values
 contains
 
   module subroutine user_pair_values(coordinate, q, parameters, r1, r2, r3)
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: q
-    real(wp), intent(in) :: parameters(:)
-    real(wp), intent(out) :: r1(3), r2(3), r3(3)
+    integer, intent(in) :: coordinate       !< selects the pair
+    real(wp), intent(in) :: q               !< its coordinate
+    real(wp), intent(in) :: parameters(:)   !< of the pair
+    real(wp), intent(out) :: r1(3)          !< origin of the moving link [m]
+    real(wp), intent(out) :: r2(3)          !< a point on its x axis [m]
+    real(wp), intent(out) :: r3(3)          !< a third point [m]
 
     select case (coordinate)
     case (1)

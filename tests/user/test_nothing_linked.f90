@@ -17,7 +17,7 @@ program test_nothing_linked
 contains
 
   subroutine ask_for_procedures(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_pair_type) :: pair
     type(procedure_drive_type) :: drive
     type(procedure_load_type) :: load

@@ -15,7 +15,7 @@ program test_plain_values_linked
 contains
 
   subroutine use_procedures(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_pair_type) :: pair
     type(procedure_drive_type) :: drive
     type(pair_motion_type) :: motion

@@ -16,9 +16,9 @@ program test_user_drives
 contains
 
   subroutine make_both(test, coordinate, parameters, drives)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: parameters(:)
+    type(tester_type), intent(inout) :: test               !< counts the checks
+    integer, intent(in) :: coordinate                      !< selects the function
+    real(wp), intent(in) :: parameters(:)                  !< of the function
     type(procedure_drive_type), intent(out) :: drives(2)   !< in Taylor arithmetic, in plain values
     type(error_type), allocatable :: err
 
@@ -31,10 +31,11 @@ contains
 
   !> Value, first and second derivative to 1e-12, 1e-11, 1e-10, as is promised of plain values.
   subroutine check_drive(test, drive, t, expected, why)
-    type(tester_type), intent(inout) :: test
-    type(procedure_drive_type), intent(in) :: drive
-    real(wp), intent(in) :: t, expected(3)
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test          !< counts the checks
+    type(procedure_drive_type), intent(in) :: drive   !< the drive
+    real(wp), intent(in) :: t                         !< time [s]
+    real(wp), intent(in) :: expected(3)               !< value, first and second derivative
+    character(len=*), intent(in) :: why               !< the statement that is checked, printed where it is wrong
     type(error_type), allocatable :: err
     real(wp) :: q(3), finer
 
@@ -47,7 +48,7 @@ contains
   end subroutine check_drive
 
   subroutine closed_form(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(procedure_drive_type) :: drives(2)
     real(wp) :: p(3), t, expected(3)
@@ -64,7 +65,7 @@ contains
   end subroutine closed_form
 
   subroutine forms_agree(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(procedure_drive_type) :: drives(2)
     type(error_type), allocatable :: err
@@ -81,7 +82,7 @@ contains
   end subroutine forms_agree
 
   subroutine end_of_domain(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_drive_type) :: drives(2)
     type(error_type), allocatable :: err
     real(wp) :: t, s, q, dq, ddq

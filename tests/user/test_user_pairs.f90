@@ -32,10 +32,11 @@ contains
 
   !> A pair in Taylor arithmetic, and the same by plain values.
   subroutine make_both(test, coordinate, parameters, exact_pair, plain_pair)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: coordinate
-    real(wp), intent(in) :: parameters(:)
-    type(procedure_pair_type), intent(out) :: exact_pair, plain_pair
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: coordinate                      !< selects the pair
+    real(wp), intent(in) :: parameters(:)                  !< of the pair
+    type(procedure_pair_type), intent(out) :: exact_pair   !< in Taylor arithmetic
+    type(procedure_pair_type), intent(out) :: plain_pair   !< by plain values
     type(error_type), allocatable :: err
 
     call make_procedure_pair(coordinate, parameters, exact_pair, err)
@@ -47,7 +48,7 @@ contains
 
   !> A user's procedure for a screw does what the built-in helical pair does.
   subroutine as_built_in(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(procedure_pair_type) :: exact_pair, plain_pair
     type(screw_pair_type) :: built_in
@@ -74,7 +75,7 @@ contains
   end subroutine as_built_in
 
   subroutine forms_agree(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(procedure_pair_type) :: exact_pair, plain_pair
     type(pair_motion_type) :: motion, expected
@@ -98,7 +99,7 @@ contains
 
   !> Towards the end of where a procedure has values only narrow stencils fit.
   subroutine end_of_domain(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_pair_type) :: exact_pair, plain_pair
     type(pair_motion_type) :: motion, expected
     type(error_type), allocatable :: err
@@ -120,7 +121,7 @@ contains
 
   !> A third point close to the line of the other two: the matrix is a rotation all the same.
   subroutine close_to_a_line(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_pair_type) :: exact_pair, plain_pair
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
@@ -141,7 +142,7 @@ contains
 
   !> Points in one line and numbers that are none, in both forms: what, where, at which value.
   subroutine refused(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_pair_type) :: pairs(2)
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
@@ -165,7 +166,7 @@ contains
   end subroutine refused
 
   subroutine what_they_say(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_pair_type) :: exact_pair, plain_pair
     type(screw_factors_type) :: factors
     logical :: is_screw

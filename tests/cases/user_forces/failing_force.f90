@@ -7,10 +7,10 @@ submodule (mech9_user_force) failing_force
 contains
 
   module subroutine user_force(t, state, parameters, loads)
-    real(wp), intent(in) :: t
-    type(motion_view_type), intent(in) :: state
-    real(wp), intent(in) :: parameters(:)
-    type(force_sum_type), intent(inout) :: loads
+    real(wp), intent(in) :: t                      !< time [s]
+    type(motion_view_type), intent(in) :: state    !< motion of links and coordinates
+    real(wp), intent(in) :: parameters(:)          !< of &user
+    type(force_sum_type), intent(inout) :: loads   !< forces and torques are added to it
     real(wp) :: force
 
     force = 1.0_wp
