@@ -27,11 +27,11 @@ module mech9_error
     integer :: column = 0
   end type place_type
 
-  !> A failure: what went wrong, and where.
+  !> A failure: its kind, its message and its place.
   type :: error_type
-    integer :: code = exit_internal
-    character(len=:), allocatable :: message
-    type(place_type) :: place   !< place in the data file; line 0 where none is known
+    integer :: code = exit_internal            !< kind of failure, one of the exit_ codes
+    character(len=:), allocatable :: message   !< error, place and remedy in words
+    type(place_type) :: place                  !< place in the data file; line 0 where none is known
   end type error_type
 
 contains
@@ -40,7 +40,7 @@ contains
   pure subroutine raise(err, code, message, place)
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer, intent(in) :: code                         !< one of the exit_ codes
-    character(len=*), intent(in) :: message             !< what went wrong and what to do
+    character(len=*), intent(in) :: message             !< error and remedy in words
     type(place_type), intent(in), optional :: place     !< place in the data file that the message points to
 
     allocate (err)

@@ -7,7 +7,7 @@ module mech9_kinds
 
   !> Working precision of all real numbers.
   integer, parameter :: wp = real64
-  !> Integers that count what may exceed two thousand million.
+  !> Kind of integers for counts that may exceed two thousand million.
   integer, parameter :: long = int64
 
   real(wp), parameter :: pi = 3.14159265358979323846264338327950288_wp

@@ -228,7 +228,7 @@ contains
 
   !> Whether a text has this beginning, blanks at its end included.
   pure logical function starts_with(text, beginning)
-    character(len=*), intent(in) :: text        !< the text that is looked at
+    character(len=*), intent(in) :: text        !< any text
     character(len=*), intent(in) :: beginning   !< the beginning, with all its blanks
 
     starts_with = .false.

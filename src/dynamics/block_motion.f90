@@ -120,7 +120,7 @@ contains
     call spread_accelerations(plan, block, block%last_step, state)
     call block_rates(plan, block, 2, state, work%right)
     work%right = -work%right
-    call work%equations%solve(work%right, work%change, noise=noise_of_rates*scale)
+    call work%equations%solve(work%right, work%change, round_off=noise_of_rates*scale)
     do i = 1, size(block%unknowns)
       k = block%coordinates(i)
       state%ddq(k) = state%ddq(k) + work%change(i)*plan%unit_of(k)

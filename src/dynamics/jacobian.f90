@@ -82,7 +82,7 @@ contains
     end do
     work%right = -work%right
     k = plan%independent(dynamics%column(dynamics%first(block%first_step) + offset))
-    call work%equations%solve(work%right, work%change, noise=noise_of_rates/plan%unit_of(k))
+    call work%equations%solve(work%right, work%change, round_off=noise_of_rates/plan%unit_of(k))
     do i = 1, size(block%unknowns)
       s = block%unknowns(i)
       e = dynamics%first(s) + offset

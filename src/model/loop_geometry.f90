@@ -153,7 +153,7 @@ contains
   pure subroutine judge(all_axes, loop, oddity)
     type(pair_axes_type), intent(in) :: all_axes(:)   !< (M)
     type(loop_type), intent(in) :: loop               !< the chain, laid out
-    type(oddity_type), intent(inout) :: oddity        !< gets what is found
+    type(oddity_type), intent(inout) :: oddity        !< becomes the oddity that is found; unchanged without one
     type(link_dimension_type) :: dimensions(size(loop%pairs))
     logical :: planar
     integer :: i, n
@@ -176,7 +176,7 @@ contains
   pure subroutine judge_links(dimensions, slack, oddity)
     type(link_dimension_type), intent(in) :: dimensions(:)   !< of the links of a chain whose pairs turn
     real(wp), intent(in) :: slack                            !< angle that counts as zero [rad]
-    type(oddity_type), intent(inout) :: oddity               !< gets what is found
+    type(oddity_type), intent(inout) :: oddity               !< becomes the oddity that is found; unchanged without one
     logical :: bent(size(dimensions))
     integer :: i
 
@@ -193,7 +193,7 @@ contains
   !> for heights that do not fit.
   pure subroutine judge_directions(loop, oddity, planar)
     type(loop_type), intent(in) :: loop          !< the chain, laid out
-    type(oddity_type), intent(inout) :: oddity   !< gets what is found
+    type(oddity_type), intent(inout) :: oddity   !< becomes the oddity that is found; unchanged without one
     logical, intent(out) :: planar               !< all turn about one direction or slide across it
     logical, dimension(size(loop%pairs)) :: fits, best, turns
     real(wp) :: normal(3), sine, gap
@@ -276,7 +276,7 @@ contains
   !> Search for a few axes that do not meet the common point of the others.
   pure subroutine judge_centre(loop, oddity)
     type(loop_type), intent(in) :: loop          !< the chain, laid out
-    type(oddity_type), intent(inout) :: oddity   !< gets what is found
+    type(oddity_type), intent(inout) :: oddity   !< becomes the oddity that is found; unchanged without one
     logical, dimension(size(loop%pairs)) :: fits, best
     real(wp) :: centre(3), best_centre(3)
     logical :: meet
@@ -337,7 +337,7 @@ contains
   pure subroutine judge_lengths(dimensions, planar, oddity)
     type(link_dimension_type), intent(in) :: dimensions(:)   !< of the links of a chain whose pairs turn
     logical, intent(in) :: planar                            !< the axes of all pairs are parallel
-    type(oddity_type), intent(inout) :: oddity               !< gets what is found
+    type(oddity_type), intent(inout) :: oddity               !< becomes the oddity that is found; unchanged without one
     real(wp) :: lengths(size(dimensions))
     integer :: i
 

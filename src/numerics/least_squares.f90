@@ -104,22 +104,22 @@ contains
 
   !> x for which |a x - b| is least, and the length of the residual; columns beyond the numerical rank are not used.
   !>
-  !> With `noise`, an unknown of a nearly dependent column is left at zero where round-off alone can explain its value:
+  !> With `round_off`, an unknown of a nearly dependent column is left at zero where round-off alone can explain its value:
   !> its error is larger than that of a well determined one by the square of the ratio of the largest pivot to its own.
-  subroutine solve(self, b, x, remainder, tolerance, noise)
+  subroutine solve(self, b, x, remainder, tolerance, round_off)
     class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
     real(wp), intent(inout), contiguous :: b(:)        !< (m) right-hand side; overwritten
     real(wp), intent(out) :: x(:)                      !< (n) the solution
     real(wp), intent(out), optional :: remainder       !< length of the residual a x - b
     real(wp), intent(in), optional :: tolerance        !< part of the largest pivot, below which a column is not used
-    real(wp), intent(in), optional :: noise            !< error of x by round-off in a well determined column, in the unit of x
+    real(wp), intent(in), optional :: round_off            !< error of x by round-off in a well determined column, in the unit of x
     integer :: j, k, info, rank
 
     rank = self%safe_rank
     if (present(tolerance)) rank = min(rank, rank_within(self, tolerance))
     if (self%by_cofactors) then
       if (rank == 3) then
-        ! no column is nearly dependent, so that `noise` has no effect
+        ! no column is nearly dependent, so that `round_off` has no effect
         do j = 1, 3
           x(j) = self%inverse(j, 1)*b(1) + self%inverse(j, 2)*b(2) + self%inverse(j, 3)*b(3)
         end do
@@ -135,8 +135,8 @@ contains
       call dormqr('L', 'T', self%m, 1, k, self%a, self%m, self%tau, b, self%m, self%work, size(self%work), info)
     end if
     if (present(remainder)) remainder = norm2(b(rank + 1:self%m))
-    if (present(noise) .and. self%conditioning() < nearly_dependent) then
-      call substitute_above_noise(self, rank, noise, b)
+    if (present(round_off) .and. self%conditioning() < nearly_dependent) then
+      call substitute_above_round_off(self, rank, round_off, b)
     else
       call back_substitute(self%m, rank, self%a, self%reciprocal, b)
     end if
@@ -156,10 +156,10 @@ contains
   end subroutine copy
 
   !> R^-1 b in the first `rank` columns, with zeros for the unknowns that round-off alone can explain.
-  pure subroutine substitute_above_noise(self, rank, noise, b)
+  pure subroutine substitute_above_round_off(self, rank, round_off, b)
     class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
     integer, intent(in) :: rank                     !< columns that are used
-    real(wp), intent(in) :: noise                   !< error of x by round-off in a well determined column, in the unit of x
+    real(wp), intent(in) :: round_off                   !< error of x by round-off in a well determined column, in the unit of x
     real(wp), intent(inout) :: b(:)                 !< (m) Q^T b; the solution in its first `rank` numbers afterwards
     real(wp) :: s
     integer :: i, j
@@ -167,12 +167,12 @@ contains
     do j = rank, 1, -1
       b(j) = b(j)*self%reciprocal(j)
       s = self%lengths(j)/self%lengths(1)
-      if (s < nearly_dependent .and. abs(b(j))*s**2 <= noise) b(j) = 0.0_wp
+      if (s < nearly_dependent .and. abs(b(j))*s**2 <= round_off) b(j) = 0.0_wp
       do i = 1, j - 1
         b(i) = b(i) - self%a(i, j)*b(j)
       end do
     end do
-  end subroutine substitute_above_noise
+  end subroutine substitute_above_round_off
 
   !> Number of columns that are independent beyond round-off.
   pure integer function rank(self, tolerance)

@@ -1,4 +1,4 @@
-!> Taylor arithmetic, second part: comparisons, which look at values only.
+!> Taylor arithmetic, second part: comparisons, which compare values only.
 module mech9_taylor_comparison
   use mech9_kinds, only: wp
   use mech9_taylor_arithmetic, only: taylor

@@ -30,7 +30,7 @@ module mech9_integrator
     real(wp) :: last_step = 0.0_wp              !< length of the last step [s]
   end type integration_statistics_type
 
-  !> An integration under way. It must not be copied; `destroy` gives back what it holds.
+  !> An integration under way. It must not be copied; `destroy` frees its memory.
   type :: integrator_type
     private
     type(system_box_type), pointer :: box => null()
@@ -363,7 +363,7 @@ contains
                ' The motion becomes infinitely fast there, or comes to a position that it cannot pass')
   end subroutine explain_vanishing_step
 
-  !> Give back what the integration holds. An integrator can then be created again.
+  !> Free the memory of the integration. An integrator can then be created again.
   subroutine destroy(self)
     class(integrator_type), intent(inout) :: self   !< the integrator
 

@@ -99,7 +99,7 @@ module mech9_stepper
       type(stepper_counts_type), intent(out) :: counts   !< the counts since the creation
     end subroutine counts_interface
 
-    !> Give back what the method holds.
+    !> Free the memory of the method.
     subroutine close_interface(self)
       import :: stepper_type
       class(stepper_type), intent(inout) :: self   !< the method at work

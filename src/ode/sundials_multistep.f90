@@ -313,7 +313,7 @@ contains
     counts%last_order = int(order(1))
   end subroutine count_so_far
 
-  !> Give back all that SUNDIALS holds.
+  !> Free the memory of SUNDIALS.
   subroutine close_multistep(self)
     class(multistep_type), intent(inout) :: self   !< the method at work
     integer(c_int) :: flag

@@ -320,7 +320,7 @@ contains
     counts%last_order = self%order
   end subroutine count_so_far
 
-  !> Give back all that SUNDIALS holds.
+  !> Free the memory of SUNDIALS.
   subroutine close_runge_kutta(self)
     class(runge_kutta_type), intent(inout) :: self   !< the method at work
 

@@ -37,7 +37,7 @@ module mech9_memory_guard
     integer(c_long) function c_write(descriptor, bytes, count) bind(c, name='write')
       import :: c_int, c_long, c_size_t, c_char
       integer(c_int), value :: descriptor              !< an open file
-      character(kind=c_char), intent(in) :: bytes(*)   !< what is written
+      character(kind=c_char), intent(in) :: bytes(*)   !< the bytes to be written
       integer(c_size_t), value :: count                !< of the bytes
     end function c_write
 
@@ -68,7 +68,7 @@ contains
     if (.not. c_associated(memory) .and. count /= 0 .and. size /= 0) call end_program(count*size)
   end function guarded_calloc
 
-  !> The same memory with another size, perhaps elsewhere.
+  !> The same memory with another size, perhaps at another address.
   recursive function guarded_realloc(memory, size) result(moved) bind(c, name='realloc')
     type(c_ptr), value :: memory       !< as granted before; null: none
     integer(c_size_t), value :: size   !< [bytes]
@@ -80,7 +80,7 @@ contains
 
   !> Say that there is no memory, and end without any other work.
   recursive subroutine end_program(size)
-    integer(c_size_t), intent(in) :: size    !< that was asked for [bytes]
+    integer(c_size_t), intent(in) :: size   !< memory that was not granted [bytes]
     character(kind=c_char, len=len(beginning) + most_digits + len(ending)) :: words
     integer(c_size_t) :: rest
     integer(c_long) :: written

@@ -7,7 +7,7 @@ module mech9_driven_simulation
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_requested, only: requested_by_results, leave_out
+  use mech9_requested, only: requested_by_results, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, set_inputs
   use mech9_lagrange_types, only: dynamics_plan_type
   use mech9_dynamics_plan, only: make_dynamics_plan
@@ -63,7 +63,7 @@ contains
     simulation%mechanism = mechanism
     simulation%plan = plan
     simulation%requested = requested_by_results(mechanism, pictures)
-    call leave_out(simulation%plan, simulation%requested)
+    call leave_out_unrequested(simulation%plan, simulation%requested)
     simulation%assembled = assembled
     simulation%with_conditioning = mechanism%output%conditioning
     allocate (simulation%events(0))

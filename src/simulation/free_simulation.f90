@@ -9,7 +9,7 @@ module mech9_free_simulation
   use mech9_state, only: state_type
   use mech9_block_equations, only: largest_gap
   use mech9_planning, only: make_plan
-  use mech9_requested, only: requested_by_results, add_forces, leave_out, stay_with
+  use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested, request_planned
   use mech9_conditioning, only: conditioning_type
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_integrator, only: integration_statistics_type
@@ -88,8 +88,8 @@ contains
     simulation%requested = requested_by_results(mechanism, pictures)
     call add_forces(mechanism, simulation%requested)
     used = plan
-    call leave_out(used, simulation%requested)
-    call stay_with(used, simulation%requested)
+    call leave_out_unrequested(used, simulation%requested)
+    call request_planned(used, simulation%requested)
     allocate (simulation%motion%system)
     call set_motion_system(mechanism, used, assembled, simulation%motion%system, err)
     if (allocated(err)) then

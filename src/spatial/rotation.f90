@@ -5,7 +5,7 @@ module mech9_rotation
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, turn_on, rotation_vector, axial_vector, &
+  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, add_small_angle, rotation_vector, axial_vector, &
     quaternion
 
   !> The rotation by no angle.
@@ -81,7 +81,7 @@ contains
   end function unit
 
   !> Cosine and sine of an angle that grows by a small one, to second order.
-  pure subroutine turn_on(small, turned)
+  pure subroutine add_small_angle(small, turned)
     real(wp), intent(in) :: small          !< the angle added [rad]
     real(wp), intent(inout) :: turned(2)   !< cosine and sine
     real(wp) :: c, s
@@ -90,7 +90,7 @@ contains
     s = turned(2)
     turned(1) = c - small*(s + 0.5_wp*small*c)
     turned(2) = s + small*(c - 0.5_wp*small*s)
-  end subroutine turn_on
+  end subroutine add_small_angle
 
   !> Rotation by an angle [rad] about a unit axis (Rodrigues).
   pure function about_axis(axis, angle) result(r)

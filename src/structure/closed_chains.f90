@@ -316,7 +316,7 @@ contains
     end do
   end subroutine trace_out
 
-  !> From a link with another label on to the known links, each pair on a cheapest way there.
+  !> Continue the trail from a link with another label to the known links, each pair on a cheapest walk there.
   pure subroutine trace_home(self, graph, n)
     class(chain_search_type), intent(inout) :: self   !< the search
     type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism

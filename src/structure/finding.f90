@@ -1,4 +1,4 @@
-!> A finding tells what is wrong with structural data, and at which number.
+!> A finding describes an error in structural data, and tells the number that is wrong.
 !>
 !> Checks of data collect findings, so that a user sees all errors at once, and the reader of
 !> the data file can point at the very number.
@@ -11,7 +11,7 @@ module mech9_finding
 
   !> One error in structural data.
   type :: finding_type
-    character(len=:), allocatable :: message   !< what is wrong and what to do
+    character(len=:), allocatable :: message   !< error and remedy in words
     !> Name of the data: 'c', 'cq', 'nrg', 'nws', 'rdw', 'nrw' or 'links'.
     character(len=8) :: name = ''
     !> Place in these data: row and column of C; position in a vector and 0; for 'links' the coordinate of the
@@ -33,10 +33,10 @@ contains
 
   !> Note one more finding.
   pure subroutine add(self, name, index, message)
-    class(finding_list_type), intent(inout) :: self   !< the finding list
+    class(finding_list_type), intent(inout) :: self   !< the findings so far
     character(len=*), intent(in) :: name              !< see finding_type
     integer, intent(in) :: index(2)                   !< see finding_type
-    character(len=*), intent(in) :: message           !< what is wrong and what to do
+    character(len=*), intent(in) :: message           !< error and remedy in words
     type(finding_type), allocatable :: grown(:)
 
     if (.not. allocated(self%items)) allocate (self%items(4))
@@ -53,7 +53,7 @@ contains
 
   !> Move the findings into an array of the right size; the list is empty afterwards.
   pure subroutine hand_over(self, findings)
-    class(finding_list_type), intent(inout) :: self               !< the finding list
+    class(finding_list_type), intent(inout) :: self               !< the findings; none are left afterwards
     type(finding_type), allocatable, intent(out) :: findings(:)   !< the findings in the order in which they were noted
 
     allocate (findings(self%count))

@@ -116,7 +116,7 @@ contains
     integer, intent(in) :: known   !< the number known from elsewhere
     integer, intent(inout) :: count   !< the number taken from the vectors; the known one afterwards, if it is possible
     integer, intent(in) :: most                     !< as many as vectors of this length can hold
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
 
     if (known >= 1 .and. known <= most) then
       count = known
@@ -128,7 +128,7 @@ contains
   !> All vectors must be there and equally long; only nrw may be absent.
   pure subroutine check_sizes(vectors, list)
     type(structural_vectors_type), intent(inout) :: vectors   !< absent ones get size 0
-    type(finding_list_type), intent(inout) :: list            !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list            !< gets the findings
     integer :: n
 
     if (.not. allocated(vectors%nrg)) allocate (vectors%nrg(0))
@@ -148,7 +148,7 @@ contains
     character(len=*), intent(in) :: name             !< of the vector
     integer, intent(in) :: length                    !< its size
     integer, intent(in) :: n                         !< size of nrg
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
 
     if (length /= n) call list%add(name, [0, 0], name//' has '//to_text(length)//' numbers and nrg '// &
                                    to_text(n)//'; they must be equally long')
@@ -157,7 +157,7 @@ contains
   !> Note a wrong beginning of the vectors.
   pure subroutine check_head(vectors, list)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
-    type(finding_list_type), intent(inout) :: list         !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list         !< gets the findings
 
     if (vectors%nrg(1) /= 1) call list%add('nrg', [1, 0], 'nrg starts with '//to_text(vectors%nrg(1))// &
                                            ', but must start with 1, the frame')
@@ -171,7 +171,7 @@ contains
   pure subroutine walk(vectors, structure, list)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
     type(structure_type), intent(inout) :: structure       !< gets links and kinds of the coordinates
-    type(finding_list_type), intent(inout) :: list         !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list         !< gets the findings
     logical :: known(structure%n_links), used(structure%n_coordinates)
     logical :: may_go_on       ! false after a step that closed its chain
     integer :: i
@@ -206,7 +206,7 @@ contains
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
     logical, intent(in) :: known(:)   !< (N) links reached so far
     integer, intent(in) :: i                        !< a position with nws = 0
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
 
     if (.not. known(vectors%nrg(i))) &
       call list%add('nrg', [i, 0], 'a chain starts at link '//to_text(vectors%nrg(i))//' (position '//to_text(i)// &
@@ -224,7 +224,7 @@ contains
     type(structure_type), intent(inout) :: structure   !< gets links and kinds of the coordinates
     logical, intent(inout) :: used(:)               !< coordinates met so far
     integer, intent(in) :: i                        !< a position with nws /= 0
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
     integer :: k
 
     k = vectors%nws(i)
@@ -256,7 +256,7 @@ contains
   pure subroutine check_complete(known, used, list)
     logical, intent(in) :: known(:)                  !< (N) links that a chain reaches
     logical, intent(in) :: used(:)                   !< (M) coordinates that stand in nws
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
     integer, allocatable :: missing(:)
     integer :: i
 
@@ -269,7 +269,7 @@ contains
   !> Note numbers of rdw that are neither 0 nor 1, and starts of chains that are not 1.
   pure subroutine check_kinds(vectors, list)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
-    type(finding_list_type), intent(inout) :: list         !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list         !< gets the findings
     integer :: i
 
     do i = 1, size(vectors%rdw)
@@ -285,7 +285,7 @@ contains
   !> Note wrong numbers of nrw. A number that is wrong only because an earlier one is wrong is not noted.
   pure subroutine check_closures(vectors, list)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
-    type(finding_list_type), intent(inout) :: list         !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list         !< gets the findings
     integer :: right(size(vectors%nrg)), i
 
     right = closure_numbers(vectors)

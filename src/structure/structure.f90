@@ -91,7 +91,7 @@ contains
     integer, intent(in) :: n_links                   !< N
     integer, intent(in) :: n_coordinates             !< M
     character(len=*), intent(in) :: name             !< name of the data for the finding: 'links' or 'c'
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
 
     if (n_links < 2) call list%add(name, [0, 0], 'a mechanism has at least two links (link 1 is the frame), not '// &
                                    to_text(n_links))
@@ -102,7 +102,7 @@ contains
   pure subroutine check_link_numbers(n_links, links, list)
     integer, intent(in) :: n_links                   !< N
     integer, intent(in) :: links(:, :)               !< (2,M) links of pair k in column k
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
     integer :: i, k
 
     do k = 1, size(links, 2)
@@ -123,7 +123,7 @@ contains
     integer, intent(in) :: n_links                   !< N
     integer, intent(in) :: links(:, :)               !< (2,M) links of pair k in column k
     character(len=*), intent(in) :: name             !< name of the data for the finding: 'links' or 'c'
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
     integer, allocatable :: group(:), apart(:)
     integer :: i, k, a, b
 
@@ -173,7 +173,7 @@ contains
   !> Note numbers on the diagonal of C.
   pure subroutine check_diagonal(c, list)
     integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
     integer :: i
 
     do i = 1, size(c, 1)
@@ -185,7 +185,7 @@ contains
   !> Note numbers of C that differ from those on the other side of the diagonal.
   pure subroutine check_symmetry(c, list)
     integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
     integer :: i, j
 
     do i = 2, size(c, 1)
@@ -197,11 +197,11 @@ contains
   end subroutine check_symmetry
 
   !> Links of each coordinate, with findings for numbers out of range, repeated or missing.
-  !> Where C is not symmetric, a number counts as present but not as repeated: one fault, one finding.
+  !> Where C is not symmetric, a number counts as present but not as repeated, so that one error makes one finding.
   pure subroutine take_links(c, links, list)
     integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
     integer, intent(inout) :: links(:, :)            !< (2,M) zeros on entry
-    type(finding_list_type), intent(inout) :: list   !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list   !< gets the findings
     integer :: i, j, k, m
     logical :: present_in_c(size(links, 2))
     integer, allocatable :: missing(:)
@@ -257,7 +257,7 @@ contains
   pure subroutine take_independent(cq, structure, list)
     integer, intent(in) :: cq(:)                       !< independent coordinates
     type(structure_type), intent(inout) :: structure   !< gets the kinds of the coordinates
-    type(finding_list_type), intent(inout) :: list     !< collects what is wrong
+    type(finding_list_type), intent(inout) :: list     !< gets the findings
     integer :: i
 
     allocate (structure%independent(structure%n_coordinates), source=.false.)

@@ -14,9 +14,9 @@ module mech9_child_process
 
   !> How a program ended.
   type :: child_outcome_type
-    logical :: found = .false.              !< there is a program of that name, and it was started
-    integer :: code = 0                     !< its exit code; 128 + the signal's number where one ended it
-    character(len=:), allocatable :: said   !< beginning of what the program wrote to standard error
+    logical :: found = .false.                      !< there is a program of that name, and it was started
+    integer :: code = 0                             !< its exit code; 128 + the signal's number where one ended it
+    character(len=:), allocatable :: error_output   !< beginning of what the program wrote to standard error
   end type child_outcome_type
 
   integer(c_int), parameter :: standard_input = 0, standard_output = 1, standard_error = 2
@@ -29,7 +29,7 @@ module mech9_child_process
   !> A file in memory that a started program does not see (MFD_CLOEXEC).
   integer(c_int), parameter :: closed_by_exec = 1
   !> Bytes of its standard error that are kept.
-  integer, parameter :: most_said = 4096
+  integer, parameter :: most_error_output = 4096
 
   interface
     ! the process calls of POSIX: pid_t is a C int on Linux
@@ -91,7 +91,7 @@ module mech9_child_process
     integer(c_long) function c_pwrite(descriptor, bytes, count, place) bind(c, name='pwrite')
       import :: c_int, c_long, c_size_t, c_char
       integer(c_int), value :: descriptor              !< an open file
-      character(kind=c_char), intent(in) :: bytes(*)   !< what is written
+      character(kind=c_char), intent(in) :: bytes(*)   !< the bytes to be written
       integer(c_size_t), value :: count                !< of the bytes
       integer(c_long), value :: place                  !< offset of the first byte in the file
     end function c_pwrite
@@ -99,7 +99,7 @@ module mech9_child_process
     integer(c_long) function c_pread(descriptor, bytes, count, place) bind(c, name='pread')
       import :: c_int, c_long, c_size_t, c_char
       integer(c_int), value :: descriptor               !< an open file
-      character(kind=c_char), intent(out) :: bytes(*)   !< what was read
+      character(kind=c_char), intent(out) :: bytes(*)   !< the bytes read
       integer(c_size_t), value :: count                 !< of the bytes
       integer(c_long), value :: place                   !< offset of the first byte in the file
     end function c_pread
@@ -112,20 +112,20 @@ contains
   !> unless it is dropped.
   subroutine run_child(words, input, outcome, err, folder, drop_output)
     type(string_type), intent(in) :: words(:)           !< the program, looked for in PATH, and its arguments
-    character(len=*), intent(in) :: input               !< what it reads from standard input
+    character(len=*), intent(in) :: input               !< contents of its standard input
     type(child_outcome_type), intent(out) :: outcome    !< how the program ended
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=*), intent(in), optional :: folder    !< where it works; here unless given
     logical, intent(in), optional :: drop_output        !< nobody sees its standard output
     integer(c_int) :: from, to, drop, failure, process, status, ignored
 
-    outcome%said = ''
+    outcome%error_output = ''
     drop = standard_output
     if (present(drop_output)) then
       if (drop_output) drop = c_memfd_create('dropped'//c_null_char, 0_c_int)
     end if
     from = c_memfd_create('input'//c_null_char, 0_c_int)
-    to = c_memfd_create('said'//c_null_char, 0_c_int)
+    to = c_memfd_create('errors'//c_null_char, 0_c_int)
     failure = c_memfd_create('failure'//c_null_char, closed_by_exec)
     process = -1
     if (min(from, to, drop, failure) >= 0) then
@@ -139,7 +139,7 @@ contains
         if (error_number() /= interrupted_call) exit
       end do
       call judge(status, outcome)
-      call read_back(to, outcome%said)
+      call read_back(to, outcome%error_output)
       call judge_start(words(1)%text, failure, outcome, err)
     end if
     if (from >= 0) ignored = c_close(from)
@@ -262,12 +262,12 @@ contains
 
   !> The beginning of what the program wrote to standard error.
   subroutine read_back(descriptor, text)
-    integer(c_int), intent(in) :: descriptor             !< file with what the child said
+    integer(c_int), intent(in) :: descriptor             !< file with the child's standard error
     character(len=:), allocatable, intent(out) :: text   !< the beginning of its contents
-    character(len=most_said) :: buffer
+    character(len=most_error_output) :: buffer
     integer(c_long) :: count
 
-    count = c_pread(descriptor, buffer, int(most_said, c_size_t), 0_c_long)
+    count = c_pread(descriptor, buffer, int(most_error_output, c_size_t), 0_c_long)
     text = trim(buffer(:max(int(count), 0)))
   end subroutine read_back
 end module mech9_child_process

@@ -22,7 +22,7 @@ module mech9_file_bytes
 
     integer(c_size_t) function c_fread(bytes, length, count, stream) bind(c, name='fread')
       import :: c_size_t, c_char, c_ptr
-      character(kind=c_char), intent(inout) :: bytes(*)   !< what was read
+      character(kind=c_char), intent(inout) :: bytes(*)   !< the bytes read
       integer(c_size_t), value :: length                  !< of one element [bytes]
       integer(c_size_t), value :: count                   !< number of elements
       type(c_ptr), value :: stream                        !< an open file

@@ -30,7 +30,7 @@ module mech9_replacement
     integer(c_int) function c_access(path, mode) bind(c, name='access')
       import :: c_int, c_char
       character(kind=c_char), intent(in) :: path(*)   !< of the file or folder; ends with a byte of zero
-      integer(c_int), value :: mode                   !< sum of what is asked: may_write, may_search
+      integer(c_int), value :: mode                   !< the questions: sum of may_write and may_search
     end function c_access
 
     type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')

@@ -64,7 +64,7 @@ module mech9_same_file
       integer(c_int), value :: flags                  !< 0 or empty_path
       integer(c_int), value :: asked                  !< bits of the facts that are wanted
       character(kind=c_char), intent(in) :: path(*)   !< of the file; ends with a byte of zero
-      type(facts_type), intent(out) :: facts          !< what the system tells
+      type(facts_type), intent(out) :: facts          !< the facts that the system tells
     end function c_statx
   end interface
 
@@ -137,7 +137,7 @@ contains
     integer(c_int), intent(in) :: folder            !< of statx: from_here, or the number of an open file
     integer(c_int), intent(in) :: flags             !< of statx: 0, or empty_path for the open file itself
     character(len=*), intent(in) :: path            !< of the file; empty for an open file
-    type(file_place_type), intent(inout) :: place   !< gets what the system tells; unchanged where there is no file
+    type(file_place_type), intent(inout) :: place   !< gets the facts; unchanged where there is no file
     type(facts_type) :: facts
 
     if (c_statx(folder, path//c_null_char, flags, basic_facts, facts) /= 0) return

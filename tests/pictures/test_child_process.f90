@@ -50,10 +50,10 @@ contains
     call run_shell('kill -9 $$', '', '', outcome, err)
     call tester%is_true(outcome%found .and. outcome%code == 128 + 9, 'the signal that ended it')
     call run_shell('pwd >&2', '', '', outcome, err, folder='/')
-    call tester%is_true(outcome%said(1:1) == '/' .and. outcome%code == 0, 'the folder it works in')
+    call tester%is_true(outcome%error_output(1:1) == '/' .and. outcome%code == 0, 'the folder it works in')
     words(1)%text = 'true'
     call run_child(words, '', outcome, err)
-    call tester%is_true(outcome%found .and. outcome%code == 0 .and. outcome%said == '', 'true is true')
+    call tester%is_true(outcome%found .and. outcome%code == 0 .and. outcome%error_output == '', 'true is true')
     words(1)%text = 'no such program; true'
     call run_child(words, '', outcome, err)
     call tester%no_error(err, 'a program that is not there is no error')
@@ -89,9 +89,9 @@ contains
     character(len=*), parameter :: hostile = '`exit 1`; $(exit 1) "''\ *'//achar(10)//'| & < > #'
 
     call run_shell('printf %s "$1" >&2', hostile, '', outcome, err)
-    call tester%is_true(outcome%said == hostile, 'a word full of signs arrives as it is')
+    call tester%is_true(outcome%error_output == hostile, 'a word full of signs arrives as it is')
     call run_shell('printf "<%s>" "$1" >&2', '', '', outcome, err)
-    call tester%is_true(outcome%said == '<>', 'an empty word too')
+    call tester%is_true(outcome%error_output == '<>', 'an empty word too')
   end subroutine test_words
 
   !> More than a pipe holds goes in, and more than a pipe holds is said: nothing blocks.
@@ -102,9 +102,9 @@ contains
 
     call run_shell('cat >&2; cat | wc -c >&2', '', repeat('0123456789', 100000), outcome, err)
     call tester%no_error(err, 'a million bytes')
-    call tester%is_true(outcome%said == repeat('0123456789', 409)//'012345', 'the beginning of what it said')
+    call tester%is_true(outcome%error_output == repeat('0123456789', 409)//'012345', 'the beginning of what it said')
     call run_shell('wc -c >&2', '', repeat('0123456789', 100000), outcome, err)
-    call tester%is_true(verify(outcome%said, ' 1000000'//achar(10)) == 0 .and. index(outcome%said, '1000000') > 0, &
+    call tester%is_true(verify(outcome%error_output, ' 1000000'//achar(10)) == 0 .and. index(outcome%error_output, '1000000') > 0, &
                         'all of the input arrives')
   end subroutine test_much_input
 
@@ -118,8 +118,8 @@ contains
 
     call run_shell(script, '', repeat('0123456789', 100000), outcome, err, drop_output=.true.)
     call tester%no_error(err, 'dropped output')
-    call tester%is_true(index(outcome%said, 'other') > 0, 'dropped output is not that of this program')
+    call tester%is_true(index(outcome%error_output, 'other') > 0, 'dropped output is not that of this program')
     call run_shell(script, '', '', outcome, err)
-    call tester%is_true(index(outcome%said, 'same') > 0, 'output that is not dropped is')
+    call tester%is_true(index(outcome%error_output, 'same') > 0, 'output that is not dropped is')
   end subroutine test_dropped_output
 end program test_child_process

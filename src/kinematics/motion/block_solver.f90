@@ -6,7 +6,7 @@ module mech9_block_solver
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
-  use mech9_frame_motion, only: place_frames, nudge_frames, spread_velocities, spread_accelerations
+  use mech9_frame_motion, only: place_frames, place_frames_after_change, spread_velocities, spread_accelerations
   use mech9_block_equations, only: block_jacobian, block_rates, block_residual
   implicit none
   private
@@ -112,7 +112,7 @@ contains
       else
         work%count%frames_placed = work%count%frames_placed + steps_of(block)
         if (size_of_change <= small_turn) then
-          call nudge_frames(plan, block, work%change, state, err)
+          call place_frames_after_change(plan, block, work%change, state, err)
         else
           call place_frames(plan, block, state, err)
         end if

@@ -6,7 +6,7 @@ module mech9_frame_motion
   use mech9_state, only: state_type
   implicit none
   private
-  public :: place_frames, nudge_frames, spread_velocities, spread_accelerations, place_all, spread_all_velocities, &
+  public :: place_frames, place_frames_after_change, spread_velocities, spread_accelerations, place_all, spread_all_velocities, &
     spread_all_accelerations, link_motion, point_motion, step_screw
 
 contains
@@ -23,16 +23,16 @@ contains
   end subroutine place_frames
 
   !> The same after a small change of the block's unknowns: their angles are turned on, not computed anew.
-  subroutine nudge_frames(plan, block, change, state, err)
+  subroutine place_frames_after_change(plan, block, change, state, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     real(wp), intent(in) :: change(:)             !< (unknowns) of the coordinates, in units of these
     type(state_type), intent(inout) :: state      !< its coordinates are changed already
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call plan%arithmetics(block%arithmetic)%kind%nudge(plan, block%first_step, block%last_step, block%unknowns, change, &
-                                                       state, err)
-  end subroutine nudge_frames
+    call plan%arithmetics(block%arithmetic)%kind%place_after_change(plan, block%first_step, block%last_step, block%unknowns, &
+                                                                    change, state, err)
+  end subroutine place_frames_after_change
 
   !> Velocities of a block's frames from the rates in `state`.
   pure subroutine spread_velocities(plan, block, state)

@@ -4,7 +4,7 @@ module mech9_planar_arithmetic
   use mech9_error, only: error_type
   use mech9_pose, only: transformed
   use mech9_plan, only: plan_type, arithmetic_type
-  use mech9_planar_motion, only: new_planar_motion, place_in_plane, nudge_in_plane, planar_velocities, planar_accelerations, &
+  use mech9_planar_motion, only: new_planar_motion, place_in_plane, change_in_plane, planar_velocities, planar_accelerations, &
     to_space
   use mech9_state, only: state_type
   implicit none
@@ -16,7 +16,7 @@ module mech9_planar_arithmetic
   contains
     procedure, nopass :: make_frames
     procedure, nopass :: place
-    procedure, nopass :: nudge
+    procedure, nopass :: place_after_change
     procedure, nopass :: spread_velocities
     procedure, nopass :: spread_accelerations
     procedure, nopass :: link_motion
@@ -46,7 +46,7 @@ contains
   end subroutine place
 
   !> The same after a small change of the coordinates of some steps.
-  subroutine nudge(plan, first, last, changed, change, state, err)
+  subroutine place_after_change(plan, first, last, changed, change, state, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
@@ -55,8 +55,8 @@ contains
     type(state_type), intent(inout) :: state      !< its coordinates are changed already
     type(error_type), allocatable, intent(out) :: err   !< never allocated
 
-    call nudge_in_plane(plan%planar, first, last, changed, change, state%q, state%planar)
-  end subroutine nudge
+    call change_in_plane(plan%planar, first, last, changed, change, state%q, state%planar)
+  end subroutine place_after_change
 
   !> Velocities of frames from the rates in `state`.
   pure subroutine spread_velocities(plan, first, last, state)

@@ -5,13 +5,13 @@
 module mech9_planar_motion
   use mech9_kinds, only: wp
   use mech9_sine_cosine, only: cosines_and_sines
-  use mech9_rotation, only: turn_on
+  use mech9_rotation, only: add_small_angle
   use mech9_planar_plan, only: planar_plan_type, planar_step_type
   use mech9_state, only: planar_motion_type
   use mech9_planar_formulas, only: step_velocity, step_acceleration
   implicit none
   private
-  public :: new_planar_motion, place_in_plane, nudge_in_plane, planar_velocities, planar_accelerations, &
+  public :: new_planar_motion, place_in_plane, change_in_plane, planar_velocities, planar_accelerations, &
     find_accelerations, to_space, to_plane
 
 contains
@@ -40,7 +40,7 @@ contains
   end subroutine place_in_plane
 
   !> The same after a small change of some coordinates: their angles are turned on, not computed anew.
-  pure subroutine nudge_in_plane(planar, first, last, changed, change, q, motion)
+  pure subroutine change_in_plane(planar, first, last, changed, change, q, motion)
     type(planar_plan_type), intent(in) :: planar
     integer, intent(in) :: first, last
     integer, intent(in) :: changed(:)             !< steps
@@ -51,10 +51,10 @@ contains
 
     do i = 1, size(changed)
       if (planar%steps(changed(i))%turns) &
-        call turn_on(planar%steps(changed(i))%turn*change(i), motion%turn(:, changed(i)))
+        call add_small_angle(planar%steps(changed(i))%turn*change(i), motion%turn(:, changed(i)))
     end do
     call place(size(q), planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
-  end subroutine nudge_in_plane
+  end subroutine change_in_plane
 
   ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
 
@@ -155,7 +155,7 @@ contains
     real(wp), intent(in) :: x, y, z
     real(wp) :: vector(3)
 
-    if (planar%upright) then
+    if (planar%in_xy_plane) then
       vector(1) = x
       vector(2) = y
       vector(3) = z
@@ -171,6 +171,6 @@ contains
     real(wp) :: seen(3)
 
     seen = vector
-    if (.not. planar%upright) seen = matmul(vector, planar%axes)
+    if (.not. planar%in_xy_plane) seen = matmul(vector, planar%axes)
   end function to_plane
 end module mech9_planar_motion

@@ -3,7 +3,7 @@ module mech9_spatial_arithmetic
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_sine_cosine, only: cosines_and_sines
-  use mech9_rotation, only: turn, combine, cross, turn_on
+  use mech9_rotation, only: turn, combine, cross, add_small_angle
   use mech9_pose, only: transformed
   use mech9_pair, only: pair_motion_type, reversed_motion
   use mech9_plan, only: plan_type, step_type, arithmetic_type
@@ -17,7 +17,7 @@ module mech9_spatial_arithmetic
   contains
     procedure, nopass :: make_frames
     procedure, nopass :: place
-    procedure, nopass :: nudge
+    procedure, nopass :: place_after_change
     procedure, nopass :: spread_velocities
     procedure, nopass :: spread_accelerations
     procedure, nopass :: link_motion
@@ -61,7 +61,7 @@ contains
   end subroutine place
 
   !> The same after a small change of the coordinates of some steps.
-  subroutine nudge(plan, first, last, changed, change, state, err)
+  subroutine place_after_change(plan, first, last, changed, change, state, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: first                  !< frames from this one
     integer, intent(in) :: last                   !< to this one
@@ -74,11 +74,11 @@ contains
     do i = 1, size(changed)
       associate (step => plan%steps(changed(i)))
         if (abs(step%turn) > 0.0_wp) &
-          call turn_on(step%turn*change(i)*plan%unit_of(step%coordinate), state%turn(:, changed(i)))
+          call add_small_angle(step%turn*change(i)*plan%unit_of(step%coordinate), state%turn(:, changed(i)))
       end associate
     end do
     call compose_frames(plan, first, last, state, err)
-  end subroutine nudge
+  end subroutine place_after_change
 
   !> Poses of frames from the cosines and sines of their steps.
   subroutine compose_frames(plan, first, last, state, err)

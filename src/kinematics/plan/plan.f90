@@ -52,7 +52,7 @@ module mech9_plan
     integer :: base = 0            !< frame in which the loop starts, the last that the paths to both ends have in common
     integer :: rank = 6            !< number of equations, the dimension of the space of motions of the loop
     !> Number of equations that are independent while the loop moves; less than `rank` where it is overconstrained.
-    integer :: offers = 6
+    integer :: independent_equations = 6
     !> Rows that select the equations from a screw (w, v/length) at the base frame's origin,
     !> in its axes: orthonormal, constant. Only the first `rank` count.
     real(wp) :: rows(6, 6) = 0.0_wp
@@ -78,14 +78,14 @@ module mech9_plan
   !> An arithmetic for the poses, velocities and accelerations of the frames of a block. It has no data of its own.
   type, abstract :: arithmetic_type
   contains
-    procedure(frames_maker), deferred, nopass :: make_frames
-    procedure(placing), deferred, nopass :: place
-    procedure(nudging), deferred, nopass :: nudge
-    procedure(spreading), deferred, nopass :: spread_velocities
-    procedure(spreading), deferred, nopass :: spread_accelerations
-    procedure(link_reader), deferred, nopass :: link_motion
-    procedure(point_reader), deferred, nopass :: point_motion
-    procedure(screw_reader), deferred, nopass :: step_screw
+    procedure(make_frames_interface), deferred, nopass :: make_frames
+    procedure(place_interface), deferred, nopass :: place
+    procedure(change_interface), deferred, nopass :: place_after_change
+    procedure(spread_interface), deferred, nopass :: spread_velocities
+    procedure(spread_interface), deferred, nopass :: spread_accelerations
+    procedure(link_motion_interface), deferred, nopass :: link_motion
+    procedure(point_motion_interface), deferred, nopass :: point_motion
+    procedure(step_screw_interface), deferred, nopass :: step_screw
   end type arithmetic_type
 
   !> One of several arithmetics.
@@ -97,11 +97,11 @@ module mech9_plan
   type, abstract :: constraint_type
     integer :: equations = 0   !< their number
   contains
-    procedure(residual_of), deferred :: residual
-    procedure(jacobian_of), deferred :: jacobian
-    procedure(column_of_step), deferred :: column
-    procedure(rates_of), deferred :: rates
-    procedure(gap_of), deferred :: gap
+    procedure(residual_interface), deferred :: residual
+    procedure(jacobian_interface), deferred :: jacobian
+    procedure(column_interface), deferred :: column
+    procedure(rates_interface), deferred :: rates
+    procedure(gap_interface), deferred :: gap
   end type constraint_type
 
   !> One of several constraints.
@@ -133,26 +133,26 @@ module mech9_plan
   abstract interface
 
     !> Room in a state for frames 0 .. m, all in the place of frame 0 and at rest.
-    pure subroutine frames_maker(m, state)
+    pure subroutine make_frames_interface(m, state)
       import :: state_type
       integer, intent(in) :: m                   !< steps
       type(state_type), intent(inout) :: state   !< gets room for the frames
-    end subroutine frames_maker
+    end subroutine make_frames_interface
 
     !> Poses of frames and the screws of their steps, from the coordinates in `state`. The frames that they start from must
     !> be in place. Fails only where a user pair has no pose.
-    subroutine placing(plan, first, last, state, err)
+    subroutine place_interface(plan, first, last, state, err)
       import :: plan_type, state_type, error_type
       type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
       integer, intent(in) :: first                        !< frames from this one
       integer, intent(in) :: last                         !< to this one
       type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of these frames out
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    end subroutine placing
+    end subroutine place_interface
 
     !> Poses of frames after a small change of the coordinates of some steps. The cosines and sines of their angles are
     !> corrected to second order and not computed anew.
-    subroutine nudging(plan, first, last, changed, change, state, err)
+    subroutine change_interface(plan, first, last, changed, change, state, err)
       import :: plan_type, state_type, error_type, wp
       type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
       integer, intent(in) :: first                        !< frames from this one
@@ -161,19 +161,19 @@ module mech9_plan
       real(wp), intent(in) :: change(:)                   !< of their coordinates, in units of these
       type(state_type), intent(inout) :: state            !< its coordinates are changed already
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    end subroutine nudging
+    end subroutine change_interface
 
     !> Velocities, or accelerations, of frames from those of the coordinates in `state`.
-    pure subroutine spreading(plan, first, last, state)
+    pure subroutine spread_interface(plan, first, last, state)
       import :: plan_type, state_type
       type(plan_type), intent(in) :: plan        !< the plan of the mechanism
       integer, intent(in) :: first               !< frames from this one
       integer, intent(in) :: last                !< to this one
       type(state_type), intent(inout) :: state   !< coordinates and their rates in; the motion of these frames out
-    end subroutine spreading
+    end subroutine spread_interface
 
     !> A link's own system, its angular velocity and the velocity of its origin, in the system of link 1.
-    pure subroutine link_reader(plan, state, link, r, p, omega, v)
+    pure subroutine link_motion_interface(plan, state, link, r, p, omega, v)
       import :: plan_type, state_type, wp
       type(plan_type), intent(in) :: plan     !< the plan of the mechanism
       type(state_type), intent(in) :: state   !< with the motion of the frames
@@ -182,10 +182,10 @@ module mech9_plan
       real(wp), intent(out) :: p(3)           !< origin [m]
       real(wp), intent(out) :: omega(3)       !< [rad/s]
       real(wp), intent(out) :: v(3)           !< of the origin [m/s]
-    end subroutine link_reader
+    end subroutine link_motion_interface
 
     !> Position, velocity and acceleration of a point of a link, in the system of link 1.
-    pure subroutine point_reader(plan, state, link, place, position, velocity, acceleration)
+    pure subroutine point_motion_interface(plan, state, link, place, position, velocity, acceleration)
       import :: plan_type, state_type, wp
       type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
       type(state_type), intent(in) :: state                !< with the motion of the frames
@@ -194,11 +194,11 @@ module mech9_plan
       real(wp), intent(out) :: position(3)                 !< [m]
       real(wp), intent(out), optional :: velocity(3)       !< [m/s]
       real(wp), intent(out), optional :: acceleration(3)   !< [m/s^2]
-    end subroutine point_reader
+    end subroutine point_motion_interface
 
     !> The angular velocity and the velocity of the new frame's origin that a step gives per unit rate, and the position of
     !> this origin, in the axes of frame 0, from its origin.
-    pure subroutine screw_reader(plan, state, s, w, v, place)
+    pure subroutine step_screw_interface(plan, state, s, w, v, place)
       import :: plan_type, state_type, wp
       type(plan_type), intent(in) :: plan     !< the plan of the mechanism
       type(state_type), intent(in) :: state   !< with the motion of the frames
@@ -206,20 +206,20 @@ module mech9_plan
       real(wp), intent(out) :: w(3)           !< [rad per unit of q]
       real(wp), intent(out) :: v(3)           !< [m per unit of q]
       real(wp), intent(out) :: place(3)       !< [m]
-    end subroutine screw_reader
+    end subroutine step_screw_interface
 
     !> The residual of the equations at the position in `state`: rad, parts of plan%length.
-    pure subroutine residual_of(self, plan, state, values)
+    pure subroutine residual_interface(self, plan, state, values)
       import :: constraint_type, plan_type, state_type, wp
       class(constraint_type), intent(in) :: self       !< the constraint
       type(plan_type), intent(in) :: plan              !< the plan of the mechanism
       type(state_type), intent(in) :: state            !< with the position of the frames
       real(wp), intent(out), contiguous :: values(:)   !< (equations)
-    end subroutine residual_of
+    end subroutine residual_interface
 
     !> Derivatives of the equations with respect to the coordinates of steps of a loop, each in its unit, into the rows from
     !> `row` + 1 on. Columns of other coordinates are left as they are.
-    pure subroutine jacobian_of(self, plan, loop, first, column_of, state, row, matrix)
+    pure subroutine jacobian_interface(self, plan, loop, first, column_of, state, row, matrix)
       import :: constraint_type, plan_type, loop_type, state_type, wp
       class(constraint_type), intent(in) :: self            !< the constraint
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
@@ -229,10 +229,10 @@ module mech9_plan
       type(state_type), intent(in) :: state                 !< with the position of the frames
       integer, intent(in) :: row                            !< number of rows of `matrix` before those of this constraint
       real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of all constraints of the block
-    end subroutine jacobian_of
+    end subroutine jacobian_interface
 
     !> Derivatives of the equations with respect to the coordinate of one step, in its unit.
-    pure subroutine column_of_step(self, plan, s, sign, state, values)
+    pure subroutine column_interface(self, plan, s, sign, state, values)
       import :: constraint_type, plan_type, state_type, wp
       class(constraint_type), intent(in) :: self       !< the constraint
       type(plan_type), intent(in) :: plan              !< the plan of the mechanism
@@ -240,26 +240,26 @@ module mech9_plan
       real(wp), intent(in) :: sign                     !< of the step in the loop
       type(state_type), intent(in) :: state            !< with the position of the frames
       real(wp), intent(out), contiguous :: values(:)   !< (equations)
-    end subroutine column_of_step
+    end subroutine column_interface
 
     !> First or second time derivatives of the residual at the rates, or rates and accelerations, in `state`.
-    pure subroutine rates_of(self, plan, order, state, values)
+    pure subroutine rates_interface(self, plan, order, state, values)
       import :: constraint_type, plan_type, state_type, wp
       class(constraint_type), intent(in) :: self       !< the constraint
       type(plan_type), intent(in) :: plan              !< the plan of the mechanism
       integer, intent(in) :: order                     !< 1 or 2
       type(state_type), intent(in) :: state            !< with the velocities, or velocities and accelerations, of the frames
       real(wp), intent(out), contiguous :: values(:)   !< (equations)
-    end subroutine rates_of
+    end subroutine rates_interface
 
     !> The residual of all equations, redundant ones included, as a length [m]; rotations are multiplied by the
     !> mechanism's size.
-    pure real(wp) function gap_of(self, plan, state)
+    pure real(wp) function gap_interface(self, plan, state)
       import :: constraint_type, plan_type, state_type, wp
       class(constraint_type), intent(in) :: self   !< the constraint
       type(plan_type), intent(in) :: plan          !< the plan of the mechanism
       type(state_type), intent(in) :: state        !< with the position of the frames
-    end function gap_of
+    end function gap_interface
   end interface
 
 contains

@@ -36,7 +36,7 @@ module mech9_planar_plan
     logical :: used = .false.                          !< planar arithmetic can be used
     character(len=:), allocatable :: why_not           !< the reason in words, where it cannot
     real(wp) :: axes(3, 3) = identity                  !< turns components in the plane's axes into those of frame 0
-    logical :: upright = .true.                        !< the plane's axes are those of frame 0
+    logical :: in_xy_plane = .true.                        !< the plane's axes are those of frame 0
     real(wp) :: length = 1.0_wp                        !< the mechanism's size [m]
     type(planar_step_type), allocatable :: steps(:)    !< (M)
     type(planar_closure_type), allocatable :: closures(:)   !< in the order of those of the plan

@@ -4,7 +4,7 @@ module mech9_requested
   use mech9_plan, only: plan_type, block_type
   implicit none
   private
-  public :: requested_type, requested_by_results, add_forces, needed_blocks, leave_out, stay_with
+  public :: requested_type, requested_by_results, add_forces, requested_blocks, leave_out_unrequested, request_planned
 
   !> The requested part of the motion.
   type :: requested_type
@@ -49,7 +49,7 @@ contains
   end subroutine add_forces
 
   !> The blocks on which a requested coordinate or link depends.
-  pure function needed_blocks(plan, requested) result(needed)
+  pure function requested_blocks(plan, requested) result(needed)
     type(plan_type), intent(in) :: plan             !< the plan of the mechanism
     type(requested_type), intent(in) :: requested   !< the requested coordinates and links
     logical :: needed(size(plan%blocks))
@@ -60,21 +60,21 @@ contains
     do b = size(plan%blocks), 1, -1
       associate (block => plan%blocks(b))
         needed(b) = any(frames(block%first_step:block%last_step)) .or. any(requested%coordinates(block%coordinates))
-        if (needed(b)) call mark_departures(plan, block, frames)
+        if (needed(b)) call mark_outer_frames(plan, block, frames)
       end associate
     end do
-  end function needed_blocks
+  end function requested_blocks
 
   !> Leave out the blocks on which no requested coordinate or link depends, and the accelerations of frames that are used
   !> in their own block only. The chains of blocks left out are not computed, so that their singular positions go unnoticed.
-  pure subroutine leave_out(plan, requested)
+  pure subroutine leave_out_unrequested(plan, requested)
     type(plan_type), intent(inout) :: plan          !< the plan of the mechanism
     type(requested_type), intent(in) :: requested   !< the requested coordinates and links
     type(block_type), allocatable :: blocks(:)
     logical :: needed(size(plan%blocks)), frames(0:plan%n_coordinates)
     integer :: b, n
 
-    needed = needed_blocks(plan, requested)
+    needed = requested_blocks(plan, requested)
     allocate (blocks(count(needed)))
     n = 0
     do b = 1, size(needed)
@@ -91,14 +91,14 @@ contains
           if (frames(block%last_moved)) exit
           block%last_moved = block%last_moved - 1
         end do
-        call mark_departures(plan, block, frames)
+        call mark_outer_frames(plan, block, frames)
       end associate
     end do
-  end subroutine leave_out
+  end subroutine leave_out_unrequested
 
   !> Request from now on all coordinates that a plan computes. When other coordinates become independent, another plan may
   !> need the position of a chain, which would be unknown if the chain had been left out before.
-  pure subroutine stay_with(plan, requested)
+  pure subroutine request_planned(plan, requested)
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(requested_type), intent(inout) :: requested   !< the requested coordinates and links
     integer :: b
@@ -107,7 +107,7 @@ contains
     do b = 1, size(plan%blocks)
       requested%coordinates(plan%blocks(b)%coordinates) = .true.
     end do
-  end subroutine stay_with
+  end subroutine request_planned
 
   !> Mark the frames of some links.
   pure subroutine mark_links(plan, links, frames)
@@ -123,7 +123,7 @@ contains
   end subroutine mark_links
 
   !> Mark the frames of earlier blocks from which those of a block are computed.
-  pure subroutine mark_departures(plan, block, frames)
+  pure subroutine mark_outer_frames(plan, block, frames)
     type(plan_type), intent(in) :: plan     !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     logical, intent(inout) :: frames(0:)    !< (0:M) becomes true for frames of earlier blocks that the block uses
@@ -136,5 +136,5 @@ contains
       if (plan%closures(c)%target < block%first_step) frames(plan%closures(c)%target) = .true.
       if (plan%closures(c)%base < block%first_step) frames(plan%closures(c)%base) = .true.
     end do
-  end subroutine mark_departures
+  end subroutine mark_outer_frames
 end module mech9_requested

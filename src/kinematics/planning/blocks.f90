@@ -23,7 +23,7 @@ contains
     integer :: owner(plan%n_coordinates)                   ! chain that determines the coordinate of each step
     integer :: block_of_step(plan%n_coordinates), block_of_closure(size(plan%closures)), n_blocks, s
 
-    call match_chains(loops_of(plan), plan%closures%offers, owner)
+    call match_chains(loops_of(plan), plan%closures%independent_equations, owner)
     undetermined = pack(plan%steps%coordinate, plan%steps%dependent .and. owner == 0)
     if (size(undetermined) > 0) return
     call find_blocks(plan, owner, block_of_step, block_of_closure, n_blocks)

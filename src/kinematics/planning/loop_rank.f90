@@ -36,10 +36,10 @@ contains
 
     do c = 1, size(plan%closures)
       n = size(plan%closures(c)%loop%steps)
-      plan%closures(c)%offers = min(plan%closures(c)%rank, n)
+      plan%closures(c)%independent_equations = min(plan%closures(c)%rank, n)
       if (plan%closures(c)%rank <= never_overconstrained .or. n > longest_loop) cycle
       call find_rank_alone(loop_alone(plan, plan%closures(c)), &
-                           guess(plan%steps(plan%closures(c)%loop%steps)%coordinate), plan%closures(c)%offers)
+                           guess(plan%steps(plan%closures(c)%loop%steps)%coordinate), plan%closures(c)%independent_equations)
     end do
   end subroutine find_offers
 

@@ -82,9 +82,9 @@ contains
       normal = matmul(r, normal)
       f = plan%steps(f)%parent
     end do
-    planar%upright = norm2(normal(1:2)) <= round_off
+    planar%in_xy_plane = norm2(normal(1:2)) <= round_off
     fits = .true.
-    if (planar%upright) return
+    if (planar%in_xy_plane) return
     call pose_from_axis([0.0_wp, 0.0_wp, 0.0_wp], normal, default_zero(normal), frame, fits)
     planar%axes = frame%r
   end subroutine find_axes

@@ -10,7 +10,7 @@ module mech9_planning
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type, new_state
   use mech9_state, only: state_type
-  use mech9_requested, only: requested_type, leave_out
+  use mech9_requested, only: requested_type, leave_out_unrequested
   use mech9_spanning_tree, only: lay_out_frames
   use mech9_arithmetics, only: set_in_space, set_in_plane
   use mech9_planar_layout, only: lay_out_in_plane
@@ -65,7 +65,7 @@ contains
     call propose_blocks(plan, state, err)
     if (allocated(err)) return
     call set_in_space(plan)
-    if (present(requested)) call leave_out(plan, requested)
+    if (present(requested)) call leave_out_unrequested(plan, requested)
     spatial = .false.
     if (present(in_space)) spatial = in_space
     if (.not. spatial) then
@@ -81,7 +81,7 @@ contains
     ! a plan for other independent coordinates, made with `requested`, is one of a mechanism that moves
     if (.not. present(requested)) call check_motion(plan, state, err)
     if (allocated(err)) return
-    if (present(requested)) call leave_out(plan, requested)
+    if (present(requested)) call leave_out_unrequested(plan, requested)
     call find_constants(plan)
   end subroutine make_plan
 
@@ -97,7 +97,7 @@ contains
     call make_blocks(plan, undetermined)
     if (size(undetermined) > 0) then
       ! ranks found with a loop alone do not bind it in company: the dimensions of its motions do
-      plan%closures%offers = plan%closures%rank
+      plan%closures%independent_equations = plan%closures%rank
       call make_blocks(plan, undetermined)
     end if
     if (size(undetermined) > 0) then

@@ -104,7 +104,7 @@ contains
     if (.not. found) return
     if (present(picture)) call check_picture(picture, outcome%code /= 0, err)
     if (outcome%code /= 0 .and. .not. allocated(err)) &
-      call raise(err, exit_file, 'gnuplot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%said)))
+      call raise(err, exit_file, 'gnuplot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%error_output)))
   end subroutine run_gnuplot
 
   !> The picture must be one that can be written and was written to its end, since gnuplot does not notice that a disk is

@@ -84,7 +84,7 @@ contains
       said = 'graph: dot is not here; install Graphviz (Debian: apt-get install graphviz) and run: '// &
              'dot -T'//ending_of(path)//' -o '//path//' '//text_path
     else if (outcome%code /= 0) then
-      call raise(err, exit_file, 'dot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%said)))
+      call raise(err, exit_file, 'dot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%error_output)))
     end if
   end subroutine draw
 

@@ -5,7 +5,7 @@ module mech9_plan_text
   use mech9_screw, only: split_space
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type, closure_type
-  use mech9_requested, only: requested_type, needed_blocks
+  use mech9_requested, only: requested_type, requested_blocks
   use mech9_lagrange_types, only: dynamics_plan_type
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_structure_text, only: print_marked
@@ -28,7 +28,7 @@ contains
     integer :: b, i
 
     call print_arithmetic(unit, plan)
-    needed = needed_blocks(plan, requested)
+    needed = requested_blocks(plan, requested)
     do b = 1, size(plan%blocks)
       call print_block(unit, plan, plan%blocks(b), b, needed(b))
     end do
