@@ -9,7 +9,7 @@ module mech9_motion_system
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_state, only: state_type, acceleration_known
+  use mech9_state, only: state_type
   use mech9_block_solver, only: newton_outcome_type, close_block
   use mech9_planning, only: chain_names
   use mech9_ode_system, only: ode_system_type
@@ -238,7 +238,6 @@ contains
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
     call show_state(self%plan, self%dynamics, self%state, self%work%view)
-    self%state%known = acceleration_known
   end subroutine present
 
   !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.

@@ -3,13 +3,7 @@ module mech9_state
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: state_type, planar_motion_type, nothing_known, position_known, velocity_known, acceleration_known
-
-  !> Stages of a state: the quantities that belong to its present coordinates.
-  integer, parameter :: nothing_known = 0
-  integer, parameter :: position_known = 1
-  integer, parameter :: velocity_known = 2
-  integer, parameter :: acceleration_known = 3
+  public :: state_type, planar_motion_type
 
   !> The motion of frames in planar arithmetic: in the plane's axes, from the origin of frame 0. A pose is (cosine, sine, x, y); a
   !> velocity is the angular velocity about the normal and the velocity of the frame's origin, and accelerations alike.
@@ -27,7 +21,6 @@ module mech9_state
   !> the motion of the frames is in `planar` only, and the arrays for space are not allocated.
   type :: state_type
     real(wp) :: t = 0.0_wp                       !< time [s]
-    integer :: known = nothing_known             !< stage: the quantities that belong to the present coordinates
     real(wp), allocatable :: q(:)                !< (M) coordinates [rad, m]
     real(wp), allocatable :: dq(:)               !< (M) rates [rad/s, m/s]
     real(wp), allocatable :: ddq(:)              !< (M) accelerations [rad/s^2, m/s^2]

@@ -10,7 +10,7 @@ module mech9_branch_crossing
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type, acceleration_known
+  use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, apply_change
   use mech9_singularity_monitor, only: singularity_monitor_type, factorize_trial
   use mech9_branch_stepping, only: branch_stepper_type, accept_start, step_towards, set_inputs
@@ -251,7 +251,6 @@ contains
         end if
       end associate
     end do
-    state%known = acceleration_known
   end subroutine position_within
 
   !> Close a block as far as its equations determine it: the directions of the least pivots are left as predicted.

@@ -10,7 +10,7 @@ module mech9_branch_stepping
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_tree_paths, only: mark_path
-  use mech9_state, only: state_type, nothing_known, velocity_known, acceleration_known
+  use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
     solve_rates, solve_motion
   use mech9_predictor, only: predictor_type, new_predictor, begin_prediction, add_position, prepare_prediction, predict, &
@@ -54,6 +54,7 @@ module mech9_branch_stepping
     integer, allocatable :: drives(:)             !< numbers of the drives that move closed chains
     integer :: last_block = huge(1)               !< the blocks after this one are left as they are
     logical :: with_accelerations = .true.        !< find accelerations at every position, not only near singular ones
+    logical :: accelerations_found = .false.      !< those in the state belong to its position
     real(wp) :: reach = huge(1.0_wp)              !< length of a step that will probably be accepted [s]
     real(wp) :: goal = 0.0_wp                     !< time towards which the last step went [s]
     real(wp) :: correction = 0.0_wp               !< largest correction in the last trial step, in units of the coordinates
@@ -129,7 +130,7 @@ contains
   pure subroutine accept_start(stepper)
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
 
-    stepper%state%known = acceleration_known
+    stepper%accelerations_found = .true.
     call begin_prediction(stepper%state, stepper%predictor)
     call accept_jacobians(stepper%work, stepper%monitors)
   end subroutine accept_start
@@ -317,7 +318,7 @@ contains
     logical, intent(in) :: complete             !< the accelerations in the state are known
 
     stepper%steps = stepper%steps + 1
-    stepper%state%known = merge(acceleration_known, velocity_known, complete)
+    stepper%accelerations_found = complete
     call add_position(stepper%state, plan%unit_of, complete, stepper%correction, stepper%predictor)
     call accept_jacobians(stepper%work, stepper%monitors)
   end subroutine accept_step
@@ -328,11 +329,11 @@ contains
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     integer :: b
 
-    if (stepper%state%known == acceleration_known) return
+    if (stepper%accelerations_found) return
     do b = 1, min(size(plan%blocks), stepper%last_block)
       call solve_motion(plan, plan%blocks(b), stepper%state, stepper%work(b))
     end do
-    stepper%state%known = acceleration_known
+    stepper%accelerations_found = .true.
     call set_accelerations(stepper%state%ddq, stepper%predictor)
   end subroutine add_accelerations
 
@@ -344,6 +345,6 @@ contains
     stepper%state%q = stepper%predictor%q
     stepper%state%dq = stepper%predictor%dq
     stepper%state%ddq = stepper%predictor%ddq
-    stepper%state%known = nothing_known
+    stepper%accelerations_found = .false.
   end subroutine restore_last_position
 end module mech9_branch_stepping
