@@ -23,7 +23,7 @@ module mech9_motion_range
     real(wp) :: value = 0.0_wp                  !< the limit, or the value up to which the motion was tried [rad or m]
     integer :: block = 0                        !< number of the block at its dead point
     integer :: turns = 0                        !< number of turns after which the start is reached again
-    character(len=:), allocatable :: reason     !< reason why the motion cannot go on
+    type(error_type), allocatable :: failure    !< reason why the motion cannot go on
   end type end_type
 
   !> The range of a coordinate.
@@ -96,7 +96,7 @@ contains
     found%value = driven%state%q(coordinate)
     if (.not. allocated(err)) return
     found%kind = ends_otherwise
-    found%reason = err%message
+    found%failure = err
     if (driven%ahead%kind /= dead_point .or. .not. allocated(driven%limit)) return
     found%kind = ends_at_limit
     found%value = driven%limit(coordinate)

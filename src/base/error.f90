@@ -1,8 +1,10 @@
 !> Failures as values: a code, a message, and where it happened.
 !>
 !> A procedure that can fail has a last argument `type(error_type), allocatable, intent(out) :: err`;
-!> allocated means failed. Places are added on the way up. Only the programs end a run.
+!> allocated means failed. Places are added on the way up. Only the programs end a run. Numerics fail with
+!> numbers, from which `explain` of mech9_explanation forms the message before a user sees it.
 module mech9_error
+  use mech9_failure, only: failure_type, integration_stop_type
   implicit none
   private
   public :: error_type, place_type, raise, add_place
@@ -29,15 +31,22 @@ module mech9_error
 
   !> A failure: its kind, its message and its place.
   type :: error_type
-    integer :: code = exit_internal            !< kind of failure, one of the exit_ codes
-    character(len=:), allocatable :: message   !< error, place and remedy in words
-    type(place_type) :: place                  !< place in the data file; line 0 where none is known
+    integer :: code = exit_internal                       !< kind of failure, one of the exit_ codes
+    character(len=:), allocatable :: message              !< error, place and remedy in words
+    type(place_type) :: place                             !< place in the data file; line 0 where none is known
+    type(failure_type), allocatable :: failure            !< the failure as numbers, until its message is formed from them
+    type(integration_stop_type), allocatable :: stopped   !< the integration that it ended, until the message tells so
   end type error_type
+
+  !> Make a failure, from a message or as a kind with numbers.
+  interface raise
+    module procedure raise_message, raise_kind
+  end interface raise
 
 contains
 
-  !> Make a failure.
-  pure subroutine raise(err, code, message, place)
+  !> Make a failure that has a message.
+  pure subroutine raise_message(err, code, message, place)
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer, intent(in) :: code                         !< one of the exit_ codes
     character(len=*), intent(in) :: message             !< error and remedy in words
@@ -47,7 +56,23 @@ contains
     err%code = code
     err%message = trim(message)
     if (present(place)) err%place = place
-  end subroutine raise
+  end subroutine raise_message
+
+  !> Make a failure of a kind; the caller sets the numbers of err%failure that the kind names.
+  pure subroutine raise_kind(err, code, kind)
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer, intent(in) :: code                         !< one of the exit_ codes
+    integer, intent(in) :: kind                         !< one of the failure_ constants
+    character(len=12) :: number
+
+    allocate (err)
+    err%code = code
+    allocate (err%failure)
+    err%failure%kind = kind
+    ! no user reads it: `explain` knows a sentence for every kind
+    write (number, '(i0)') kind
+    err%message = 'failure of kind '//trim(number)
+  end subroutine raise_kind
 
   !> Say where a failure happened; does nothing when all is well.
   !> A place in the data file is kept if the failure has one already.

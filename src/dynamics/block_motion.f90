@@ -2,10 +2,10 @@
 module mech9_block_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
+  use mech9_failure, only: failure_singular_block
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
-  use mech9_driven_motion, only: words_of_block
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_jacobian, only: find_jacobian, noise_of_rates
   use mech9_frame_motion, only: spread_velocities, spread_accelerations
@@ -39,8 +39,9 @@ contains
       call dynamics%arithmetic%factorize_block(plan, b, state, work)
       conditioning = work%blocks(b)%equations%conditioning()
       if (conditioning < singular) then
-        call raise(err, exit_singular, words_of_block(plan, block)// &
-                   ' is in a singular position for these independent coordinates')
+        call raise(err, exit_singular, failure_singular_block)
+        err%failure%chains = block%chains
+        err%failure%coordinates = block%coordinates
         return
       end if
       call dynamics%arithmetic%move_regular_block(plan, dynamics, b, conditioning, state, work, moved)

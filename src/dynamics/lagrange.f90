@@ -11,7 +11,7 @@
 module mech9_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_no_inertia
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
@@ -55,9 +55,8 @@ contains
     work%factors = work%coefficients
     call cholesky_factorize(n, work%factors, failed_at)
     if (failed_at > 0) then
-      call raise(err, exit_data, 'independent coordinate '//to_text(plan%independent(failed_at))// &
-                 ' has no inertia: no link with mass moves with it (apart from those that the independent '// &
-                 'coordinates before it move already); give a &body')
+      call raise(err, exit_data, failure_no_inertia)
+      err%failure%coordinates = [plan%independent(failed_at)]
       return
     end if
     work%accelerations = work%forces - work%velocity_terms

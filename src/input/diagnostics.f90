@@ -2,6 +2,7 @@
 module mech9_diagnostics
   use mech9_error, only: error_type, place_type, exit_done, exit_data, exit_structure, exit_file
   use mech9_text, only: to_text
+  use mech9_explanation, only: explain
   use mech9_source, only: source_type, span_type
   implicit none
   private
@@ -69,14 +70,17 @@ contains
   pure subroutine add_error(self, err)
     class(diagnostics_type), intent(inout) :: self  !< the diagnostics
     type(error_type), intent(in) :: err             !< the failure
+    type(error_type) :: explained
     type(span_type) :: span
     integer :: byte
 
+    explained = err
+    call explain(explained)
     if (err%place%line > 0 .and. allocated(self%sources)) then
       byte = self%sources(1)%byte_at(err%place)
       if (byte > 0) span = span_type(1, byte, byte + word_length(self%sources(1)%text(byte:)) - 1)
     end if
-    call self%add(span, err%message, err%code)
+    call self%add(span, explained%message, err%code)
   end subroutine add_error
 
   !> Length of the word at the beginning of a text, for the carets under it; at least 1.

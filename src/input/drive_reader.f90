@@ -4,6 +4,7 @@ module mech9_drive_reader
   use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text, starts_with
   use mech9_spline, only: build_spline
+  use mech9_explanation, only: explain
   use mech9_structure, only: structure_type
   use mech9_pair, only: pair_slot_type
   use mech9_drive, only: drive_slot_type
@@ -185,6 +186,7 @@ contains
     if (.not. ok) return
     call build_spline(t, unit*q, drive%spline, err)
     if (allocated(err)) then
+      call explain(err)
       call diagnostics%add(span, err%message, err%code)
     else
       allocate (slot%drive, source=drive)

@@ -2,7 +2,7 @@
 module mech9_spline
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_few_points, failure_points_order, failure_no_spline
   use mech9_lapack, only: dgtsv
   implicit none
   private
@@ -35,14 +35,15 @@ contains
 
     n = size(x)
     if (n < 4) then
-      call raise(err, exit_data, 'a smooth curve needs at least 4 points, and there are '//to_text(n))
+      call raise(err, exit_data, failure_few_points)
+      err%failure%number = n
       return
     end if
     h = x(2:) - x(:n - 1)
     if (any(.not. h > 0.0_wp)) then
       i = findloc(h > 0.0_wp, .false., dim=1)
-      call raise(err, exit_data, 'points must have increasing abscissae; point '//to_text(i + 1)// &
-                 ' does not come after point '//to_text(i))
+      call raise(err, exit_data, failure_points_order)
+      err%failure%number = i
       return
     end if
     slope = (y(2:) - y(:n - 1))/h
@@ -60,7 +61,7 @@ contains
     below(n - 3) = below(n - 3) - h(n - 1)**2/h(n - 2)
     call dgtsv(n - 2, 1, below, diagonal, above, right, n - 2, info)
     if (info /= 0) then
-      call raise(err, exit_data, 'no smooth curve runs through these points')
+      call raise(err, exit_data, failure_no_spline)
       return
     end if
     spline%x = x

@@ -1,8 +1,10 @@
-!> Integration of a system of equations step by step, by a method chosen by name, with failures in plain words.
+!> Integration of a system of equations step by step, by a method chosen by name.
 module mech9_integrator
   use mech9_kinds, only: wp, long
-  use mech9_error, only: error_type, raise, add_place, exit_internal, exit_data, exit_integrator
-  use mech9_text, only: to_text, nearest_name
+  use mech9_error, only: error_type, raise, exit_internal, exit_data, exit_integrator
+  use mech9_failure, only: failure_unknown_method, failure_tolerance_count, failure_relative_tolerance, &
+    failure_absolute_tolerance, failure_many_steps, failure_inaccurate_step, failure_unsolved_step, failure_accurate_step, &
+    failure_step_memory, failure_step_settings, failure_short_step
   use mech9_ode_system, only: ode_system_type
   use mech9_integration_methods, only: integration_methods, method_index, runge_kutta
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
@@ -94,7 +96,7 @@ contains
       call new_multistep(integration_methods(index), self%box, relative_tolerance, absolute_tolerance, t, y, &
                          stepper, outcome)
     end select
-    if (outcome /= stepped) call explain(self, outcome, err)
+    if (outcome /= stepped) call fail(self, outcome, err)
   end subroutine create
 
   !> Place of a method in integration_methods; blank means the first. Fails for an unknown name.
@@ -102,20 +104,13 @@ contains
     character(len=*), intent(in) :: method              !< name, as in integration_methods; blank: the first one
     integer, intent(out) :: index                       !< place of the method in integration_methods; 0 where the name is unknown
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    character(len=:), allocatable :: hint, names
-    integer :: i
 
     index = 1
     if (method == '') return
     index = method_index(method)
     if (index > 0) return
-    names = trim(integration_methods(1)%name)
-    do i = 2, size(integration_methods)
-      names = names//', '//trim(integration_methods(i)%name)
-    end do
-    hint = nearest_name(method, integration_methods%name)
-    if (hint /= '') hint = '; did you mean '''//hint//'''?'
-    call raise(err, exit_data, 'unknown method of integration '''//trim(method)//''''//hint//' There are: '//names)
+    call raise(err, exit_data, failure_unknown_method)
+    err%failure%name = trim(method)
   end subroutine check_method
 
   !> Fails for tolerances with which no step can be judged.
@@ -126,11 +121,12 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (n < 1 .or. size(absolute) /= n) then
-      call raise(err, exit_internal, 'an integration needs one absolute tolerance for each of its variables')
+      call raise(err, exit_internal, failure_tolerance_count)
     else if (.not. (relative > 0.0_wp .and. relative < 1.0_wp)) then
-      call raise(err, exit_data, 'the relative tolerance must be between 0 and 1; it is '//to_text(relative))
+      call raise(err, exit_data, failure_relative_tolerance)
+      err%failure%tolerance = relative
     else if (.not. all(absolute > 0.0_wp .and. absolute <= huge(absolute))) then
-      call raise(err, exit_data, 'the absolute tolerance must be greater than 0')
+      call raise(err, exit_data, failure_absolute_tolerance)
     end if
   end subroutine check_tolerances
 
@@ -185,10 +181,11 @@ contains
       self%steps_to_stop = 0
     end if
     if (self%steps_to_stop < self%maximum_steps) return
-    call raise(err, exit_integrator, trim(stands(self%t))//' '//to_text(self%maximum_steps)// &
-               ' steps were not enough to come to t = '//to_text(t_stop, 10)//' s, and they are now '// &
-               to_text(abs(self%stepper%next_step()), 3)//' s long. The motion is stiff (try method ''bdf''), or the'// &
-               ' tolerances are too small, or maximum_steps is')
+    call raise(err, exit_integrator, failure_many_steps)
+    err%failure%t = self%t
+    err%failure%t_stop = t_stop
+    err%failure%limit = self%maximum_steps
+    err%failure%step = abs(self%stepper%next_step())
   end subroutine count_steps
 
   !> Make one accepted step and keep its end in `trial`. A step that the system refuses is made again, shorter.
@@ -204,7 +201,7 @@ contains
     do trials = 1, most_refusals
       call self%stepper%advance(next_stop(self, t_stop), t_new, self%trial, outcome)
       if (outcome == stepped) then
-        if (.not. abs(t_new - self%t) > 0.0_wp) call explain_vanishing_step(self, err)
+        if (.not. abs(t_new - self%t) > 0.0_wp) call fail_by_vanishing_step(self, err)
         return
       end if
       if (outcome /= evaluation_failed .or. self%box%broken .or. .not. self%box%has_cause()) exit
@@ -214,7 +211,7 @@ contains
       if (outcome /= stepped) exit
       self%fresh = .true.
     end do
-    call explain(self, outcome, err)
+    call fail(self, outcome, err)
   end subroutine take_step
 
   !> The stop that is given to the method: t_stop itself, or half the way where one step and a short rest would
@@ -249,7 +246,7 @@ contains
 
     self%y = y
     call self%stepper%correct(self%t, y, outcome)
-    if (outcome /= stepped) call explain(self, outcome, err)
+    if (outcome /= stepped) call fail(self, outcome, err)
   end subroutine correct
 
   !> Begin anew at (t, y), after an event that changed the motion, with a first step of the given length
@@ -269,7 +266,7 @@ contains
     self%t = t
     self%y = y
     self%fresh = .true.
-    if (outcome /= stepped) call explain(self, outcome, err)
+    if (outcome /= stepped) call fail(self, outcome, err)
   end subroutine restart
 
   !> Set limits; those that are not given stay.
@@ -285,7 +282,7 @@ contains
     if (present(maximum_steps)) self%maximum_steps = maximum_steps
     if (present(largest_step)) call self%stepper%limit(largest_step, outcome)
     if (outcome == stepped .and. present(first_step)) call self%stepper%restart(self%t, self%y, first_step, outcome)
-    if (outcome /= stepped) call explain(self, outcome, err)
+    if (outcome /= stepped) call fail(self, outcome, err)
   end subroutine limit
 
   !> The work of the integration so far.
@@ -306,62 +303,54 @@ contains
     statistics%last_step = counts%last_step
   end function statistics
 
-  !> The beginning of a message: the time at which the integration stops.
-  pure function stands(t) result(text)
-    real(wp), intent(in) :: t   !< end of the last accepted step [s]
-    character(len=80) :: text
-
-    text = 'the integration cannot go on from t = '//to_text(t, 10)//' s:'
-  end function stands
-
-  !> The failure of a step in plain words.
-  subroutine explain(self, outcome, err)
+  !> The failure of a step.
+  subroutine fail(self, outcome, err)
     class(integrator_type), intent(in) :: self          !< the integrator
     integer, intent(in) :: outcome                      !< one of the outcomes of mech9_stepper but `stepped`
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(error_type), allocatable, intent(out) :: err   !< always allocated
 
     if (self%box%has_cause()) then
-      call explain_by_system(self, err)
+      call fail_by_system(self, err)
       return
     end if
     select case (outcome)
     case (too_inaccurate)
-      call raise(err, exit_integrator, trim(stands(self%t))//' however short the step, its error stays too large.'// &
-                 ' Look for a force that jumps or grows without limit there; or raise the tolerances')
+      call raise(err, exit_integrator, failure_inaccurate_step)
     case (not_convergent, evaluation_failed)
-      call raise(err, exit_integrator, trim(stands(self%t))//' the equations of an implicit step cannot be solved.'// &
-                 ' Look for a force that jumps there; or try another method')
+      call raise(err, exit_integrator, failure_unsolved_step)
     case (too_accurate)
-      call raise(err, exit_integrator, trim(stands(self%t))//' the tolerances ask for more digits than the numbers'// &
-                 ' have. Raise relative_tolerance or absolute_tolerance')
+      call raise(err, exit_integrator, failure_accurate_step)
     case (out_of_memory)
-      call raise(err, exit_integrator, trim(stands(self%t))//' there is not enough memory')
+      call raise(err, exit_integrator, failure_step_memory)
     case default
-      call raise(err, exit_internal, trim(stands(self%t))//' its settings do not fit together')
+      call raise(err, exit_internal, failure_step_settings)
     end select
-  end subroutine explain
+    err%failure%t = self%t
+  end subroutine fail
 
-  !> The failure of the system, which keeps its code.
-  subroutine explain_by_system(self, err)
+  !> The failure of the system, which keeps its code, and the times of the integration.
+  subroutine fail_by_system(self, err)
     class(integrator_type), intent(in) :: self          !< the integrator
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(error_type), allocatable, intent(out) :: err   !< always allocated
 
     err = self%box%failure
-    call add_place(err, trim(stands(self%t))//' at t = '//to_text(self%box%t_failed, 10)//' s')
-  end subroutine explain_by_system
+    allocate (err%stopped)
+    err%stopped%t = self%t
+    err%stopped%t_failed = self%box%t_failed
+  end subroutine fail_by_system
 
   !> The failure where a step has become too short to change the time.
-  subroutine explain_vanishing_step(self, err)
+  subroutine fail_by_vanishing_step(self, err)
     class(integrator_type), intent(in) :: self          !< the integrator
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(error_type), allocatable, intent(out) :: err   !< always allocated
 
     if (self%box%has_cause()) then
-      call explain_by_system(self, err)
+      call fail_by_system(self, err)
       return
     end if
-    call raise(err, exit_integrator, trim(stands(self%t))//' the steps have become too short for time to advance.'// &
-               ' The motion becomes infinitely fast there, or comes to a position that it cannot pass')
-  end subroutine explain_vanishing_step
+    call raise(err, exit_integrator, failure_short_step)
+    err%failure%t = self%t
+  end subroutine fail_by_vanishing_step
 
   !> Free the memory of the integration. An integrator can then be created again.
   subroutine destroy(self)

@@ -2,6 +2,7 @@
 module mech9_ode_system
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal, exit_singular, exit_integrator
+  use mech9_failure, only: failure_no_jacobian
   implicit none
   private
   public :: ode_system_type, is_recoverable
@@ -57,7 +58,7 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     jac = 0.0_wp
-    call raise(err, exit_internal, 'a system of equations without Jacobian was asked for it')
+    call raise(err, exit_internal, failure_no_jacobian)
   end subroutine no_jacobian
 
   !> Whether a smaller step may help against this failure.

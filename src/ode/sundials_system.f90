@@ -4,7 +4,7 @@ module mech9_sundials_system
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_integrator
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_infinite_rate, failure_infinite_jacobian
   use mech9_ode_system, only: ode_system_type, is_recoverable
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, SUNMatrix
   use fsunmatrix_dense_mod, only: FSUNDenseMatrix_Data
@@ -59,7 +59,7 @@ contains
     box%last_rate => ydot_values
     box%rate_evaluations = box%rate_evaluations + 1
     call box%system%rate(t, y_values, ydot_values, box%err)
-    if (.not. allocated(box%err)) call must_be_finite(ydot_values, 'rate of change', box%err)
+    if (.not. allocated(box%err)) call must_be_finite(ydot_values, failure_infinite_rate, box%err)
     answer = answer_to(box, t)
   end function evaluate_rate
 
@@ -103,7 +103,7 @@ contains
     call c_f_pointer(c_loc(entries(1)), columns, [n, n])
     call c_f_pointer(c_loc(columns(1, 1)), entries, [n*n])
     call box%system%jacobian(t, y_values, ydot_values, columns, box%err)
-    if (.not. allocated(box%err)) call must_be_finite(entries, 'Jacobian', box%err)
+    if (.not. allocated(box%err)) call must_be_finite(entries, failure_infinite_jacobian, box%err)
     answer = answer_to(box, t)
   end function evaluate_jacobian
 
@@ -131,16 +131,16 @@ contains
   end function has_cause
 
   !> Fails where a number is not finite.
-  pure subroutine must_be_finite(numbers, what, err)
+  pure subroutine must_be_finite(numbers, kind, err)
     real(wp), intent(in) :: numbers(:)                    !< values to be checked
-    character(len=*), intent(in) :: what                  !< name of the values in the message
+    integer, intent(in) :: kind                           !< kind of failure where one is not finite
     type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
     integer :: i
 
     do i = 1, size(numbers)
       if (ieee_is_finite(numbers(i))) cycle
-      call raise(err, exit_integrator, what//' number '//to_text(i)// &
-                 ' is not finite: the motion, or a force, grows beyond all bounds')
+      call raise(err, exit_integrator, kind)
+      err%failure%number = i
       return
     end do
   end subroutine must_be_finite

@@ -9,7 +9,8 @@ module mech9_kinematic_report
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_block_solver, only: work_count_type, work_of
-  use mech9_driven_motion, only: driven_motion_type, words_of_block
+  use mech9_driven_motion, only: driven_motion_type
+  use mech9_block_names, only: words_of_block
   use mech9_recording, only: recording_outcome_type
   use mech9_run_words, only: duration, each, begin_report, add_structure
   implicit none
@@ -34,7 +35,7 @@ contains
       to_text(driven%worst_closure, 3)//' m'
     if (driven%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(driven%conditioning%least, 3)//' at t = '//to_text(driven%conditioning%t, 6)//' s: '// &
-      words_of_block(plan, plan%blocks(driven%conditioning%block))
+      words_of_block(plan%blocks(driven%conditioning%block)%chains, plan%blocks(driven%conditioning%block)%coordinates)
     if (driven%crossings > 0) write (unit, '(a)') 'special positions passed: '//to_text(driven%crossings)// &
       ', each on the branch with continuous velocities'
     if (driven%steps >= outcome%rows) write (unit, '(a)') to_text(driven%steps)//' steps to keep to the branch, and '// &

@@ -2,7 +2,7 @@
 module mech9_closure_guard
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_open_position
   use mech9_plan, only: plan_type
   implicit none
   private
@@ -24,9 +24,10 @@ contains
 
     tolerance = max(closed, plan%data_tolerance)*plan%length
     if (gap <= tolerance) return
-    call raise(err, exit_singular, 'the closed chains are open by '//to_text(gap, 3)//' m at t = '//to_text(t, 7)// &
-               ' s, and '//to_text(tolerance, 3)//' m is allowed ('//to_text(tolerance/plan%length, 1)//' of the mechanism''s '// &
-               'size): its dimensions let it move near the start only; give points and directions with more digits, or a '// &
-               'larger &mechanism data_tolerance')
+    call raise(err, exit_singular, failure_open_position)
+    err%failure%t = t
+    err%failure%gap = gap
+    err%failure%tolerance = tolerance
+    err%failure%size = plan%length
   end subroutine check_closure
 end module mech9_closure_guard

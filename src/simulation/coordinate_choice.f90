@@ -2,7 +2,7 @@
 module mech9_coordinate_choice
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly, exit_singular
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_other_branch
   use mech9_lapack, only: dgeqp3
   use mech9_transformation, only: transform
   use mech9_mechanism, only: mechanism_type
@@ -89,8 +89,8 @@ contains
     ! chains that nobody followed so far close where they can
     k = maxloc(abs(new_state%q - state%q)/new_plan%unit_of, dim=1, mask=requested%coordinates)
     if (abs(new_state%q(k) - state%q(k)) > 1.0e-6_wp*new_plan%unit_of(k)) then
-      call raise(err, exit_singular, 'with other independent coordinates the chains close on another branch: '// &
-                 'coordinate '//to_text(k)//' would jump')
+      call raise(err, exit_singular, failure_other_branch)
+      err%failure%coordinates = [k]
       return
     end if
     new_state%t = state%t

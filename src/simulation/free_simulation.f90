@@ -2,8 +2,8 @@
 !> ones come to a singular position.
 module mech9_free_simulation
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data, exit_singular, exit_integrator
-  use mech9_text, only: to_text
+  use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
+  use mech9_failure, only: failure_no_initial_position, failure_singular_block, failure_singular_start_block
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -58,9 +58,9 @@ contains
 
     do k = 1, size(mechanism%pairs)
       if (mechanism%position_given(k) .or. .not. mechanism%structure%independent(k)) cycle
-      call raise(err, exit_data, 'the independent coordinate '//to_text(k)//' of this pair has no initial position; '// &
-                 'give &initial coordinate='//to_text(k)//', position=..., velocity=... /', &
-                 mechanism%pairs(k)%pair%place)
+      call raise(err, exit_data, failure_no_initial_position)
+      err%failure%coordinates = [k]
+      call add_place(err, place=mechanism%pairs(k)%pair%place)
       return
     end do
     call make_plan(mechanism, mechanism%initial_position, plan, state, err)
@@ -93,8 +93,9 @@ contains
     allocate (simulation%motion%system)
     call set_motion_system(mechanism, used, assembled, simulation%motion%system, err)
     if (allocated(err)) then
-      if (err%code == exit_singular) &
-        err%message = err%message//'; choose other independent coordinates, or start a little beside it'
+      if (allocated(err%failure)) then
+        if (err%failure%kind == failure_singular_block) err%failure%kind = failure_singular_start_block
+      end if
       return
     end if
     simulation%coefficients = simulation%motion%system%work%coefficients

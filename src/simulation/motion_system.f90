@@ -6,12 +6,11 @@
 module mech9_motion_system
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_singular_step, failure_unclosed_step
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: newton_outcome_type, close_block
-  use mech9_planning, only: chain_names
   use mech9_ode_system, only: ode_system_type
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_dynamics_plan, only: make_dynamics_plan
@@ -107,7 +106,7 @@ contains
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
     if (self%conditioning() < self%refuse_below) then
-      call raise(err, exit_singular, 'the step comes too near to a singular position of its independent coordinates')
+      call raise(err, exit_singular, failure_singular_step)
       return
     end if
     if (self%just_settled) call remember(self)
@@ -158,8 +157,9 @@ contains
     call close_chains(self, trusted_correction, failed, err)
     if (allocated(err)) return
     if (failed > 0) then
-      call raise(err, exit_singular, chain_names(self%plan%blocks(failed))//' cannot be closed near the position at t = '// &
-                 to_text(t, 10)//' s')
+      call raise(err, exit_singular, failure_unclosed_step)
+      err%failure%chains = self%plan%blocks(failed)%chains
+      err%failure%t = t
       return
     end if
     do i = 1, self%plan%n_coordinates

@@ -2,7 +2,7 @@
 module mech9_simulation
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_not_started, failure_backwards, failure_interrupted
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -149,10 +149,11 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (.not. self%started) then
-      call raise(err, exit_usage, 'a motion must be started before it can advance')
+      call raise(err, exit_usage, failure_not_started)
     else if (.not. (t - self%t)*self%direction >= 0.0_wp) then
-      call raise(err, exit_usage, 'the motion stands at t = '//to_text(self%t, 10)//' s and cannot go back to t = '// &
-                 to_text(t, 10)//' s; start it anew')
+      call raise(err, exit_usage, failure_backwards)
+      err%failure%t = self%t
+      err%failure%t_stop = t
     else
       call self%stop_if_interrupted(t, err)
     end if
@@ -198,7 +199,9 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (.not. allocated(self%interruption)) return
-    if (self%interruption%is_wanted()) call raise(err, exit_interrupted, 'interrupted before t = '//to_text(t, 10)//' s')
+    if (.not. self%interruption%is_wanted()) return
+    call raise(err, exit_interrupted, failure_interrupted)
+    err%failure%t = t
   end subroutine stop_if_interrupted
 
   !> The work done so far.

@@ -19,7 +19,7 @@ program test_bodies
   use mech9_loaded_mechanisms, only: open_chain, loaded_fig1, loaded_loop, two_loops, without_loads, add_body, &
     add_load, add_point_masses
   use mech9_random_geometry, only: random_vector
-  use mech9_testing, only: tester_type
+  use mech9_testing, only: tester_type, message_of
   implicit none
   real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
   type(tester_type) :: test
@@ -181,12 +181,12 @@ contains
     call without_loads(mechanism)
     call find(mechanism, plan, dynamics, work, err)
     call test%has_error(err, exit_data, 'no body at all')
-    call test%is_true(index(err%message, 'coordinate 1 ') > 0, 'the first coordinate is named: '//err%message)
+    call test%is_true(index(message_of(err), 'coordinate 1 ') > 0, 'the first coordinate is named: '//message_of(err))
     call add_body(mechanism, 2, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
     call add_body(mechanism, 3, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
     call find(mechanism, plan, dynamics, work, err)
     call test%has_error(err, exit_data, 'nothing on the last link')
-    call test%is_true(index(err%message, 'coordinate 3 ') > 0, 'the last coordinate is named: '//err%message)
+    call test%is_true(index(message_of(err), 'coordinate 3 ') > 0, 'the last coordinate is named: '//message_of(err))
     call add_body(mechanism, 4, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
     call find(mechanism, plan, dynamics, work, err)
     call test%no_error(err, 'a body on every link')

@@ -9,7 +9,7 @@ program test_integrator_failures
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_integration_problems, only: explosion_type, obstacle_type, rotation_type, orbit_type, &
     orbit_start, integrate
-  use mech9_testing, only: tester_type
+  use mech9_testing, only: tester_type, message_of
   implicit none
   type(tester_type) :: test
   integer :: i
@@ -241,11 +241,11 @@ contains
 
     if (.not. allocated(err)) return
     do i = 1, size(words)
-      found(i) = index(err%message, trim(words(i))) > 0
+      found(i) = index(message_of(err), trim(words(i))) > 0
     end do
     if (present(any_of)) found = any(found)
     do i = 1, size(words)
-      call test%is_true(found(i), why//': "'//trim(words(i))//'" in "'//err%message//'"')
+      call test%is_true(found(i), why//': "'//trim(words(i))//'" in "'//message_of(err)//'"')
     end do
   end subroutine check_words
 end program test_integrator_failures

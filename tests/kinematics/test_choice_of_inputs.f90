@@ -10,7 +10,7 @@ program test_choice_of_inputs
   use mech9_planning, only: make_plan
   use mech9_mechanism_families, only: axis_type, planar_axes, spatial_axes, home_mechanism, random_links
   use mech9_home_motions, only: loop_equations, choose_dependent
-  use mech9_testing, only: tester_type
+  use mech9_testing, only: tester_type, message_of
   implicit none
   type(tester_type) :: test
   type(random_type) :: random
@@ -109,13 +109,13 @@ contains
     call test%has_error(err, exit_structure, name//': coordinates that cannot serve')
     if (.not. allocated(err)) return
     if (rank == size(dependent)) then
-      call test%is_true(index(err%message, 'cannot move') > 0, name//': no motion at all')
+      call test%is_true(index(message_of(err), 'cannot move') > 0, name//': no motion at all')
       return
     end if
-    proposed = numbers_after(err%message, 'cq = ')
+    proposed = numbers_after(message_of(err), 'cq = ')
     call test%is_true(size(proposed) == size(dependent) - rank, name//': as many proposed as the mobility')
     call test%is_true(serves(equations, rank, [(all(proposed /= k), k=1, size(dependent))]), &
-                      name//': what is proposed serves ('//err%message//')')
+                      name//': what is proposed serves ('//message_of(err)//')')
   end subroutine check
 
   !> The numbers separated by commas that follow a mark.

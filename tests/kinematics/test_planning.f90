@@ -7,7 +7,7 @@ program test_planning
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, frame, fig1, four_bar, general_loop
-  use mech9_testing, only: tester_type
+  use mech9_testing, only: tester_type, message_of
   implicit none
   type(tester_type) :: test
   type(mechanism_type) :: mechanism
@@ -58,7 +58,7 @@ program test_planning
   end do
   call make_plan(mechanism, mechanism%initial_position, plan, state, err)
   call test%has_error(err, exit_structure, 'a five-bar needs two independent coordinates')
-  call test%is_true(index(err%message, '1 more of the coordinates 2, 3, 4, 5') > 0, 'and is told which could be')
+  call test%is_true(index(message_of(err), '1 more of the coordinates 2, 3, 4, 5') > 0, 'and is told which could be')
 
   ! too many
   call four_bar(1.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], mechanism)

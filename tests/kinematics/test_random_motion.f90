@@ -12,7 +12,7 @@ program test_random_motion
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_mechanism_families, only: axis_type, planar_axes, spatial_axes, spherical_axes, home_mechanism, random_links
   use mech9_home_motions, only: loop_equations, choose_dependent
-  use mech9_testing, only: tester_type
+  use mech9_testing, only: tester_type, message_of
   implicit none
   type(tester_type) :: test
   type(random_type) :: random
@@ -80,8 +80,8 @@ contains
     call follow(mechanism, plan, start, 1500, many, many_err)
     call test%is_true(allocated(few_err) .eqv. allocated(many_err), name//': both end, or none')
     if (allocated(few_err) .neqv. allocated(many_err)) then
-      if (allocated(few_err)) print '(2a)', '  few: ', few_err%message
-      if (allocated(many_err)) print '(2a)', '  many: ', many_err%message
+      if (allocated(few_err)) print '(2a)', '  few: ', message_of(few_err)
+      if (allocated(many_err)) print '(2a)', '  many: ', message_of(many_err)
       return
     end if
     if (allocated(few_err)) then

@@ -11,7 +11,7 @@ program test_special_positions
   use mech9_sample_mechanisms, only: drive, four_bar
   use mech9_planar_mechanisms, only: slider_crank, watt_six_bar, four_bar_type, four_bar_guess, four_bar_limit
   use mech9_followed_motions, only: begin_motion, angle_between
-  use mech9_testing, only: tester_type
+  use mech9_testing, only: tester_type, message_of
   implicit none
   type(tester_type) :: test
   type(random_type) :: random
@@ -104,7 +104,7 @@ contains
       call test%near(driven%limit(1), limit, 1.0e-10_wp, name//': the limit by its closed form')
       call test%near(driven%state%q(1), limit, 1.0e-6_wp, name//': it stops at the dead point')
       call test%is_true((limit - driven%state%q(1))*direction > 0.0_wp, name//': and just short of it')
-      call test%is_true(index(err%message, 'dead point') > 0 .and. index(err%message, 'q1') > 0, &
+      call test%is_true(index(message_of(err), 'dead point') > 0 .and. index(message_of(err), 'q1') > 0, &
                         name//': the message says so')
     end do
   end subroutine find_end

@@ -9,7 +9,7 @@ program test_special_start
   use mech9_sample_mechanisms, only: drive, four_bar
   use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit, slider_crank
   use mech9_followed_motions, only: begin_motion
-  use mech9_testing, only: tester_type
+  use mech9_testing, only: tester_type, message_of
   implicit none
   type(tester_type) :: test
   integer :: n
@@ -85,7 +85,7 @@ contains
 
     call test%has_error(err, exit_singular, 'two ways lead on: exit code 6')
     if (.not. allocated(err)) return
-    text = err%message
+    text = message_of(err)
     do i = 1, len(text)
       if (text(i:i) == ',' .or. text(i:i) == ';') text(i:i) = ' '
     end do
@@ -108,6 +108,6 @@ contains
     call drive(mechanism, 1, [limit, -1.0_wp])
     call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
     call test%has_error(err, exit_singular, 'a start at a dead point: exit code 6')
-    if (allocated(err)) call test%is_true(index(err%message, 'dead point') > 0, 'the message says so')
+    if (allocated(err)) call test%is_true(index(message_of(err), 'dead point') > 0, 'the message says so')
   end subroutine dead_start
 end program test_special_start

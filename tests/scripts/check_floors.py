@@ -12,9 +12,11 @@ from mech9_cases import TREE, Checks, text_of
 
 FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model', 'user',
           'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
-          'ode', 'dynamics', 'simulation', 'analyses', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
+          'ode', 'dynamics', 'simulation', 'analyses', 'wording', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
           'terminal', 'session/command', 'session/words', 'session/results', 'session', 'dialogue/drafts', 'dialogue', 'programs']
 MOST_FILES = 25            # in one folder: more are hard to find one's way in
+MOST_KINEMATICS = 14       # files of the kinematics that Lagrange's equations depend on, directly and through others
+WITHOUT_WORDS = ('numerics', 'kinematics/', 'ode', 'dynamics', 'simulation')   # they fail with numbers, see src/wording
 MODULE = re.compile(r'^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*$', re.I | re.M)
 USE = re.compile(r'^\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*([\w@]+)\s*(,\s*only\s*:)?', re.I | re.M)
 PARENT = re.compile(r'^\s*submodule\s*\(\s*(\w+)', re.I | re.M)
@@ -47,6 +49,18 @@ def used_floors(found):
     return uses
 
 
+def reached_files(found, start):
+    """The files of src that those of a floor depend on, directly and through others."""
+    home = {module.lower(): path for _, path, text in found for module in MODULE.findall(text)}
+    uses = {path: {home[module] for module, _ in used_modules(text) if module in home} for _, path, text in found}
+    reached = {path for floor, path, _ in found if floor == start}
+    ahead = set(reached)
+    while ahead:
+        ahead = {used for path in ahead for used in uses[path]} - reached
+        reached |= ahead
+    return reached
+
+
 def check(checks, found):
     home = {}
     for floor, path, text in found:
@@ -60,6 +74,7 @@ def check(checks, found):
             if module in home:
                 checks.true(FLOORS.index(home[module]) <= FLOORS.index(floor),
                             f'{path}: {floor} may not use {module}, which is of {home[module]}, a floor above')
+            checks.true(module != 'mech9_text' or not floor.startswith(WITHOUT_WORDS), f'{path}: {floor} forms no texts')
             checks.true(bool(only) or (floor, module) in WITHOUT_ONLY, f'{path}: use {module} has an only list')
 
 
@@ -73,6 +88,10 @@ def main():
     for floor in FLOORS:
         files = [path for where, path, _ in found if where == floor]
         checks.true(0 < len(files) <= MOST_FILES, f'{floor}: at most {MOST_FILES} files', f'it has {len(files)}')
+    kinematics = os.path.join(TREE, 'src', 'kinematics') + os.sep
+    below = sorted(path[len(kinematics):] for path in reached_files(found, 'dynamics') if path.startswith(kinematics))
+    checks.true(0 < len(below) <= MOST_KINEMATICS, f"Lagrange's equations depend on at most {MOST_KINEMATICS} files of the kinematics",
+                f'they depend on {len(below)}: {" ".join(below)}')
     checks.finish()
 
 

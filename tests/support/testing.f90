@@ -3,9 +3,10 @@
 module mech9_testing
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_explanation, only: explain
   implicit none
   private
-  public :: tester_type
+  public :: tester_type, message_of
 
   type :: tester_type
     integer :: passed = 0
@@ -19,6 +20,17 @@ module mech9_testing
   end type tester_type
 
 contains
+
+  !> The message of an error as users read it.
+  pure function message_of(err) result(message)
+    type(error_type), intent(in) :: err      !< the error, which stays as it is
+    character(len=:), allocatable :: message
+    type(error_type) :: explained
+
+    explained = err
+    call explain(explained)
+    message = explained%message
+  end function message_of
 
   !> Check that a condition holds.
   subroutine is_true(self, condition, why)
@@ -55,7 +67,7 @@ contains
     character(len=*), intent(in) :: why
 
     call self%is_true(.not. allocated(err), why)
-    if (allocated(err)) print '(2a)', '  it answered: ', err%message
+    if (allocated(err)) print '(2a)', '  it answered: ', message_of(err)
   end subroutine no_error
 
   !> Check that a call failed with this code.

@@ -1,8 +1,9 @@
-!> Why a choice of independent coordinates cannot serve, and which choices would: words for errors.
+!> Why a choice of independent coordinates cannot serve, and which choices would.
 module mech9_diagnosis
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
-  use mech9_text, only: to_text, some_of
+  use mech9_failure, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
+    failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -14,14 +15,14 @@ module mech9_diagnosis
   private
   public :: judge_choice, refuse_open, refuse_undetermined, refuse_locked
 
-  !> Numbers that a list in a message shows at most.
-  integer, parameter :: longest_list = 24
   !> Coordinates that are this near the start again, in their units, after a change of all of them have
   !> come back. Round-off of a closure moves coordinates of a singular position by its root.
   real(wp), parameter :: comes_back = 1.0e-4_wp
   !> Part in the motions of length one from which a coordinate would not come back by chance.
   real(wp), parameter :: seems_to_move = 1.0e-2_wp
 
+  !> Gaps below this part of the mechanism's size come from dimensions with too few digits.
+  real(wp), parameter :: nearly_closed = 1.0e-5_wp
   !> Dimensions that are this near to those of a mechanism that moves were meant to be these.
   real(wp), parameter :: overconstrained_nearby = 1.0e-3_wp
 
@@ -40,7 +41,6 @@ contains
     type(state_type) :: trial
     real(wp), allocatable :: motions(:, :), best(:, :), positions(:, :)
     logical, dimension(plan%n_coordinates) :: wanted, chosen, back, held
-    character(len=:), allocatable :: text
     integer :: i, k
 
     closed = .false.
@@ -71,8 +71,7 @@ contains
       if (.not. allocated(best)) best = motions
       if (size(motions, 2) < size(best, 2)) best = motions
     end do
-    call explain_choice(best, wanted, text)
-    call raise(err, exit_structure, text)
+    call refuse_choice(best, wanted, err)
   end subroutine judge_choice
 
   !> General closed positions near one that may be special, and the coordinates that come back to it
@@ -115,98 +114,33 @@ contains
     positions = found(:, :n)
   end subroutine find_positions
 
-  !> What is wrong with a choice of independent coordinates, and what would serve.
-  subroutine explain_choice(motions, wanted, text)
-    real(wp), intent(in) :: motions(:, :)
-    logical, intent(in) :: wanted(:)
-    character(len=:), allocatable, intent(out) :: text
-    logical :: chosen(size(wanted)), others(size(wanted))
+  !> Fail because of a choice of independent coordinates, with one that would serve.
+  subroutine refuse_choice(motions, wanted, err)
+    real(wp), intent(in) :: motions(:, :)     !< (M, mobility) basis of the motions at a closed position
+    logical, intent(in) :: wanted(:)          !< (M) the independent coordinates
+    type(error_type), allocatable, intent(out) :: err   !< always allocated
+    logical :: chosen(size(wanted))
     real(wp), allocatable :: shares(:, :)
-    integer :: f, i, k, m
+    integer :: k
 
-    m = size(wanted)
-    f = size(motions, 2)
-    text = 'the mobility is '//to_text(f)//' ('//to_text(m)//' coordinates, rank '//to_text(m - f)//'), and '
-    select case (count(wanted))
-    case (0)
-      text = text//'no coordinate is independent'
-    case (1)
-      text = text//'1 coordinate is independent'
-    case default
-      text = text//to_text(count(wanted))//' coordinates are independent'
-    end select
-    if (f == 0) then
-      text = text//'; the mechanism cannot move, no coordinate can be independent'
-      return
-    end if
+    call raise(err, exit_structure, failure_wrong_choice)
     call choose_coordinates(motions, wanted, chosen)
+    err%failure%number = size(wanted)
+    err%failure%coordinates = numbers_of(wanted)
+    err%failure%others = numbers_of(chosen)
+    err%failure%idle = numbers_of([(norm2(motions(k, :)) <= moves_least, k=1, size(wanted))])
+    if (.not. any(chosen)) return
     call shares_of(motions, chosen, shares)
-    call explain_needed(shares, wanted, chosen, text)
-    call explain_surplus(shares, wanted, chosen, text)
-    text = text//'; cq = '//some_of(numbers_of(chosen), longest_list)//' would serve'
-    i = 0
-    do k = 1, m
-      if (.not. chosen(k)) cycle
-      i = i + 1
-      others = abs(shares(:, i)) > moves_least .and. .not. chosen
-      if (i <= longest_list .and. any(others)) &
-        text = text//'; instead of '//to_text(k)//' also '//some_of(numbers_of(others), longest_list)
-    end do
-    others = [(norm2(motions(k, :)) <= moves_least, k=1, m)]
-    if (any(others)) text = text//'; never: '//some_of(numbers_of(others), longest_list)//', which cannot move'
-  end subroutine explain_choice
-
-  !> Append "; 1 more of the coordinates 2, 3 must be independent (cq)", or nothing.
-  pure subroutine explain_needed(shares, wanted, chosen, text)
-    real(wp), intent(in) :: shares(:, :)
-    logical, intent(in) :: wanted(:), chosen(:)
-    character(len=:), allocatable, intent(inout) :: text
-    logical :: could(size(wanted))
-    integer :: i, k
-
-    if (all(wanted .or. .not. chosen)) return
-    could = .false.
-    i = 0
-    do k = 1, size(wanted)
-      if (.not. chosen(k)) cycle
-      i = i + 1
-      if (.not. wanted(k)) could = could .or. (abs(shares(:, i)) > moves_least .and. .not. wanted)
-    end do
-    text = text//'; '//to_text(count(chosen .and. .not. wanted))//' more of the coordinates '// &
-           some_of(numbers_of(could), longest_list)//' must be independent (cq)'
-  end subroutine explain_needed
-
-  !> Append "; take 1 of the coordinates 1, 2 off the independent ones (cq)", or nothing.
-  pure subroutine explain_surplus(shares, wanted, chosen, text)
-    real(wp), intent(in) :: shares(:, :)
-    logical, intent(in) :: wanted(:), chosen(:)
-    character(len=:), allocatable, intent(inout) :: text
-    logical :: could(size(wanted))
-    integer :: i, k, j
-
-    if (all(chosen .or. .not. wanted)) return
-    could = wanted .and. .not. chosen
-    do j = 1, size(wanted)
-      if (chosen(j) .or. .not. wanted(j)) cycle
-      i = 0
-      do k = 1, size(wanted)
-        if (.not. chosen(k)) cycle
-        i = i + 1
-        if (wanted(k) .and. abs(shares(j, i)) > moves_least) could(k) = .true.
-      end do
-    end do
-    text = text//'; take '//to_text(count(wanted .and. .not. chosen))//' of the coordinates '// &
-           some_of(numbers_of(could), longest_list)//' off the independent ones (cq)'
-  end subroutine explain_surplus
+    err%failure%replaces = abs(shares) > moves_least
+  end subroutine refuse_choice
 
   !> Coordinates that no chain determines, of a mechanism too large to be judged in one piece.
   subroutine refuse_undetermined(undetermined, err)
     integer, intent(in) :: undetermined(:)
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call raise(err, exit_structure, 'the independent coordinates cannot determine the others: '// &
-               to_text(size(undetermined))//' more must be independent (cq); '//some_of(undetermined, longest_list)// &
-               ' would serve')
+    call raise(err, exit_structure, failure_undetermined_coordinates)
+    err%failure%coordinates = undetermined
   end subroutine refuse_undetermined
 
   !> Chains that do not close.
@@ -214,22 +148,16 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(assembly_outcome_type), intent(in) :: outcome
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    character(len=:), allocatable :: text
 
+    call raise(err, exit_assembly, merge(failure_nearly_closed_chain, failure_open_chain, &
+                                         outcome%gap < nearly_closed*plan%length))
     associate (closure => plan%closures(outcome%worst_closure))
-      text = 'the mechanism cannot be assembled: closed chain '//to_text(closure%chain)// &
-             ' (it closes on link '//to_text(plan%steps(closure%closing)%link)//' through coordinate '// &
-             to_text(plan%steps(closure%closing)%coordinate)//') stays open by '//to_text(outcome%gap, 3)// &
-             ' m at best; '
+      err%failure%chains = [closure%chain]
+      err%failure%link = plan%steps(closure%closing)%link
+      err%failure%coordinates = [plan%steps(closure%closing)%coordinate]
     end associate
-    if (outcome%gap < 1.0e-5_wp*plan%length) then
-      text = text//'so small a gap comes from directions or points given with too few digits, '// &
-             'for a chain that moves only when its geometry is exact; give more digits, or allow for their error with '// &
-             '&mechanism data_tolerance='//trim(power_of_ten(outcome%gap/plan%length))
-    else
-      text = text//'check its dimensions and the independent coordinates, or give better guesses with &initial'
-    end if
-    call raise(err, exit_assembly, text)
+    err%failure%gap = outcome%gap
+    err%failure%size = plan%length
   end subroutine refuse_open
 
   !> A chain whose equations are redundant at the start only.
@@ -237,33 +165,20 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(locked_chain_type), intent(in) :: locked
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    character(len=:), allocatable :: text
 
-    text = 'closed chain '//to_text(plan%closures(locked%closure)%chain)//' does not move: '//to_text(locked%redundant)// &
-           ' of its equations follow'//trim(merge('s', ' ', locked%redundant == 1))//' from the others at the start only; '// &
-           'after a displacement of '//to_text(locked%displacement, 2)//' (rad, or parts of the mechanism''s size) it stays '// &
-           'open by '//to_text(locked%gap, 3)//' m; '
-    if (locked%distance <= overconstrained_nearby) then
-      text = text//'its dimensions are about '//to_text(locked%distance, 1)//' (rad, or parts of the size) from those of '// &
-             'an overconstrained mechanism that moves: give points and directions with more digits, or allow for their '// &
-             'error with &mechanism data_tolerance='//trim(power_of_ten(max(locked%distance, locked%gap/plan%length)))// &
-             ', or use pairs with more freedom'
-    else
-      text = text//'check the points and directions of its pairs, or use pairs with more freedom'
-    end if
-    call raise(err, exit_structure, text)
+    call raise(err, exit_structure, merge(failure_nearly_moving_chain, failure_locked_chain, &
+                                          locked%distance <= overconstrained_nearby))
+    err%failure%chains = [plan%closures(locked%closure)%chain]
+    err%failure%number = locked%redundant
+    err%failure%displacement = locked%displacement
+    err%failure%gap = locked%gap
+    err%failure%distance = locked%distance
+    err%failure%size = plan%length
   end subroutine refuse_locked
 
-  !> The next power of ten, as a data file has it: "1e-6".
-  pure function power_of_ten(value) result(text)
-    real(wp), intent(in) :: value         !< above 0
-    character(len=5) :: text
-
-    write (text, '(a,i0)') '1e', ceiling(log10(max(value, 1.0e-15_wp)))
-  end function power_of_ten
-
+  !> The places of a mask that are true.
   pure function numbers_of(mask) result(numbers)
-    logical, intent(in) :: mask(:)
+    logical, intent(in) :: mask(:)            !< any length
     integer, allocatable :: numbers(:)
     integer :: i
 

@@ -4,6 +4,7 @@
 !> and origins of those of the plan itself.
 module mech9_planar_plan
   use mech9_kinds, only: wp
+  use mech9_failure, only: failure_type
   use mech9_rotation, only: identity
   use mech9_pose, only: pose_type
   implicit none
@@ -34,7 +35,7 @@ module mech9_planar_plan
   !> The plan of a planar mechanism, or the reason why there is none.
   type :: planar_plan_type
     logical :: used = .false.                          !< planar arithmetic can be used
-    character(len=:), allocatable :: why_not           !< the reason in words, where it cannot
+    type(failure_type), allocatable :: why_not         !< the reason, where it cannot
     real(wp) :: axes(3, 3) = identity                  !< turns components in the plane's axes into those of frame 0
     logical :: in_xy_plane = .true.                        !< the plane's axes are those of frame 0
     real(wp) :: length = 1.0_wp                        !< the mechanism's size [m]

@@ -1,7 +1,7 @@
 !> Second part of the plan: a test whether the mechanism is planar, and its plan in the plane.
 module mech9_planar_layout
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
   use mech9_rotation, only: identity
   use mech9_pose, only: pose_type, pose_from_axis, default_zero
   use mech9_plan, only: plan_type
@@ -27,12 +27,13 @@ contains
 
     do c = 1, size(plan%closures)
       if (plan%closures(c)%rank == 3) cycle
-      plan%planar%why_not = 'the motions of closed chain '//to_text(plan%closures(c)%chain)//' have '// &
-                            to_text(plan%closures(c)%rank)//' dimensions, not 3'
+      call refuse(failure_chain_dimensions, plan%planar)
+      plan%planar%why_not%chains = [plan%closures(c)%chain]
+      plan%planar%why_not%number = plan%closures(c)%rank
       return
     end do
     call find_axes(plan, planar, fits)
-    if (.not. fits) plan%planar%why_not = 'no pair turns'
+    if (.not. fits) call refuse(failure_nothing_turns, plan%planar)
     if (.not. fits) return
     planar%length = plan%length
     allocate (planar%steps(plan%n_coordinates), planar%closures(size(plan%closures)))
@@ -42,14 +43,15 @@ contains
       fits = plan%steps(s)%is_screw
       if (fits) call lay_out_step(plan, s, planar, to_frame, fits)
       if (fits) cycle
-      plan%planar%why_not = 'pair '//to_text(plan%steps(s)%coordinate)//' neither turns about the plane''s normal '// &
-                            'nor slides across it'
+      call refuse(failure_pair_off_plane, plan%planar)
+      plan%planar%why_not%coordinates = [plan%steps(s)%coordinate]
       return
     end do
     do c = 1, size(plan%closures)
       call lay_out_closure(plan, c, to_frame, planar, fits)
       if (fits) cycle
-      plan%planar%why_not = 'closed chain '//to_text(plan%closures(c)%chain)//' does not close in a plane'
+      call refuse(failure_chain_off_plane, plan%planar)
+      plan%planar%why_not%chains = [plan%closures(c)%chain]
       return
     end do
     allocate (planar%link_in_frame(plan%n_links))
@@ -59,6 +61,15 @@ contains
     planar%used = .true.
     plan%planar = planar
   end subroutine lay_out_in_plane
+
+  !> Keep why there is no plane; the caller adds the numbers that the kind names.
+  pure subroutine refuse(kind, planar)
+    integer, intent(in) :: kind                           !< of failure
+    type(planar_plan_type), intent(inout) :: planar       !< gets `why_not`
+
+    allocate (planar%why_not)
+    planar%why_not%kind = kind
+  end subroutine refuse
 
   !> The axes of the plane, from the first revolute pair. `fits` is false where there is none.
   pure subroutine find_axes(plan, planar, fits)

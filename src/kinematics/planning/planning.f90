@@ -6,7 +6,7 @@
 module mech9_planning
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_large_block, failure_undetermined_block, failure_contradictory_inputs
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type, new_state
   use mech9_state, only: state_type
@@ -28,7 +28,7 @@ module mech9_planning
   use mech9_finite_motion, only: locked_chain_type, find_locked_chain
   implicit none
   private
-  public :: make_plan, chain_names
+  public :: make_plan
 
   !> Pivots below this fraction of the largest count as zero when ranks are found.
   real(wp), parameter :: rank_tolerance = 1.0e-9_wp
@@ -104,9 +104,9 @@ contains
       call judge_choice(plan, state, closed, err)
       if (.not. allocated(err)) call refuse_undetermined(undetermined, err)
     else if (maxval(unknowns_of(plan%blocks)) > most_unknowns) then
-      call raise(err, exit_structure, to_text(maxval(unknowns_of(plan%blocks)))//' coordinates could only be solved '// &
-                 'for together, and at most '//to_text(most_unknowns)//' can be; take independent coordinates (cq) '// &
-                 'nearer to link 1')
+      call raise(err, exit_structure, failure_large_block)
+      err%failure%number = maxval(unknowns_of(plan%blocks))
+      err%failure%limit = most_unknowns
     end if
   end subroutine propose_blocks
 
@@ -141,8 +141,7 @@ contains
     if (complete) return
     trial = state
     call judge_choice(plan, trial, closed, err)
-    if (.not. allocated(err)) call raise(err, exit_structure, chain_names(blocks(n))// &
-      ' cannot determine all dependent coordinates from the independent ones near the start: it is singular there')
+    if (.not. allocated(err)) call refuse_block(failure_undetermined_block, blocks(n), err)
   end subroutine settle_blocks
 
   !> Assemble the last block, the others being closed, and say whether its coordinates are all determined.
@@ -246,8 +245,7 @@ contains
     if (free) return
     trial = state
     call judge_choice(plan, trial, closed, err)
-    if (.not. allocated(err)) call raise(err, exit_structure, 'the independent coordinates cannot all move freely: '// &
-      chain_names(plan%blocks(b))//' would not stay closed')
+    if (.not. allocated(err)) call refuse_block(failure_contradictory_inputs, plan%blocks(b), err)
   end subroutine check_inputs
 
   !> Chains with redundant equations must stay closed when they move.
@@ -267,27 +265,15 @@ contains
     unknowns_of = size(block%unknowns)
   end function unknowns_of
 
-  pure integer function chain_names_length(block) result(length)
+  !> Fail because of the chains of a block.
+  pure subroutine refuse_block(kind, block, err)
+    integer, intent(in) :: kind             !< of the failure
     type(block_type), intent(in) :: block   !< the block
+    type(error_type), allocatable, intent(out) :: err   !< always allocated
 
-    length = len('an open chain')
-    if (size(block%chains) == 1) length = len('closed chain ') + len(to_text(block%chains))
-    if (size(block%chains) > 1) length = len('closed chains  together') + len(to_text(block%chains))
-  end function chain_names_length
-
-  !> "closed chain 2" or "closed chains 1, 3 together".
-  pure function chain_names(block) result(names)
-    type(block_type), intent(in) :: block   !< the block
-    character(len=chain_names_length(block)) :: names
-
-    if (size(block%chains) == 0) then
-      names = 'an open chain'
-    else if (size(block%chains) == 1) then
-      names = 'closed chain '//to_text(block%chains)
-    else
-      names = 'closed chains '//to_text(block%chains)//' together'
-    end if
-  end function chain_names
+    call raise(err, exit_structure, kind)
+    err%failure%chains = block%chains
+  end subroutine refuse_block
 
   !> Blocks whose Jacobian never changes, since all steps of their loops slide.
   pure subroutine find_constants(plan)

@@ -2,14 +2,14 @@
 module mech9_driven_motion
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_text, only: to_text
+  use mech9_failure, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
+    failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: solve_rates, solve_accelerations
   use mech9_conditioning, only: conditioning_type
-  use mech9_planning, only: chain_names
   use mech9_singularity_monitor, only: factorize_trial, is_near
   use mech9_branch_stepping, only: branch_stepper_type, new_branch_stepper, accept_start, step_towards, set_inputs, &
     restore_last_position, add_accelerations
@@ -21,7 +21,7 @@ module mech9_driven_motion
   use mech9_block_equations, only: largest_gap
   implicit none
   private
-  public :: driven_motion_type, start_driven_motion, advance, set_inputs, words_of_block
+  public :: driven_motion_type, start_driven_motion, advance, set_inputs
 
   !> Blocks whose least against largest pivot is below this start at a singular position: at a dead point
   !> round-off of the position leaves its square root, some 1e-8.
@@ -94,50 +94,44 @@ contains
     type(driven_motion_type), intent(inout) :: driven
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(starting_rates_type) :: starting
-    character(len=:), allocatable :: text
-    integer :: b
+    integer :: b, kind
 
     do b = 1, size(plan%blocks)
       if (plan%blocks(b)%first_step == block%first_step) exit
     end do
     call find_starting_rates(plan, block, driven%state, driven%work(b), starting)
-    text = 'the mechanism starts in a singular position of '//words_of_block(plan, block)
     if (starting%dead) then
-      text = text//', a dead point, where rates are not finite; start a little beside it'
+      kind = failure_start_at_dead_point
     else if (starting%count == 2) then
-      text = text//', where two branches meet: '
-      call append_rates(mechanism, block, starting, text)
-      text = text//'; start a little beside it, on the one that is meant'
+      kind = failure_start_on_branches
     else if (starting%undetermined .or. already) then
-      text = text//', where it is not certain how it goes on; start a little beside it'
+      kind = failure_start_unclear
     else if (starting%count == 0) then
-      text = text//', which it cannot leave'
+      kind = failure_start_locked
     else
       driven%state%dq(block%coordinates) = starting%rates(:, 1)
       call spread_velocities(plan, block, driven%state)
       return
     end if
-    call raise(err, exit_singular, text)
+    call raise(err, exit_singular, kind)
+    err%failure%chains = block%chains
+    err%failure%coordinates = block%coordinates
+    if (kind == failure_start_on_branches) call add_rates(mechanism, starting, err)
   end subroutine leave_special
 
-  !> Append the rates by which it could go on: "dq2 = 1, dq3 = 0.5 or dq2 = 1, dq3 = -0.5 (rad/s, m/s)".
-  pure subroutine append_rates(mechanism, block, starting, text)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(starting_rates_type), intent(in) :: starting
-    character(len=:), allocatable, intent(inout) :: text
-    integer :: way, i, k
+  !> Add the rates by which a block could go on to a failure that has its coordinates.
+  pure subroutine add_rates(mechanism, starting, err)
+    type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+    type(starting_rates_type), intent(in) :: starting       !< the rates of the block's coordinates
+    type(error_type), intent(inout) :: err                  !< gets them, in units of the data file
+    integer :: i
 
-    do way = 1, starting%count
-      if (way > 1) text = text//' or '
-      do i = 1, size(block%unknowns)
-        if (i > 1) text = text//', '
-        k = block%coordinates(i)
-        text = text//'dq'//to_text(k)//' = '//to_text(starting%rates(i, way)/unit_of(mechanism, k), 5)
-      end do
+    err%failure%values = starting%rates(:, :starting%count)
+    do i = 1, size(err%failure%coordinates)
+      err%failure%values(i, :) = err%failure%values(i, :)/unit_of(mechanism, err%failure%coordinates(i))
     end do
-    text = text//merge(' (rad/s, m/s)', ' (deg/s, m/s)', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
-  end subroutine append_rates
+    err%failure%angle_unit = mechanism%angle_unit
+  end subroutine add_rates
 
   !> The way on from a special start.
   subroutine begin_crossing(mechanism, plan, driven, err)
@@ -152,8 +146,7 @@ contains
     call start_crossing(mechanism, plan, driven%branch_stepper_type, driven%crossing, err)
     if (allocated(err)) return
     if (.not. driven%crossing%exists) then
-      call raise(err, exit_singular, 'the mechanism starts in a singular position and cannot be followed off it '// &
-                 'with certainty; start a little beside it')
+      call raise(err, exit_singular, failure_start_not_left)
       return
     end if
     driven%monitors = driven%crossing%stepper_beyond%monitors
@@ -296,7 +289,7 @@ contains
     call driven%conditioning%glance(driven%state%t, driven%work)
   end subroutine record
 
-  !> Say where and why the motion cannot go on, and keep the independent coordinates there.
+  !> Fail where and why the motion cannot go on, and keep the independent coordinates there.
   subroutine refuse(mechanism, plan, driven, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -304,65 +297,32 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: no_value
     real(wp), dimension(plan%n_coordinates) :: q, dq, ddq
-    character(len=:), allocatable :: text, where
-    integer :: i, k
+    integer :: i, k, kind
 
     q = driven%predictor%q
     call set_inputs(mechanism, driven%ahead%t, q, dq, ddq, no_value)
     driven%limit = q
-    where = ''
-    do i = 1, size(plan%independent)
-      k = plan%independent(i)
-      if (i > 1) where = where//', '
-      where = where//'q'//to_text(k)//' = '// &
-              to_text(q(k)/merge(mechanism%angle_unit, 1.0_wp, mechanism%pairs(k)%pair%angular), &
-              merge(7, 13, driven%ahead%kind == escape))
-    end do
-    associate (block => plan%blocks(driven%ahead%block))
-      text = words_of_block(plan, block)
-      if (driven%ahead%kind /= escape) &
-        text = text//trim(merge(' reach  ', ' reaches', block%last_closure > block%first_closure))
+    select case (driven%ahead%kind)
+    case (escape)
+      kind = failure_escape
+    case (dead_point)
+      kind = failure_dead_point
+    case default
+      kind = failure_lost_branch
+    end select
+    call raise(err, exit_singular, kind)
+    associate (block => plan%blocks(driven%ahead%block), failure => err%failure)
+      failure%chains = block%chains
+      failure%coordinates = block%coordinates
+      failure%number = block%last_closure - block%first_closure + 1
+      failure%t = driven%ahead%t
+      failure%growing = driven%ahead%coordinate
+      failure%others = plan%independent
+      allocate (failure%values(size(plan%independent), 1))
+      do i = 1, size(plan%independent)
+        k = plan%independent(i)
+        failure%values(i, 1) = q(k)/unit_of(mechanism, k)
+      end do
     end associate
-    if (driven%ahead%kind == escape) then
-      text = text//' cannot follow up to '//where//', where coordinate '//to_text(driven%ahead%coordinate)// &
-             ' grows beyond all bounds'
-    else if (driven%ahead%kind == dead_point) then
-      text = text//' a dead point at '//where//' and cannot follow farther'
-    else
-      text = text//' a singular position at '//where//', where it is not certain how the motion goes on'
-    end if
-    ! where a coordinate escapes the end is told less sharply than a dead point
-    call raise(err, exit_singular, 'the motion cannot go on beyond t = '// &
-               to_text(driven%ahead%t, merge(7, 13, driven%ahead%kind == escape))//' s: '//text)
   end subroutine refuse
-
-  !> The coordinates that a block determines, in their order.
-  pure function coordinates_of(plan, block) result(coordinates)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    integer, allocatable :: coordinates(:)
-    logical :: mine(plan%n_coordinates)
-    integer :: k
-
-    mine = .false.
-    mine(block%coordinates) = .true.
-    coordinates = pack([(k, k=1, plan%n_coordinates)], mine)
-  end function coordinates_of
-
-  pure integer function words_length(plan, block) result(length)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-
-    length = len(chain_names(block)) + len(' (coordinates )') + len(to_text(coordinates_of(plan, block)))
-  end function words_length
-
-  !> "closed chain 2 (coordinates 4, 6, 7)".
-  pure function words_of_block(plan, block) result(words)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    character(len=words_length(plan, block)) :: words
-
-    words = chain_names(block)//' (coordinates '//to_text(coordinates_of(plan, block))//')'
-  end function words_of_block
-
 end module mech9_driven_motion

@@ -9,7 +9,7 @@ module mech9_structure_graph
   use mech9_path, only: ending_of, with_ending
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
-  use mech9_planning, only: chain_names
+  use mech9_block_names, only: chain_names
   use mech9_text_file, only: save_text
   use mech9_printable, only: printable, with_escapes
   use mech9_child_process, only: child_outcome_type, run_child
@@ -135,7 +135,7 @@ contains
     character(len=:), allocatable :: words
     integer :: i, listed
 
-    words = chain_names(block)
+    words = chain_names(block%chains)
     listed = min(size(block%unknowns), most_listed)
     if (listed == 0) return
     words = words//' for q'//to_text([(plan%steps(block%unknowns(i))%coordinate, i=1, listed)], ', q')

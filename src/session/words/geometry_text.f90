@@ -2,6 +2,7 @@
 module mech9_geometry_text
   use mech9_kinds, only: wp, radians_per_degree
   use mech9_error, only: error_type, add_place, exit_structure, exit_assembly
+  use mech9_explanation, only: explain
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
@@ -76,6 +77,7 @@ contains
     if (err%code /= exit_structure .and. err%code /= exit_assembly) return
     call find_oddity(mechanism, oddity)
     if (oddity%kind == none_found) return
+    call explain(err)
     err%message = words_of(oddity)//'; '//err%message
     if (size(oddity%odd) > 0) call add_place(err, place=mechanism%pairs(oddity%odd(1))%pair%place)
   end subroutine explain_geometry

@@ -4,6 +4,7 @@ module mech9_plan_text
   use mech9_text, only: to_text
   use mech9_screw, only: split_space
   use mech9_mechanism, only: mechanism_type
+  use mech9_explanation, only: explain_failure
   use mech9_plan, only: plan_type, block_type, closure_type
   use mech9_requested, only: requested_type, requested_blocks
   use mech9_lagrange_types, only: dynamics_plan_type
@@ -129,12 +130,15 @@ contains
   subroutine print_arithmetic(unit, plan)
     integer, intent(in) :: unit          !< Fortran unit to write to
     type(plan_type), intent(in) :: plan  !< the plan of the mechanism
+    character(len=:), allocatable :: reason
 
     if (plan%planar%used) then
       write (unit, '(a)') 'planar arithmetic: all pairs turn about or slide across the direction '// &
         direction_in_words(plan%planar%axes(:, 3))
     else if (allocated(plan%planar%why_not)) then
-      write (unit, '(a)') 'spatial arithmetic: '//plan%planar%why_not
+      reason = ''
+      call explain_failure(plan%planar%why_not, reason)
+      write (unit, '(a)') 'spatial arithmetic: '//reason
     end if
   end subroutine print_arithmetic
 

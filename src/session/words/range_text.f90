@@ -7,7 +7,9 @@ module mech9_range_text
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_motion_range, only: motion_range_type, end_type, find_range, ends_at_limit, ends_round, ends_otherwise
-  use mech9_driven_motion, only: words_of_block
+  use mech9_error, only: error_type
+  use mech9_block_names, only: words_of_block
+  use mech9_explanation, only: explain
   implicit none
   private
   public :: print_ranges
@@ -81,15 +83,18 @@ contains
     real(wp), intent(in) :: factor        !< factor from rad or m to the unit of the file
     character(len=*), intent(in) :: unit  !< unit of the coordinate in the file
     character(len=:), allocatable :: text
+    type(error_type) :: err
 
     select case (found%kind)
     case (ends_at_limit)
-      text = words_of_block(plan, plan%blocks(found%block))
+      text = words_of_block(plan%blocks(found%block)%chains, plan%blocks(found%block)%coordinates)
     case (ends_round)
       text = 'full turn'
       if (found%turns > 1) text = 'full turns: it repeats after '//to_text(found%turns)
     case (ends_otherwise)
-      text = found%reason
+      err = found%failure
+      call explain(err)
+      text = err%message
     case default
       text = 'no limit up to '//to_text(factor*found%value)//' '//unit
     end select

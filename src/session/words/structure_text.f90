@@ -5,7 +5,7 @@ module mech9_structure_text
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_plan, only: plan_type
   use mech9_mobility_report, only: mobility_report_type
-  use mech9_planning, only: chain_names
+  use mech9_block_names, only: chain_names
   implicit none
   private
   public :: print_structure, print_names_of_vectors, print_mobility, print_mobility_report, print_marked
@@ -121,7 +121,7 @@ contains
         left_out = left_out + 1
         cycle
       end if
-      write (unit, '(a)', advance='no') 'block '//to_text(b)//': '//chain_names(plan%blocks(b))//', '// &
+      write (unit, '(a)', advance='no') 'block '//to_text(b)//': '//chain_names(plan%blocks(b)%chains)//', '// &
         to_text(plan%blocks(b)%equations)//' equations, rank '//to_text(report%ranks(b))
       if (report%at_start(b) < report%ranks(b)) write (unit, '(a)', advance='no') &
         '; at the start only '//to_text(report%at_start(b))//': a singular position'

@@ -1,0 +1,154 @@
+!> Failures as numbers: kinds, and the numbers from which `wording` forms the sentences that users read.
+module mech9_failure
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: failure_type, integration_stop_type
+  public :: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, failure_nearly_closed_chain
+  public :: failure_locked_chain, failure_nearly_moving_chain
+  public :: failure_large_block, failure_undetermined_block, failure_contradictory_inputs
+  public :: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, failure_start_locked
+  public :: failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
+  public :: failure_singular_block, failure_singular_start_block, failure_no_inertia
+  public :: failure_singular_step, failure_unclosed_step, failure_other_branch
+  public :: failure_unknown_method, failure_no_jacobian, failure_tolerance_count, failure_relative_tolerance
+  public :: failure_absolute_tolerance, failure_many_steps, failure_inaccurate_step, failure_unsolved_step
+  public :: failure_accurate_step, failure_step_memory, failure_step_settings, failure_short_step
+  public :: failure_infinite_rate, failure_infinite_jacobian, failure_open_position
+  public :: failure_few_points, failure_points_order, failure_no_spline
+  public :: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
+  public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted, last_failure
+
+  ! The assembled position and the choice of the independent coordinates
+
+  !> The independent coordinates do not fit the mobility: number, coordinates (the independent ones), others (a choice that
+  !> serves), idle (those that cannot move), replaces.
+  integer, parameter :: failure_wrong_choice = 1
+  !> The independent coordinates do not determine the others: coordinates (which would have to be independent as well).
+  integer, parameter :: failure_undetermined_coordinates = 2
+  !> A closed chain stays open: chains, link and coordinates of its closing, gap, size.
+  integer, parameter :: failure_open_chain = 3
+  !> The same, by so little that the digits of the data may be the cause.
+  integer, parameter :: failure_nearly_closed_chain = 4
+  !> A chain has redundant equations at the start only: chains, number (of them), displacement, gap, size.
+  integer, parameter :: failure_locked_chain = 5
+  !> The same, of dimensions that are near those of a chain that moves: distance as well.
+  integer, parameter :: failure_nearly_moving_chain = 6
+  !> A block is too large: number (of its unknowns), limit.
+  integer, parameter :: failure_large_block = 7
+  !> The chains of a block do not determine its unknowns: chains.
+  integer, parameter :: failure_undetermined_block = 8
+  !> The chains of a block do not stay closed at all rates of the independent coordinates: chains.
+  integer, parameter :: failure_contradictory_inputs = 9
+
+  ! Driven motions
+
+  !> A start at a dead point: chains and coordinates of the block; the same for the following three.
+  integer, parameter :: failure_start_at_dead_point = 10
+  !> A start where two branches meet: values (unknown, branch), the rates by which it can go on, and angle_unit.
+  integer, parameter :: failure_start_on_branches = 11
+  integer, parameter :: failure_start_unclear = 12
+  integer, parameter :: failure_start_locked = 13
+  !> No position beside a singular start was found for certain.
+  integer, parameter :: failure_start_not_left = 14
+  !> A motion ends because a coordinate grows without bound: chains and coordinates of the block, number (of closures), t,
+  !> others and values (the independent coordinates there), growing. The same for the following two.
+  integer, parameter :: failure_escape = 15
+  integer, parameter :: failure_dead_point = 16
+  integer, parameter :: failure_lost_branch = 17
+
+  ! Equations of motion and their integration
+
+  !> A block is singular for the independent coordinates: chains, coordinates; at the start, the remedy is another one.
+  integer, parameter :: failure_singular_block = 18
+  integer, parameter :: failure_singular_start_block = 19
+  !> No mass moves with an independent coordinate: coordinates.
+  integer, parameter :: failure_no_inertia = 20
+  integer, parameter :: failure_singular_step = 21
+  !> A block cannot be closed after a step: chains, t.
+  integer, parameter :: failure_unclosed_step = 22
+  !> A coordinate would jump with other independent coordinates: coordinates.
+  integer, parameter :: failure_other_branch = 23
+  !> No method of integration has this name: name.
+  integer, parameter :: failure_unknown_method = 24
+  integer, parameter :: failure_no_jacobian = 25
+  integer, parameter :: failure_tolerance_count = 26
+  !> A relative tolerance is not between 0 and 1: tolerance.
+  integer, parameter :: failure_relative_tolerance = 27
+  integer, parameter :: failure_absolute_tolerance = 28
+  !> An integration takes too many steps: t, t_stop, limit, step. Those that follow: t.
+  integer, parameter :: failure_many_steps = 29
+  integer, parameter :: failure_inaccurate_step = 30
+  integer, parameter :: failure_unsolved_step = 31
+  integer, parameter :: failure_accurate_step = 32
+  integer, parameter :: failure_step_memory = 33
+  integer, parameter :: failure_step_settings = 34
+  integer, parameter :: failure_short_step = 35
+  !> A rate of change, or an entry of its Jacobian, is not finite: number (its place).
+  integer, parameter :: failure_infinite_rate = 36
+  integer, parameter :: failure_infinite_jacobian = 37
+
+  ! Splines
+
+  !> Too few points for a spline: number (of them).
+  integer, parameter :: failure_few_points = 38
+  !> A point does not lie behind the one before it: number (of the one before).
+  integer, parameter :: failure_points_order = 39
+  integer, parameter :: failure_no_spline = 40
+
+  ! Reasons why a mechanism is not planar
+
+  !> The motions of a chain have not three dimensions: chains, number (of dimensions).
+  integer, parameter :: failure_chain_dimensions = 41
+  integer, parameter :: failure_nothing_turns = 42
+  !> A pair does not move in the plane: coordinates.
+  integer, parameter :: failure_pair_off_plane = 43
+  !> A chain does not close in the plane: chains.
+  integer, parameter :: failure_chain_off_plane = 44
+
+  ! Simulations
+
+  !> The chains of a position are open by more than is allowed: t, gap, tolerance (allowed [m]), size.
+  integer, parameter :: failure_open_position = 45
+  !> An independent coordinate of a free motion has no initial position: coordinates.
+  integer, parameter :: failure_no_initial_position = 46
+  !> A motion is to advance before its start.
+  integer, parameter :: failure_not_started = 47
+  !> A motion is to go back: t (where it stands), t_stop (where it is to go).
+  integer, parameter :: failure_backwards = 48
+  !> The user interrupted a motion: t (that comes next).
+  integer, parameter :: failure_interrupted = 49
+  integer, parameter :: last_failure = 49
+
+  !> A failure: its kind, and the numbers that its kind names.
+  type :: failure_type
+    integer :: kind = 0                         !< one of the constants above
+    integer, allocatable :: chains(:)           !< closed chains
+    integer, allocatable :: coordinates(:)      !< coordinates that fail
+    integer, allocatable :: others(:)           !< coordinates that would serve, or the independent ones
+    integer, allocatable :: idle(:)             !< coordinates that cannot move
+    !> (coordinate, of `others`) whether the coordinate could be chosen in place of that one.
+    logical, allocatable :: replaces(:, :)
+    real(wp), allocatable :: values(:, :)       !< positions or rates, in the units of the data file
+    character(len=:), allocatable :: name       !< as the user wrote it
+    integer :: link = 0                         !< on which a chain closes
+    integer :: growing = 0                      !< coordinate that grows without bound
+    integer :: number = 0                       !< of things, or the place of one in its row
+    integer :: limit = 0                        !< the largest number allowed
+    real(wp) :: t = 0.0_wp                      !< time [s]
+    real(wp) :: t_stop = 0.0_wp                 !< time that was to be reached [s]
+    real(wp) :: step = 0.0_wp                   !< length of a step [s]
+    real(wp) :: gap = 0.0_wp                    !< by which a chain stays open [m]
+    real(wp) :: size = 1.0_wp                   !< length of the mechanism [m]
+    real(wp) :: displacement = 0.0_wp           !< at which a chain opens [rad, lengths of the mechanism]
+    real(wp) :: distance = 0.0_wp               !< from dimensions that let a chain move [rad, lengths of the mechanism]
+    real(wp) :: tolerance = 0.0_wp              !< as the user gave it, or a gap that is allowed [m]
+    real(wp) :: angle_unit = 1.0_wp             !< unit of angles in the data file [rad]
+  end type failure_type
+
+  !> The integration that a failure of its system ended.
+  type :: integration_stop_type
+    real(wp) :: t = 0.0_wp                      !< end of the last accepted step [s]
+    real(wp) :: t_failed = 0.0_wp               !< of the trial that failed [s]
+  end type integration_stop_type
+end module mech9_failure

@@ -1,0 +1,290 @@
+!> Messages for users from the failures of numerics: every sentence about a failure in numbers is formed in this folder.
+!>
+!> Reports of the input (`add_error`) explain what they are given; others who show or complete the message of a failure that
+!> may come from numerics call `explain` before.
+module mech9_explanation
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text, some_of
+  use mech9_failure, only: failure_type, failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
+    failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain, failure_large_block, &
+    failure_undetermined_block, failure_contradictory_inputs, failure_start_at_dead_point, failure_start_on_branches, &
+    failure_start_unclear, failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, &
+    failure_lost_branch, failure_singular_block, failure_singular_start_block, failure_no_inertia, failure_singular_step, &
+    failure_unclosed_step, failure_other_branch, failure_infinite_rate, failure_infinite_jacobian, failure_few_points, &
+    failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
+    failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
+    failure_interrupted
+  use mech9_block_names, only: chain_names, words_of_block
+  use mech9_choice_words, only: explain_choice, longest_list
+  use mech9_integration_words, only: explain_settings, explain_step, explain_stop
+  implicit none
+  private
+  public :: explain, explain_failure
+
+contains
+
+  !> Form the message of an error from the numbers of its failure. An error that has its message stays as it is.
+  pure subroutine explain(err)
+    type(error_type), intent(inout) :: err    !< the failure
+
+    if (allocated(err%failure)) then
+      call explain_failure(err%failure, err%message)
+      deallocate (err%failure)
+    end if
+    if (allocated(err%stopped)) then
+      call explain_stop(err%stopped, err%message)
+      deallocate (err%stopped)
+    end if
+  end subroutine explain
+
+  !> The sentence about a failure. `text` stays as it is for an unknown kind.
+  pure subroutine explain_failure(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    call explain_assembly(failure, text)
+    call explain_start(failure, text)
+    call explain_end(failure, text)
+    call explain_equations(failure, text)
+    call explain_simulation(failure, text)
+    call explain_settings(failure, text)
+    call explain_step(failure, text)
+    call explain_points(failure, text)
+    call explain_no_plane(failure, text)
+  end subroutine explain_failure
+
+  !> Chains that do not close or do not move, and independent coordinates that do not determine the others.
+  pure subroutine explain_assembly(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    select case (failure%kind)
+    case (failure_wrong_choice)
+      call explain_choice(failure, text)
+    case (failure_undetermined_coordinates)
+      text = 'the independent coordinates cannot determine the others: '//to_text(size(failure%coordinates))// &
+             ' more must be independent (cq); '//some_of(failure%coordinates, longest_list)//' would serve'
+    case (failure_open_chain, failure_nearly_closed_chain)
+      call explain_open_chain(failure, text)
+    case (failure_locked_chain, failure_nearly_moving_chain)
+      call explain_locked_chain(failure, text)
+    case (failure_large_block)
+      text = to_text(failure%number)//' coordinates could only be solved for together, and at most '// &
+             to_text(failure%limit)//' can be; take independent coordinates (cq) nearer to link 1'
+    case (failure_undetermined_block)
+      text = chain_names(failure%chains)//' cannot determine all dependent coordinates from the independent ones near the '// &
+             'start: it is singular there'
+    case (failure_contradictory_inputs)
+      text = 'the independent coordinates cannot all move freely: '//chain_names(failure%chains)//' would not stay closed'
+    end select
+  end subroutine explain_assembly
+
+  !> A chain that does not close.
+  pure subroutine explain_open_chain(failure, text)
+    type(failure_type), intent(in) :: failure             !< of an open chain
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    text = 'the mechanism cannot be assembled: '//chain_names(failure%chains)// &
+           ' (it closes on link '//to_text(failure%link)//' through coordinate '//to_text(failure%coordinates)// &
+           ') stays open by '//to_text(failure%gap, 3)//' m at best; '
+    if (failure%kind == failure_nearly_closed_chain) then
+      text = text//'so small a gap comes from directions or points given with too few digits, '// &
+             'for a chain that moves only when its geometry is exact; give more digits, or allow for their error with '// &
+             '&mechanism data_tolerance='//trim(power_of_ten(failure%gap/failure%size))
+    else
+      text = text//'check its dimensions and the independent coordinates, or give better guesses with &initial'
+    end if
+  end subroutine explain_open_chain
+
+  !> A chain whose equations are redundant at the start only.
+  pure subroutine explain_locked_chain(failure, text)
+    type(failure_type), intent(in) :: failure             !< of a locked chain
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    text = chain_names(failure%chains)//' does not move: '//to_text(failure%number)// &
+           ' of its equations follow'//trim(merge('s', ' ', failure%number == 1))//' from the others at the start only; '// &
+           'after a displacement of '//to_text(failure%displacement, 2)//' (rad, or parts of the mechanism''s size) it '// &
+           'stays open by '//to_text(failure%gap, 3)//' m; '
+    if (failure%kind == failure_nearly_moving_chain) then
+      text = text//'its dimensions are about '//to_text(failure%distance, 1)//' (rad, or parts of the size) from those of '// &
+             'an overconstrained mechanism that moves: give points and directions with more digits, or allow for their '// &
+             'error with &mechanism data_tolerance='//trim(power_of_ten(max(failure%distance, failure%gap/failure%size)))// &
+             ', or use pairs with more freedom'
+    else
+      text = text//'check the points and directions of its pairs, or use pairs with more freedom'
+    end if
+  end subroutine explain_locked_chain
+
+  !> The next power of ten, as a data file has it: "1e-6".
+  pure function power_of_ten(value) result(text)
+    real(wp), intent(in) :: value         !< above 0
+    character(len=5) :: text
+
+    write (text, '(a,i0)') '1e', ceiling(log10(max(value, 1.0e-15_wp)))
+  end function power_of_ten
+
+  !> Driven motions that cannot begin.
+  pure subroutine explain_start(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+    character(len=:), allocatable :: reason
+
+    select case (failure%kind)
+    case (failure_start_at_dead_point)
+      reason = ', a dead point, where rates are not finite; start a little beside it'
+    case (failure_start_on_branches)
+      reason = ', where two branches meet: '
+      call append_rates(failure, reason)
+      reason = reason//'; start a little beside it, on the one that is meant'
+    case (failure_start_unclear)
+      reason = ', where it is not certain how it goes on; start a little beside it'
+    case (failure_start_locked)
+      reason = ', which it cannot leave'
+    case (failure_start_not_left)
+      text = 'the mechanism starts in a singular position and cannot be followed off it with certainty; start a little '// &
+             'beside it'
+      return
+    case default
+      return
+    end select
+    text = 'the mechanism starts in a singular position of '//words_of_block(failure%chains, failure%coordinates)//reason
+  end subroutine explain_start
+
+  !> Append the rates by which it could go on: "dq2 = 1, dq3 = 0.5 or dq2 = 1, dq3 = -0.5 (rad/s, m/s)".
+  pure subroutine append_rates(failure, text)
+    type(failure_type), intent(in) :: failure             !< of the kind failure_start_on_branches
+    character(len=:), allocatable, intent(inout) :: text  !< the message so far
+    integer :: way, i
+
+    do way = 1, size(failure%values, 2)
+      if (way > 1) text = text//' or '
+      do i = 1, size(failure%coordinates)
+        if (i > 1) text = text//', '
+        text = text//'dq'//to_text(failure%coordinates(i))//' = '//to_text(failure%values(i, way), 5)
+      end do
+    end do
+    text = text//merge(' (rad/s, m/s)', ' (deg/s, m/s)', abs(failure%angle_unit - 1.0_wp) <= 0.0_wp)
+  end subroutine append_rates
+
+  !> Driven motions that cannot go on.
+  pure subroutine explain_end(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+    character(len=:), allocatable :: place
+    integer :: digits, i
+
+    select case (failure%kind)
+    case (failure_escape)
+      ! the end is known less sharply than that at a dead point
+      digits = 7
+    case (failure_dead_point, failure_lost_branch)
+      digits = 13
+    case default
+      return
+    end select
+    place = ''
+    do i = 1, size(failure%others)
+      if (i > 1) place = place//', '
+      place = place//'q'//to_text(failure%others(i))//' = '//to_text(failure%values(i, 1), digits)
+    end do
+    text = 'the motion cannot go on beyond t = '//to_text(failure%t, digits)//' s: '// &
+           words_of_block(failure%chains, failure%coordinates)
+    if (failure%kind == failure_escape) then
+      text = text//' cannot follow up to '//place//', where coordinate '//to_text(failure%growing)//' grows beyond all bounds'
+      return
+    end if
+    text = text//trim(merge(' reach  ', ' reaches', failure%number > 1))
+    if (failure%kind == failure_dead_point) then
+      text = text//' a dead point at '//place//' and cannot follow farther'
+    else
+      text = text//' a singular position at '//place//', where it is not certain how the motion goes on'
+    end if
+  end subroutine explain_end
+
+  !> Equations of motion that cannot be evaluated.
+  pure subroutine explain_equations(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    select case (failure%kind)
+    case (failure_singular_block, failure_singular_start_block)
+      text = words_of_block(failure%chains, failure%coordinates)// &
+             ' is in a singular position for these independent coordinates'
+      if (failure%kind == failure_singular_start_block) &
+        text = text//'; choose other independent coordinates, or start a little beside it'
+    case (failure_no_inertia)
+      text = 'independent coordinate '//to_text(failure%coordinates)//' has no inertia: no link with mass moves with it '// &
+             '(apart from those that the independent coordinates before it move already); give a &body'
+    case (failure_singular_step)
+      text = 'the step comes too near to a singular position of its independent coordinates'
+    case (failure_unclosed_step)
+      text = chain_names(failure%chains)//' cannot be closed near the position at t = '//to_text(failure%t, 10)//' s'
+    case (failure_other_branch)
+      text = 'with other independent coordinates the chains close on another branch: coordinate '// &
+             to_text(failure%coordinates)//' would jump'
+    case (failure_infinite_rate)
+      text = 'rate of change number '//to_text(failure%number)// &
+             ' is not finite: the motion, or a force, grows beyond all bounds'
+    case (failure_infinite_jacobian)
+      text = 'Jacobian number '//to_text(failure%number)//' is not finite: the motion, or a force, grows beyond all bounds'
+    end select
+  end subroutine explain_equations
+
+  !> Simulations that cannot begin or go on.
+  pure subroutine explain_simulation(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    select case (failure%kind)
+    case (failure_open_position)
+      text = 'the closed chains are open by '//to_text(failure%gap, 3)//' m at t = '//to_text(failure%t, 7)// &
+             ' s, and '//to_text(failure%tolerance, 3)//' m is allowed ('//to_text(failure%tolerance/failure%size, 1)// &
+             ' of the mechanism''s size): its dimensions let it move near the start only; give points and directions with '// &
+             'more digits, or a larger &mechanism data_tolerance'
+    case (failure_no_initial_position)
+      text = 'the independent coordinate '//to_text(failure%coordinates)//' of this pair has no initial position; '// &
+             'give &initial coordinate='//to_text(failure%coordinates)//', position=..., velocity=... /'
+    case (failure_not_started)
+      text = 'a motion must be started before it can advance'
+    case (failure_backwards)
+      text = 'the motion stands at t = '//to_text(failure%t, 10)//' s and cannot go back to t = '// &
+             to_text(failure%t_stop, 10)//' s; start it anew'
+    case (failure_interrupted)
+      text = 'interrupted before t = '//to_text(failure%t, 10)//' s'
+    end select
+  end subroutine explain_simulation
+
+  !> Points through which no spline can be laid.
+  pure subroutine explain_points(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    select case (failure%kind)
+    case (failure_few_points)
+      text = 'a smooth curve needs at least 4 points, and there are '//to_text(failure%number)
+    case (failure_points_order)
+      text = 'points must have increasing abscissae; point '//to_text(failure%number + 1)// &
+             ' does not come after point '//to_text(failure%number)
+    case (failure_no_spline)
+      text = 'no smooth curve runs through these points'
+    end select
+  end subroutine explain_points
+
+  !> Reasons why a mechanism is not planar.
+  pure subroutine explain_no_plane(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the sentence
+
+    select case (failure%kind)
+    case (failure_chain_dimensions)
+      text = 'the motions of '//chain_names(failure%chains)//' have '//to_text(failure%number)//' dimensions, not 3'
+    case (failure_nothing_turns)
+      text = 'no pair turns'
+    case (failure_pair_off_plane)
+      text = 'pair '//to_text(failure%coordinates)//' neither turns about the plane''s normal nor slides across it'
+    case (failure_chain_off_plane)
+      text = chain_names(failure%chains)//' does not close in a plane'
+    end select
+  end subroutine explain_no_plane
+end module mech9_explanation

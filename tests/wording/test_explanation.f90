@@ -1,0 +1,223 @@
+!> Sentences from failures in numbers: each kind has one, and it is the one that users know.
+program test_explanation
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, add_place, place_type, exit_integrator, exit_singular, exit_structure
+  use mech9_failure, only: failure_type, last_failure, failure_wrong_choice, failure_large_block, failure_locked_chain, &
+    failure_nearly_moving_chain, failure_undetermined_coordinates, failure_undetermined_block, failure_contradictory_inputs, &
+    failure_start_on_branches, failure_start_unclear, failure_start_locked, failure_start_not_left, failure_escape, &
+    failure_dead_point, failure_lost_branch, failure_singular_block, failure_singular_start_block, failure_other_branch, &
+    failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_spline, failure_no_inertia
+  use mech9_explanation, only: explain
+  use mech9_testing, only: tester_type, message_of
+  implicit none
+  type(tester_type) :: test
+
+  call each_kind()
+  call choices()
+  call blocks()
+  call motions()
+  call stopped_integration()
+  call kept_message()
+  call test%finish()
+
+contains
+
+  !> No kind keeps the message that `raise` gives it, and an explained error keeps its sentence.
+  subroutine each_kind()
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: fallback, sentence
+    integer :: kind
+
+    do kind = 1, last_failure
+      call raise(err, exit_structure, kind)
+      call fill(err%failure)
+      fallback = err%message
+      call explain(err)
+      sentence = err%message
+      call test%is_true(sentence /= fallback .and. len(sentence) > 10, fallback//' has a sentence: '//sentence)
+      call test%is_true(.not. allocated(err%failure), fallback//' is explained once')
+      call explain(err)
+      call test%is_true(err%message == sentence, fallback//' stays explained')
+      call test%is_true(err%code == exit_structure, fallback//' keeps its code')
+    end do
+    call raise(err, exit_structure, last_failure + 1)
+    fallback = err%message
+    call explain(err)
+    call test%is_true(err%message == fallback, 'an unknown kind keeps the message that names it')
+  end subroutine each_kind
+
+  !> All numbers that any kind may need.
+  subroutine fill(failure)
+    type(failure_type), intent(inout) :: failure    !< of any kind
+
+    failure%chains = [2]
+    failure%coordinates = [4]
+    failure%others = [1]
+    allocate (failure%idle(0), failure%replaces(6, 1), failure%values(1, 1))
+    failure%replaces = .false.
+    failure%values = 1.5_wp
+    failure%name = 'bdg'
+    failure%link = 3
+    failure%growing = 5
+    failure%number = 6
+    failure%limit = 7
+    failure%gap = 1.0e-7_wp
+    failure%distance = 1.0e-5_wp
+    failure%tolerance = 1.0e-9_wp
+  end subroutine fill
+
+  !> Choices of independent coordinates: too few, too many, none possible.
+  subroutine choices()
+    type(error_type), allocatable :: err
+
+    call raise(err, exit_structure, failure_wrong_choice)
+    err%failure%number = 4
+    err%failure%coordinates = [integer ::]
+    err%failure%others = [1]
+    err%failure%idle = [4]
+    err%failure%replaces = reshape([.true., .true., .true., .false.], [4, 1])
+    call says(err, 'the mobility is 1 (4 coordinates, rank 3), and no coordinate is independent; 1 more of the coordinates '// &
+              '1, 2, 3 must be independent (cq); cq = 1 would serve; instead of 1 also 2, 3; never: 4, which cannot move')
+    err%failure%coordinates = [1, 2]
+    err%failure%idle = [integer ::]
+    call says(err, 'the mobility is 1 (4 coordinates, rank 3), and 2 coordinates are independent; take 1 of the coordinates '// &
+              '1, 2 off the independent ones (cq); cq = 1 would serve; instead of 1 also 2, 3')
+    err%failure%coordinates = [2]
+    err%failure%others = [integer ::]
+    call says(err, 'the mobility is 0 (4 coordinates, rank 4), and 1 coordinate is independent; the mechanism cannot move, '// &
+              'no coordinate can be independent')
+    call raise(err, exit_structure, failure_undetermined_coordinates)
+    err%failure%coordinates = [3, 5]
+    call says(err, 'the independent coordinates cannot determine the others: 2 more must be independent (cq); 3, 5 would serve')
+  end subroutine choices
+
+  !> Blocks that are too large, undetermined, contradictory or locked.
+  subroutine blocks()
+    type(error_type), allocatable :: err
+
+    call raise(err, exit_structure, failure_large_block)
+    err%failure%number = 3001
+    err%failure%limit = 3000
+    call says(err, '3001 coordinates could only be solved for together, and at most 3000 can be; take independent '// &
+              'coordinates (cq) nearer to link 1')
+    call raise(err, exit_structure, failure_undetermined_block)
+    err%failure%chains = [1, 3]
+    call says(err, 'closed chains 1, 3 together cannot determine all dependent coordinates from the independent ones near '// &
+              'the start: it is singular there')
+    call raise(err, exit_structure, failure_contradictory_inputs)
+    err%failure%chains = [2]
+    call says(err, 'the independent coordinates cannot all move freely: closed chain 2 would not stay closed')
+    call raise(err, exit_structure, failure_locked_chain)
+    err%failure%chains = [1]
+    err%failure%number = 1
+    err%failure%displacement = 0.3_wp
+    err%failure%gap = 0.0123_wp
+    call says(err, 'closed chain 1 does not move: 1 of its equations follows from the others at the start only; after a '// &
+              'displacement of 0.3 (rad, or parts of the mechanism''s size) it stays open by 0.0123 m; check the points and '// &
+              'directions of its pairs, or use pairs with more freedom')
+    err%failure%kind = failure_nearly_moving_chain
+    err%failure%number = 2
+    err%failure%distance = 2.0e-6_wp
+    err%failure%gap = 1.0e-6_wp
+    call says(err, 'closed chain 1 does not move: 2 of its equations follow from the others at the start only; after a '// &
+              'displacement of 0.3 (rad, or parts of the mechanism''s size) it stays open by 1e-6 m; its dimensions are about '// &
+              '2e-6 (rad, or parts of the size) from those of an overconstrained mechanism that moves: give points and '// &
+              'directions with more digits, or allow for their error with &mechanism data_tolerance=1e-5, or use pairs with '// &
+              'more freedom')
+  end subroutine blocks
+
+  !> Driven motions that do not begin or end early. Coordinates of a block are named in ascending order.
+  subroutine motions()
+    type(error_type), allocatable :: err
+
+    call raise(err, exit_singular, failure_start_on_branches)
+    err%failure%chains = [1]
+    err%failure%coordinates = [4, 2]
+    err%failure%values = reshape([1.0_wp, 0.5_wp, -1.0_wp, -0.25_wp], [2, 2])
+    call says(err, 'the mechanism starts in a singular position of closed chain 1 (coordinates 2, 4), where two branches meet: '// &
+              'dq4 = 1, dq2 = 0.5 or dq4 = -1, dq2 = -0.25 (rad/s, m/s); start a little beside it, on the one that is meant')
+    err%failure%kind = failure_start_unclear
+    call says(err, 'the mechanism starts in a singular position of closed chain 1 (coordinates 2, 4), where it is not certain '// &
+              'how it goes on; start a little beside it')
+    err%failure%kind = failure_start_locked
+    call says(err, 'the mechanism starts in a singular position of closed chain 1 (coordinates 2, 4), which it cannot leave')
+    err%failure%kind = failure_start_not_left
+    call says(err, 'the mechanism starts in a singular position and cannot be followed off it with certainty; start a little '// &
+              'beside it')
+    err%failure%kind = failure_dead_point
+    err%failure%t = 0.25_wp
+    err%failure%others = [1, 3]
+    err%failure%values = reshape([30.0_wp, 0.5_wp], [2, 1])
+    err%failure%number = 1
+    call says(err, 'the motion cannot go on beyond t = 0.25 s: closed chain 1 (coordinates 2, 4) reaches a dead point at '// &
+              'q1 = 30, q3 = 0.5 and cannot follow farther')
+    err%failure%kind = failure_lost_branch
+    err%failure%number = 2
+    err%failure%chains = [1, 2]
+    call says(err, 'the motion cannot go on beyond t = 0.25 s: closed chains 1, 2 together (coordinates 2, 4) reach a singular '// &
+              'position at q1 = 30, q3 = 0.5, where it is not certain how the motion goes on')
+    err%failure%kind = failure_escape
+    err%failure%growing = 4
+    call says(err, 'the motion cannot go on beyond t = 0.25 s: closed chains 1, 2 together (coordinates 2, 4) cannot follow up '// &
+              'to q1 = 30, q3 = 0.5, where coordinate 4 grows beyond all bounds')
+  end subroutine motions
+
+  !> The failure of a system is told with the times of the integration that it ended.
+  subroutine stopped_integration()
+    type(error_type), allocatable :: err
+
+    call raise(err, exit_singular, failure_singular_block)
+    err%failure%chains = [1]
+    err%failure%coordinates = [3, 2]
+    call says(err, 'closed chain 1 (coordinates 2, 3) is in a singular position for these independent coordinates')
+    allocate (err%stopped)
+    err%stopped%t = 0.5_wp
+    err%stopped%t_failed = 0.75_wp
+    call says(err, 'the integration cannot go on from t = 0.5 s: at t = 0.75 s: closed chain 1 (coordinates 2, 3) is in a '// &
+              'singular position for these independent coordinates')
+    deallocate (err%stopped)
+    err%failure%kind = failure_singular_start_block
+    call says(err, 'closed chain 1 (coordinates 2, 3) is in a singular position for these independent coordinates; choose '// &
+              'other independent coordinates, or start a little beside it')
+    call raise(err, exit_singular, failure_other_branch)
+    err%failure%coordinates = [7]
+    call says(err, 'with other independent coordinates the chains close on another branch: coordinate 7 would jump')
+    call raise(err, exit_integrator, failure_step_memory)
+    err%failure%t = 2.0_wp
+    call says(err, 'the integration cannot go on from t = 2 s: there is not enough memory')
+    call raise(err, exit_integrator, failure_step_settings)
+    call says(err, 'the integration cannot go on from t = 0 s: its settings do not fit together')
+    call raise(err, exit_integrator, failure_no_spline)
+    call says(err, 'no smooth curve runs through these points')
+    call raise(err, exit_integrator, failure_no_jacobian)
+    call says(err, 'a system of equations without Jacobian was asked for it')
+    ! a user's procedure has its own message
+    call raise(err, exit_integrator, 'the force is not finite')
+    allocate (err%stopped)
+    err%stopped%t = 1.0_wp
+    err%stopped%t_failed = 1.5_wp
+    call says(err, 'the integration cannot go on from t = 1 s: at t = 1.5 s: the force is not finite')
+  end subroutine stopped_integration
+
+  !> An error with a message of its own stays as it is, and so do places.
+  subroutine kept_message()
+    type(error_type), allocatable :: err
+
+    call raise(err, exit_structure, 'no axis', place_type(4, 5))
+    call explain(err)
+    call test%is_true(err%message == 'no axis' .and. err%place%line == 4, 'an error with a message')
+    call raise(err, exit_structure, failure_no_inertia)
+    err%failure%coordinates = [2]
+    call add_place(err, place=place_type(7, 1))
+    call explain(err)
+    call test%is_true(err%place%line == 7, 'a place that was added to a failure in numbers')
+  end subroutine kept_message
+
+  !> Check the sentence about a failure, which stays in numbers.
+  subroutine says(err, sentence)
+    type(error_type), intent(in) :: err             !< the failure
+    character(len=*), intent(in) :: sentence        !< expected
+
+    call test%is_true(message_of(err) == sentence, sentence//' /= '//message_of(err))
+  end subroutine says
+end program test_explanation
