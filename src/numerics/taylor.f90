@@ -7,7 +7,8 @@ module mech9_taylor
   use mech9_kinds, only: wp
   use mech9_taylor_arithmetic, only: taylor, variable, constant, chain, assignment(=), operator(+), &
     operator(-), operator(*), operator(/)
-  use mech9_taylor_comparison, only: operator(<), operator(<=), operator(>), operator(>=), operator(==), operator(/=)
+  use mech9_taylor_comparison, only: operator(<), operator(<=), operator(>), operator(>=), operator(==), operator(/=), &
+    min, max, sign
   implicit none
   private
   public :: taylor, variable, constant
@@ -75,19 +76,6 @@ module mech9_taylor
   interface atan2
     module procedure atan2_tt, atan2_tr, atan2_rt
   end interface atan2
-
-  interface min
-    module procedure min_tt, min_tr, min_rt
-  end interface min
-
-  interface max
-    module procedure max_tt, max_tr, max_rt
-  end interface max
-
-  !> The size of the first with the sign of the second.
-  interface sign
-    module procedure sign_tt, sign_tr, sign_rt
-  end interface sign
 
   !> The third side of a right-angled triangle.
   interface hypot
@@ -283,70 +271,6 @@ contains
 
     atan2_rt = atan2_tt(constant(a), b)
   end function atan2_rt
-
-  elemental type(taylor) function min_tt(a, b)
-    type(taylor), intent(in) :: a   !< one of the two
-    type(taylor), intent(in) :: b   !< the other one
-
-    min_tt = merge(a, b, a%value <= b%value)
-  end function min_tt
-
-  elemental type(taylor) function min_tr(a, b)
-    type(taylor), intent(in) :: a   !< one of the two
-    real(wp), intent(in) :: b       !< the other one
-
-    min_tr = merge(a, constant(b), a%value <= b)
-  end function min_tr
-
-  elemental type(taylor) function min_rt(a, b)
-    real(wp), intent(in) :: a       !< one of the two
-    type(taylor), intent(in) :: b   !< the other one
-
-    min_rt = merge(constant(a), b, a <= b%value)
-  end function min_rt
-
-  elemental type(taylor) function max_tt(a, b)
-    type(taylor), intent(in) :: a   !< one of the two
-    type(taylor), intent(in) :: b   !< the other one
-
-    max_tt = merge(a, b, a%value >= b%value)
-  end function max_tt
-
-  elemental type(taylor) function max_tr(a, b)
-    type(taylor), intent(in) :: a   !< one of the two
-    real(wp), intent(in) :: b       !< the other one
-
-    max_tr = merge(a, constant(b), a%value >= b)
-  end function max_tr
-
-  elemental type(taylor) function max_rt(a, b)
-    real(wp), intent(in) :: a       !< one of the two
-    type(taylor), intent(in) :: b   !< the other one
-
-    max_rt = merge(constant(a), b, a >= b%value)
-  end function max_rt
-
-  !> |a| with the sign of b.
-  elemental type(taylor) function sign_tr(a, b)
-    type(taylor), intent(in) :: a   !< the number whose size is taken
-    real(wp), intent(in) :: b       !< the number whose sign is taken
-
-    sign_tr = sign(1.0_wp, a%value)*sign(1.0_wp, b)*a
-  end function sign_tr
-
-  elemental type(taylor) function sign_tt(a, b)
-    type(taylor), intent(in) :: a   !< the number whose size is taken
-    type(taylor), intent(in) :: b   !< the number whose sign is taken
-
-    sign_tt = sign_tr(a, b%value)
-  end function sign_tt
-
-  elemental type(taylor) function sign_rt(a, b)
-    real(wp), intent(in) :: a       !< the number whose size is taken
-    type(taylor), intent(in) :: b   !< the number whose sign is taken
-
-    sign_rt = constant(sign(a, b%value))
-  end function sign_rt
 
   elemental type(taylor) function hypot_tt(a, b)
     type(taylor), intent(in) :: a   !< one side at the right angle
