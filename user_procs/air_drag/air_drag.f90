@@ -1,7 +1,8 @@
 !> Air drag on points of links: a force k |v| v against the velocity v of each point.
 !>
-!> Parameters: five numbers for each point: link, its place x, y, z in the link [m], k [N s^2/m^2]. For a
-!> plate across the wind k is half the density of air times drag coefficient times area.
+!> The parameters are five numbers for each point: number of the link, coordinates x, y, z of the point in the link [m],
+!> and k [N s^2/m^2]. For a plate across the wind k is half the product of the density of air, the drag coefficient and
+!> the area.
 submodule (mech9_user_force) air_drag
   implicit none
 

@@ -1,8 +1,8 @@
-!> A link that runs along the edge of a disc cam, always tangent to it: wraps the old fixed-form
+!> A link that runs along the edge of a disc cam, always tangent to it. The submodule wraps the old fixed-form
 !> subroutines of oldcam.f, which are linked as they are.
 !>
-!> Parameters: base radius [m], lift [m], number of lobes. The coordinate q is the polar angle on
-!> the cam. Moving link: origin on the edge, x along the tangent, z stays z.
+!> The parameters are base radius [m], lift [m] and number of lobes. The coordinate q is the polar angle on
+!> the cam. The moving link has its origin on the edge, x along the tangent, and z parallel to that of the cam.
 submodule (mech9_user_pair_values) cam_follower
   implicit none
 

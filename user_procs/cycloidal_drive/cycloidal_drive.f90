@@ -1,7 +1,7 @@
 !> A drive that rises and comes to rest without a jump in acceleration: the cycloidal motion
 !> q = h (t/T - sin(2 pi t/T)/(2 pi)) for 0 <= t <= T.
 !>
-!> Parameters: rise h [rad or m], duration T [s].
+!> The parameters are the rise h [rad or m] and the duration T [s].
 submodule (mech9_user_drive) cycloidal_drive
   implicit none
 

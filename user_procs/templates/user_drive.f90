@@ -1,4 +1,4 @@
-!> Template: a drive of your own, in Taylor arithmetic. As it stands: a turn in parameters(1) seconds.
+!> Template of a drive of your own, in Taylor arithmetic. As it stands it makes a turn in parameters(1) seconds.
 submodule (mech9_user_drive) user_drive_template
   implicit none
 

@@ -1,5 +1,5 @@
-!> Template: a drive of your own, in plain real numbers; the program differentiates it. As it stands:
-!> a turn in parameters(1) seconds.
+!> Template of a drive of your own, in plain real numbers; the program differentiates it. As it stands
+!> it makes a turn in parameters(1) seconds.
 submodule (mech9_user_drive_values) user_drive_values_template
   implicit none
 

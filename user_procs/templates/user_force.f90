@@ -1,4 +1,4 @@
-!> Template: forces of your own. Copy it, rename the submodule, fill in your forces. As it stands: a
+!> Template of forces of your own. Copy it, rename the submodule, fill in your forces. As it stands it is a
 !> constant force parameters(1) along x on the origin of link 2.
 submodule (mech9_user_force) user_force_template
   implicit none

@@ -1,4 +1,4 @@
-!> Template: a pair of your own, in Taylor arithmetic. Copy it, rename the submodule, fill in the
+!> Template of a pair of your own, in Taylor arithmetic. Copy it, rename the submodule, fill in the
 !> three points. As it stands it is a prismatic pair along x: the moving link keeps its direction.
 submodule (mech9_user_pair) user_pair_template
   implicit none
@@ -15,6 +15,6 @@ contains
 
     r1 = [q, constant(0.0_wp), constant(0.0_wp)]
     r2 = r1 + [1.0_wp, 0.0_wp, 0.0_wp]
-    r3 = r1 - [0.0_wp, 0.0_wp, 1.0_wp]        ! 1 below the origin: so y stays y and z stays z
+    r3 = r1 - [0.0_wp, 0.0_wp, 1.0_wp]        ! 1 m below the origin, so that y and z keep their directions
   end subroutine user_pair
 end submodule user_pair_template

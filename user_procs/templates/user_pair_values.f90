@@ -1,4 +1,4 @@
-!> Template: a pair of your own, in plain real numbers; the program differentiates it, which costs
+!> Template of a pair of your own, in plain real numbers; the program differentiates it, which costs
 !> 17 calls and more for each evaluation. As it stands it is a prismatic pair along x.
 submodule (mech9_user_pair_values) user_pair_values_template
   implicit none
@@ -15,6 +15,6 @@ contains
 
     r1 = [q, 0.0_wp, 0.0_wp]
     r2 = r1 + [1.0_wp, 0.0_wp, 0.0_wp]
-    r3 = r1 - [0.0_wp, 0.0_wp, 1.0_wp]        ! 1 below the origin: so y stays y and z stays z
+    r3 = r1 - [0.0_wp, 0.0_wp, 1.0_wp]        ! 1 m below the origin, so that y and z keep their directions
   end subroutine user_pair_values
 end submodule user_pair_values_template

@@ -1,8 +1,9 @@
 !> An elliptic trammel: a link whose point A slides along the x axis and whose point B slides along
 !> the y axis of the reference link. Every other point of the line AB runs on an ellipse.
 !>
-!> Parameter 1: the length a of AB [m]. The coordinate q is the angle of AB:
-!> A = (a cos q, 0, 0), B = (0, a sin q, 0). Moving link: origin in A, x towards B, z stays z.
+!> Parameter 1 is the length a of AB [m]. The coordinate q is the angle of AB:
+!> A = (a cos q, 0, 0), B = (0, a sin q, 0). The moving link has its origin in A, x towards B, and z parallel to that of
+!> the reference link.
 submodule (mech9_user_pair) trammel
   implicit none
 
