@@ -78,7 +78,7 @@ contains
   end subroutine the_help
 
   subroutine help_of(group, text, err)
-    character(len=*), intent(in) :: group                !< or group.name; empty for the list of groups
+    character(len=*), intent(in) :: group                !< name of a group; empty: the list of groups
     character(len=:), allocatable, intent(out) :: text   !< the help
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(source_type) :: source
