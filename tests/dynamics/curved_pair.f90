@@ -23,10 +23,10 @@ contains
 
   !> Turned by q + 0.2 sin q; origin at (0.3 sin q, 0.1 - 0.1 cos q, 0.1 q^2).
   subroutine evaluate(self, q, motion, err)
-    class(curved_pair_type), intent(in) :: self
-    real(wp), intent(in) :: q
-    type(pair_motion_type), intent(out) :: motion
-    type(error_type), allocatable, intent(out) :: err
+    class(curved_pair_type), intent(in) :: self         !< the pair
+    real(wp), intent(in) :: q                           !< its coordinate
+    type(pair_motion_type), intent(out) :: motion       !< of the moving link in the reference link
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (self%broken) then
       call raise(err, exit_data, 'this pair has no value')
@@ -41,22 +41,22 @@ contains
   end subroutine evaluate
 
   pure subroutine as_screw(self, factors, is_screw)
-    class(curved_pair_type), intent(in) :: self
-    type(screw_factors_type), intent(out) :: factors
-    logical, intent(out) :: is_screw
+    class(curved_pair_type), intent(in) :: self        !< the pair
+    type(screw_factors_type), intent(out) :: factors   !< not set
+    logical, intent(out) :: is_screw                   !< false
 
     is_screw = .false.
   end subroutine as_screw
 
   pure function kind_name(self) result(name)
-    class(curved_pair_type), intent(in) :: self
+    class(curved_pair_type), intent(in) :: self   !< the pair
     character(len=kind_name_length) :: name
 
     name = 'curved'
   end function kind_name
 
   pure integer function user_calls(self)
-    class(curved_pair_type), intent(in) :: self
+    class(curved_pair_type), intent(in) :: self   !< the pair
 
     user_calls = 0
   end function user_calls

@@ -78,10 +78,11 @@ module mech9_integration_problems
 contains
 
   subroutine orbit_rate(self, t, y, ydot, err)
-    class(orbit_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(orbit_type), intent(inout) :: self            !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     ydot(1:2) = y(3:4)
     ydot(3:4) = -y(1:2)/norm2(y(1:2))**3
@@ -89,7 +90,7 @@ contains
 
   !> At the point next to the centre, t = 0.
   pure function orbit_start(eccentricity) result(y)
-    real(wp), intent(in) :: eccentricity
+    real(wp), intent(in) :: eccentricity   !< of the orbit, 0 to 1
     real(wp) :: y(4)
 
     y = [1.0_wp - eccentricity, 0.0_wp, 0.0_wp, sqrt((1.0_wp + eccentricity)/(1.0_wp - eccentricity))]
@@ -97,7 +98,8 @@ contains
 
   !> By Kepler's equation, E - e sin E = t.
   pure function orbit_at(eccentricity, t) result(y)
-    real(wp), intent(in) :: eccentricity, t
+    real(wp), intent(in) :: eccentricity   !< of the orbit, 0 to 1
+    real(wp), intent(in) :: t              !< time [s]
     real(wp) :: y(4), anomaly, rate, width
     integer :: i
 
@@ -111,27 +113,29 @@ contains
   end function orbit_at
 
   subroutine pendulum_rate(self, t, y, ydot, err)
-    class(pendulum_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(pendulum_type), intent(inout) :: self         !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     ydot(1) = y(2)
     ydot(2) = -sin(y(1))
   end subroutine pendulum_rate
 
   subroutine power_rate(self, t, y, ydot, err)
-    class(power_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(power_type), intent(inout) :: self            !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     ydot = t**self%power
   end subroutine power_rate
 
   !> From rest at an angle to the lowest point: K(sin(angle/2)), by the arithmetic-geometric mean.
   pure real(wp) function pendulum_quarter_period(angle) result(quarter)
-    real(wp), intent(in) :: angle
+    real(wp), intent(in) :: angle   !< from the lowest point [rad]
     real(wp) :: a, g, mean
     integer :: i
 
@@ -146,39 +150,44 @@ contains
   end function pendulum_quarter_period
 
   subroutine swing_rate(self, t, y, ydot, err)
-    class(swing_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(swing_type), intent(inout) :: self            !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     ydot(1) = y(2)
     ydot(2) = -sin(y(1)) - 0.2_wp*y(2) + 0.5_wp*cos(0.7_wp*t)
   end subroutine swing_rate
 
   subroutine push_rate(self, t, y, ydot, err)
-    class(push_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(push_type), intent(inout) :: self             !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     ydot(1) = y(2)
     ydot(2) = cos(20.0_wp*t)
   end subroutine push_rate
 
   subroutine stiff_rate(self, t, y, ydot, err)
-    class(stiff_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(stiff_type), intent(inout) :: self            !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     ydot = -self%stiffness*(y - cos(t)) - sin(t)
   end subroutine stiff_rate
 
   subroutine stiff_jacobian(self, t, y, ydot, jac, err)
-    class(stiff_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:), ydot(:)
-    real(wp), intent(out) :: jac(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    class(stiff_type), intent(inout) :: self            !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(in) :: ydot(:)                     !< its rate of change
+    real(wp), intent(out) :: jac(:, :)                  !< derivatives of the rate by the vector
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     jac = 0.0_wp
@@ -188,19 +197,21 @@ contains
   end subroutine stiff_jacobian
 
   subroutine explosion_rate(self, t, y, ydot, err)
-    class(explosion_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(explosion_type), intent(inout) :: self        !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     ydot = y**2
   end subroutine explosion_rate
 
   subroutine obstacle_rate(self, t, y, ydot, err)
-    class(obstacle_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(obstacle_type), intent(inout) :: self         !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical :: passed
 
     if (self%in_time) then
@@ -218,19 +229,20 @@ contains
   end subroutine obstacle_rate
 
   subroutine rotation_rate(self, t, y, ydot, err)
-    class(rotation_type), intent(inout) :: self
-    real(wp), intent(in) :: t, y(:)
-    real(wp), intent(out) :: ydot(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(rotation_type), intent(inout) :: self         !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     ydot = [-y(2), y(1)]
   end subroutine rotation_rate
 
   subroutine rotation_settle(self, t, y, err)
-    class(rotation_type), intent(inout) :: self
-    real(wp), intent(in) :: t
-    real(wp), intent(inout) :: y(:)
-    type(error_type), allocatable, intent(out) :: err
+    class(rotation_type), intent(inout) :: self         !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(inout) :: y(:)                     !< the integrated vector
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (t - self%t_settled > self%refuse_longer_than) then
       call raise(err, exit_singular, 'too far to settle')
@@ -244,15 +256,15 @@ contains
 
   !> From (0, y) to t_end, with one tolerance for everything, or with equal steps that pass every error test.
   subroutine integrate(system, method, tolerance, t_end, y, statistics, err, equal_step, outputs)
-    class(ode_system_type), intent(inout), target :: system
-    character(len=*), intent(in) :: method
-    real(wp), intent(in) :: tolerance
-    real(wp), intent(in) :: t_end
-    real(wp), intent(inout) :: y(:)
-    type(integration_statistics_type), intent(out) :: statistics
-    type(error_type), allocatable, intent(out) :: err
-    real(wp), intent(in), optional :: equal_step
-    integer, intent(in), optional :: outputs           !< equal parts of the way, each met exactly
+    class(ode_system_type), intent(inout), target :: system        !< that is integrated
+    character(len=*), intent(in) :: method                         !< name of the method
+    real(wp), intent(in) :: tolerance                              !< relative and absolute
+    real(wp), intent(in) :: t_end                                  !< end of the integration [s]
+    real(wp), intent(inout) :: y(:)                                !< at the start, then at the end
+    type(integration_statistics_type), intent(out) :: statistics   !< work of the integrator
+    type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
+    real(wp), intent(in), optional :: equal_step                   !< length of all steps [s]; the integrator chooses unless given
+    integer, intent(in), optional :: outputs                       !< equal parts of the way, each met exactly
     type(integrator_type) :: integrator
     real(wp) :: absolute(size(y)), t, t_stop
     integer :: i, n

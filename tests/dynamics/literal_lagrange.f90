@@ -42,11 +42,11 @@ contains
 
   !> The equations at the closed position in `state`, for its rates of the independent coordinates.
   subroutine literal_equations(mechanism, plan, state, literal, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
-    type(literal_type), intent(out) :: literal
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< its plan
+    type(state_type), intent(in) :: state               !< a closed position
+    type(literal_type), intent(out) :: literal          !< coefficients, velocity terms and forces
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: around(-half_width:half_width)
     real(wp), allocatable :: derivatives(:, :), a(:, :, :), da(:, :, :), rates(:)
     real(wp) :: unused, error
@@ -85,11 +85,11 @@ contains
 
   !> The closed positions at distances i h of one independent coordinate, each reached from the one before.
   subroutine neighbours(plan, centre, coordinate, around, err)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: centre
-    integer, intent(in) :: coordinate
-    type(state_type), intent(out) :: around(-half_width:half_width)
-    type(error_type), allocatable, intent(out) :: err
+    type(plan_type), intent(in) :: plan                               !< its plan
+    type(state_type), intent(in) :: centre                            !< a closed position
+    integer, intent(in) :: coordinate                                 !< that is changed
+    type(state_type), intent(out) :: around(-half_width:half_width)   !< closed positions at i h
+    type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
     integer :: i, side
 
     around(0) = centre
@@ -105,9 +105,9 @@ contains
 
   !> Close all chains from the coordinates in `state`, with one step of Newton's method more than it needs.
   subroutine close_chains(plan, state, err)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(inout) :: state
-    type(error_type), allocatable, intent(out) :: err
+    type(plan_type), intent(in) :: plan                 !< its plan
+    type(state_type), intent(inout) :: state            !< its coordinates, from guesses to closed ones
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_work_type) :: work
     type(newton_outcome_type) :: outcome
     integer :: b
@@ -133,11 +133,11 @@ contains
 
   !> Derivatives of a snapshot with respect to each independent coordinate: (snapshot, I).
   subroutine differentiate(mechanism, plan, state, derivatives, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
-    real(wp), allocatable, intent(out) :: derivatives(:, :)
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(plan_type), intent(in) :: plan                       !< its plan
+    type(state_type), intent(in) :: state                     !< its state
+    real(wp), allocatable, intent(out) :: derivatives(:, :)   !< (snapshot,I) by the independent coordinates
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(state_type) :: around(-half_width:half_width)
     real(wp), allocatable :: values(:, :)
     real(wp) :: unused, error
@@ -159,9 +159,9 @@ contains
 
   !> All numbers that are differentiated: of each body, then of each load.
   function snapshot(mechanism, plan, state) result(numbers)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan             !< its plan
+    type(state_type), intent(in) :: state           !< its state
     real(wp) :: numbers(body_size*size(mechanism%bodies) + load_size*size(mechanism%loads))
     type(pose_type) :: pose
     integer :: i, first
@@ -179,9 +179,9 @@ contains
   end function snapshot
 
   function load_snapshot(load, plan, state) result(numbers)
-    class(load_type), intent(in) :: load
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
+    class(load_type), intent(in) :: load    !< the load
+    type(plan_type), intent(in) :: plan     !< its plan
+    type(state_type), intent(in) :: state   !< its state
     real(wp) :: numbers(load_size)
     type(pose_type) :: pose
 
@@ -203,9 +203,9 @@ contains
 
   !> A link's own system in that of link 1.
   pure function link_pose(plan, state, link) result(pose)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
-    integer, intent(in) :: link
+    type(plan_type), intent(in) :: plan     !< its plan
+    type(state_type), intent(in) :: state   !< its state
+    integer, intent(in) :: link             !< its number
     type(pose_type) :: pose
     real(wp) :: omega(3), v(3)
 
@@ -214,8 +214,8 @@ contains
 
   !> (21): sum of m du/dq_p . du/dq_r + sum_jkl dA_jk/dq_p dA_jl/dq_r J'_kl.
   pure function coefficients_of(mechanism, derivatives) result(a)
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), intent(in) :: derivatives(:, :)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    real(wp), intent(in) :: derivatives(:, :)       !< (snapshot,I) by the independent coordinates
     real(wp) :: a(size(derivatives, 2), size(derivatives, 2))
     real(wp) :: moments(3, 3), rotation_p(3, 3), rotation_r(3, 3)
     integer :: i, first, p, r, j, k, l
@@ -244,10 +244,10 @@ contains
 
   !> (25): forces and couples on links; springs as -dV/dq, dampers by the rates of their lengths.
   function forces_of(mechanism, here, derivatives, rates) result(forces)
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), intent(in) :: here(:)               !< snapshot
-    real(wp), intent(in) :: derivatives(:, :)
-    real(wp), intent(in) :: rates(:)              !< of the independent coordinates
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    real(wp), intent(in) :: here(:)                 !< snapshot
+    real(wp), intent(in) :: derivatives(:, :)       !< (snapshot,I) by the independent coordinates
+    real(wp), intent(in) :: rates(:)                !< of the independent coordinates
     real(wp) :: forces(size(rates))
     integer :: i, p, first
 
@@ -268,8 +268,10 @@ contains
 
   !> Generalized forces of one load.
   function load_forces(load, here, derivatives, rates) result(forces)
-    class(load_type), intent(in) :: load
-    real(wp), intent(in) :: here(load_size), derivatives(:, :), rates(:)
+    class(load_type), intent(in) :: load        !< the load
+    real(wp), intent(in) :: here(load_size)     !< its part of the snapshot
+    real(wp), intent(in) :: derivatives(:, :)   !< (snapshot,I) by the independent coordinates
+    real(wp), intent(in) :: rates(:)            !< of the independent coordinates
     real(wp) :: forces(size(rates)), rotation(3, 3), force(3), torque(3)
     integer :: p, l
 

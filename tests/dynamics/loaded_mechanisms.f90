@@ -23,7 +23,7 @@ contains
 
   !> Three moving links: revolute, prismatic (its links given the other way round), helical; all loads.
   subroutine open_chain(mechanism)
-    type(mechanism_type), intent(out) :: mechanism
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     type(random_type) :: random
     type(pose_type) :: at
     type(screw_pair_type) :: helix
@@ -43,8 +43,8 @@ contains
 
   !> The paper's Fig. 1 with the independent coordinate `driven`; all loads, also across the plane.
   subroutine loaded_fig1(driven, mechanism)
-    integer, intent(in) :: driven
-    type(mechanism_type), intent(out) :: mechanism
+    integer, intent(in) :: driven                    !< number of the independent coordinate
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     type(random_type) :: random
 
     call fig1(driven, mechanism)
@@ -55,7 +55,7 @@ contains
 
   !> Five planar links, two degrees of freedom.
   subroutine five_bar(mechanism)
-    type(mechanism_type), intent(out) :: mechanism
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     type(random_type) :: random
     real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
 
@@ -71,7 +71,7 @@ contains
 
   !> The general spatial loop of seven revolutes, a little away from where it was drawn.
   subroutine loaded_loop(mechanism)
-    type(mechanism_type), intent(out) :: mechanism
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     type(random_type) :: random
 
     call general_loop(mechanism)
@@ -86,8 +86,8 @@ contains
   !>   loop B   3-9-10-11-12-13-5               coordinates 9 to 14, over links 3, 4, 5 of loop A
   !>   branch   11-14-15                        coordinates 15, 16
   subroutine two_loops(independent, mechanism)
-    integer, intent(in) :: independent(2)      !< those of the loops
-    type(mechanism_type), intent(out) :: mechanism
+    integer, intent(in) :: independent(2)            !< those of the loops
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     integer, parameter :: links(2, 16) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8, 1, &
                                                   3, 9, 10, 9, 10, 11, 11, 12, 12, 13, 13, 5, 11, 14, 14, 15], [2, 16])
     type(random_type) :: random
@@ -113,8 +113,10 @@ contains
   end subroutine two_loops
 
   subroutine add_curved(mechanism, k, reference, moving)
-    type(mechanism_type), intent(inout) :: mechanism
-    integer, intent(in) :: k, reference, moving
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    integer, intent(in) :: k                           !< coordinate of the pair
+    integer, intent(in) :: reference                   !< number of its reference link
+    integer, intent(in) :: moving                      !< number of its moving link
     type(curved_pair_type) :: pair
 
     pair%coordinate = k
@@ -125,7 +127,7 @@ contains
   end subroutine add_curved
 
   function random_frame(random) result(at)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(pose_type) :: at
     real(wp) :: point(3)
 
@@ -135,7 +137,7 @@ contains
 
   !> No bodies, no loads, no gravity.
   subroutine without_loads(mechanism)
-    type(mechanism_type), intent(inout) :: mechanism
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
 
     mechanism%gravity = 0.0_wp
     if (allocated(mechanism%bodies)) deallocate (mechanism%bodies)
@@ -146,8 +148,8 @@ contains
   !> A body on every moving link, gravity, and loads of every kind on moving links, between them and to the
   !> frame, on every coordinate.
   subroutine load_everything(random, mechanism)
-    type(random_type), intent(inout) :: random
-    type(mechanism_type), intent(inout) :: mechanism
+    type(random_type), intent(inout) :: random         !< source of the random numbers
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     integer :: i, k, last
 
     call without_loads(mechanism)
@@ -172,7 +174,7 @@ contains
   end subroutine load_everything
 
   function ends(random) result(positions)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     real(wp) :: positions(3, 2)
 
     positions(:, 1) = random_vector(random)
@@ -181,7 +183,7 @@ contains
 
   !> Five points (x, y, z, mass).
   function random_masses(random) result(points)
-    type(random_type), intent(inout) :: random
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     real(wp) :: points(4, 5)
     integer :: i
 
@@ -193,10 +195,10 @@ contains
 
   !> Points with mass on a link: together as one body, by its mass, centre and tensor, or a body each.
   subroutine add_point_masses(mechanism, link, points, together)
-    type(mechanism_type), intent(inout) :: mechanism
-    integer, intent(in) :: link
-    real(wp), intent(in) :: points(:, :)       !< (4, n): x, y, z, mass
-    logical, intent(in) :: together
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    integer, intent(in) :: link                        !< that carries the points
+    real(wp), intent(in) :: points(:, :)               !< (4, n): x, y, z, mass
+    logical, intent(in) :: together                    !< one body, not one for each point
     real(wp) :: mass, centre(3), inertia(3, 3), arm(3)
     integer :: i, j
 
@@ -219,16 +221,18 @@ contains
   end subroutine add_point_masses
 
   subroutine add_body(mechanism, link, mass, centre, inertia)
-    type(mechanism_type), intent(inout) :: mechanism
-    integer, intent(in) :: link
-    real(wp), intent(in) :: mass, centre(3), inertia(3, 3)
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    integer, intent(in) :: link                        !< its number
+    real(wp), intent(in) :: mass                       !< [kg]
+    real(wp), intent(in) :: centre(3)                  !< mass centre in the link [m]
+    real(wp), intent(in) :: inertia(3, 3)              !< about the mass centre [kg m^2]
 
     mechanism%bodies = [mechanism%bodies, body_type(link=link, mass=mass, centre=centre, inertia=inertia)]
   end subroutine add_body
 
   subroutine add_load(mechanism, load)
-    type(mechanism_type), intent(inout) :: mechanism
-    class(load_type), intent(in) :: load
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    class(load_type), intent(in) :: load               !< that is added
     type(load_slot_type), allocatable :: longer(:)
     integer :: i
 

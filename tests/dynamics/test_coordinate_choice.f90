@@ -26,16 +26,16 @@ contains
 
   !> A crank and a rocker.
   subroutine new_four_bar(mechanism)
-    type(mechanism_type), intent(out) :: mechanism
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
 
     call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], mechanism)
   end subroutine new_four_bar
 
   !> Take other independent coordinates at the start of the unbroken four-bar.
   subroutine choose(independent, code, why)
-    logical, intent(in) :: independent(:)      !< (M)
-    integer, intent(in) :: code                !< of the failure; 0: none
-    character(len=*), intent(in) :: why
+    logical, intent(in) :: independent(:)   !< (M)
+    integer, intent(in) :: code             !< of the failure; 0: none
+    character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
     type(mechanism_type) :: whole, other_mechanism
     type(plan_type) :: plan, other_plan
     type(state_type) :: state, other_state
@@ -56,7 +56,7 @@ contains
 
   !> Put a pair in the place of the third one whose procedure has no value anywhere.
   subroutine break_pair(mechanism)
-    type(mechanism_type), intent(inout) :: mechanism
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     type(curved_pair_type) :: broken
 
     broken%broken = .true.

@@ -29,7 +29,7 @@ contains
 
   !> One slide of 1 kg on a spring of 1 N/m.
   subroutine swing(system)
-    type(motion_system_type), intent(inout) :: system
+    type(motion_system_type), intent(inout) :: system   !< begun at its start
     type(mechanism_type) :: mechanism
     type(coordinate_load_type) :: load
 
@@ -46,8 +46,8 @@ contains
 
   !> A crank-rocker with a heavy crank, assembled at the guess.
   subroutine rocker(guess, system)
-    real(wp), intent(in) :: guess(4)
-    type(motion_system_type), intent(inout) :: system
+    real(wp), intent(in) :: guess(4)                    !< of the coordinates [rad]
+    type(motion_system_type), intent(inout) :: system   !< begun at its start
     type(mechanism_type) :: mechanism
 
     call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, guess, mechanism)
@@ -58,9 +58,9 @@ contains
 
   !> The system of a mechanism at its start.
   subroutine begin(mechanism, rate, system)
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), intent(in) :: rate
-    type(motion_system_type), intent(inout) :: system
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    real(wp), intent(in) :: rate                        !< of the independent coordinate [rad/s, m/s]
+    type(motion_system_type), intent(inout) :: system   !< begun at its start
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
@@ -76,9 +76,9 @@ contains
 
   !> The end of a step of the swing at time t.
   subroutine add_end(system, dense_output, t)
-    type(motion_system_type), intent(inout) :: system
-    type(dense_output_type), intent(inout) :: dense_output
-    real(wp), intent(in) :: t
+    type(motion_system_type), intent(inout) :: system        !< moved to this end
+    type(dense_output_type), intent(inout) :: dense_output   !< takes the end
+    real(wp), intent(in) :: t                                !< time of the end [s]
     type(error_type), allocatable :: err
     real(wp) :: y(2)
 
@@ -90,11 +90,11 @@ contains
 
   !> Compare what is found at time t with the closed form.
   subroutine check_swing(system, dense_output, t, expected, why)
-    type(motion_system_type), intent(inout) :: system
-    type(dense_output_type), intent(inout) :: dense_output
-    real(wp), intent(in) :: t
-    logical, intent(in) :: expected            !< it is found
-    character(len=*), intent(in) :: why
+    type(motion_system_type), intent(inout) :: system        !< closes the chains at time t
+    type(dense_output_type), intent(inout) :: dense_output   !< that is checked
+    real(wp), intent(in) :: t                                !< [s]
+    logical, intent(in) :: expected                          !< it is found
+    character(len=*), intent(in) :: why                      !< the statement that is checked, printed where it is wrong
     type(error_type), allocatable :: err
     real(wp) :: y(2)
     logical :: found

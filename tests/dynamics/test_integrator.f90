@@ -27,8 +27,8 @@ contains
   !> Equal steps, halved: on an orbit of eccentricity 0.5 the error falls by 2**order. The steps are so short
   !> that the next terms are some percent, and so long that the errors (1e-12 and more) stand out of round-off.
   subroutine check_order(test, method)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: method              !< its number among all methods
     type(orbit_type), target :: orbit
     type(integration_statistics_type) :: statistics
     real(wp) :: error(2), error_there, order, h
@@ -61,8 +61,8 @@ contains
   !> a little unevenly where the order varies. An orbit takes ten to some thousand steps, and makes early
   !> errors some ten times larger: at 1e-12, below 2e-8.
   subroutine check_tolerances(test, method)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: method              !< its number among all methods
     type(orbit_type), target :: orbit
     type(integration_statistics_type) :: statistics
     real(wp) :: error, first_error, last_error, slope
@@ -87,8 +87,8 @@ contains
 
   !> A pendulum let go at 2 radians is at the lowest point after K(sin 1), at the rate of its energy.
   subroutine check_pendulum(test, method)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: method              !< its number among all methods
     type(pendulum_type), target :: pendulum
     type(integration_statistics_type) :: statistics
     real(wp) :: error
@@ -102,8 +102,8 @@ contains
   !> Where time alone acts, the error estimates of some methods see less than elsewhere; Fehlberg's sees
   !> nothing at all, as its coefficients tell, and is told not to be used.
   subroutine check_push(test, method)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: method              !< its number among all methods
     type(push_type), target :: push
     type(integration_statistics_type) :: statistics
     real(wp) :: error
@@ -117,7 +117,7 @@ contains
 
   !> Without a closed form: all methods come closer to each other as the tolerance falls.
   subroutine check_agreement(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(swing_type), target :: swing
     type(integration_statistics_type) :: statistics
     type(error_type), allocatable :: err
@@ -142,7 +142,7 @@ contains
   !> An explicit method needs steps of some 3/stiffness, more than 30000 here. Backward differences follow
   !> the slow solution, with differences as with the system's own Jacobian.
   subroutine check_stiff(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(stiff_type), target :: stiff
     type(integration_statistics_type) :: statistics(2)
     real(wp) :: error
@@ -163,13 +163,16 @@ contains
 
   !> The largest error at the end of an integration.
   subroutine run(test, system, start, t_end, method, tolerance, expected, error, statistics, equal_step)
-    type(tester_type), intent(inout) :: test
-    class(ode_system_type), intent(inout), target :: system
-    real(wp), intent(in) :: start(:), t_end, tolerance, expected(:)
-    integer, intent(in) :: method
-    real(wp), intent(out) :: error
-    type(integration_statistics_type), intent(out) :: statistics
-    real(wp), intent(in), optional :: equal_step
+    type(tester_type), intent(inout) :: test                       !< counts the checks
+    class(ode_system_type), intent(inout), target :: system        !< that is integrated
+    real(wp), intent(in) :: start(:)                               !< vector at the start
+    real(wp), intent(in) :: t_end                                  !< end of the integration [s]
+    real(wp), intent(in) :: tolerance                              !< relative and absolute
+    real(wp), intent(in) :: expected(:)                            !< vector at the end
+    integer, intent(in) :: method                                  !< its number among all methods
+    real(wp), intent(out) :: error                                 !< largest difference at the end
+    type(integration_statistics_type), intent(out) :: statistics   !< work of the integrator
+    real(wp), intent(in), optional :: equal_step                   !< length of all steps [s]; the integrator chooses unless given
     type(error_type), allocatable :: err
     real(wp) :: y(size(start))
 

@@ -34,8 +34,8 @@ contains
   !> Stops at numbers that are no sums of steps are met to the last bit, forward and backward; on the way
   !> no step passes one. The solution is as good as without them.
   subroutine check_stops(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(orbit_type), target :: orbit
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -69,8 +69,8 @@ contains
   !> Steps may pass a stop, up to where they are told. What a method tells of the orbit inside a step is as good as the
   !> ends of the step, but for ten times the error that a step may make, relative and absolute.
   subroutine check_inside_steps(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(orbit_type), target :: orbit
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -110,8 +110,8 @@ contains
   !> A stop just behind a natural step does not lead to a very short step, from which a method would need
   !> many to recover.
   subroutine check_short_rest(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(orbit_type), target :: orbit
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -150,8 +150,8 @@ contains
 
   !> Forth and back again: the start is met in time exactly, and otherwise as well as the steps are.
   subroutine check_turning_back(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(orbit_type), target :: orbit
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -175,8 +175,8 @@ contains
   !> A system that settles is asked once per step; what it gives is what the steps give; and it costs no
   !> accuracy and no steps: projecting the circle on itself leaves the order as it is.
   subroutine check_settling(test, method)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: method              !< its number among all methods
     type(rotation_type), target :: rotation
     type(integration_statistics_type) :: free, settled
     type(error_type), allocatable :: err
@@ -213,8 +213,8 @@ contains
 
   !> The same correction made by the caller after each step.
   subroutine check_corrections(test, method)
-    type(tester_type), intent(inout) :: test
-    integer, intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: method              !< its number among all methods
     type(rotation_type), target :: rotation
     type(integrator_type) :: integrator
     type(integration_statistics_type) :: free, corrected
@@ -250,8 +250,8 @@ contains
 
   !> After an event the motion goes on from new values; what was counted stays.
   subroutine check_restart(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(orbit_type), target :: orbit
     type(integrator_type) :: integrator
     type(integration_statistics_type) :: before, after
@@ -279,8 +279,8 @@ contains
 
   !> The longest step, the first step and the number of steps can be limited.
   subroutine check_limits(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(orbit_type), target :: orbit
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -307,8 +307,8 @@ contains
   !> Neither the method nor what stands around it asks for memory once the first steps are made.
   !> (CVODE does for each Jacobian by differences, now and then: here the system has its own.)
   subroutine check_memory(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(rotation_type), target :: rotation
     type(stiff_type), target :: stiff
     type(integrator_type) :: integrator
@@ -340,9 +340,9 @@ contains
   !> with the right exponent the error of the first step tells the length of all others, and none is made again. (Of
   !> the other two the embedded formula of Merson's is of higher order for such equations, and Fehlberg's is exact.)
   subroutine check_first_choice(test, method, order)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
-    integer, intent(in) :: order           !< of the embedded formula
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
+    integer, intent(in) :: order               !< of the embedded formula
     type(power_type), target :: system
     type(integrator_type) :: integrator
     type(integration_statistics_type) :: statistics
@@ -374,7 +374,7 @@ contains
 
   !> Two integrations step by turns and give what each gives alone, to the last bit.
   subroutine check_side_by_side(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(orbit_type), target :: orbits(2)
     type(integrator_type) :: integrators(2)
     type(integration_statistics_type) :: statistics

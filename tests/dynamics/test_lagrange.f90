@@ -41,9 +41,9 @@ contains
   !> square of that, 16,000 units, both times the conditioning of the chains, some hundreds: 1e-11 and
   !> 1e-9 of the largest number are left.
   subroutine compare(test, mechanism, why)
-    type(tester_type), intent(inout) :: test
-    type(mechanism_type), intent(in) :: mechanism
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test        !< counts the checks
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(state_type) :: state
     type(dynamics_plan_type) :: dynamics
@@ -80,9 +80,12 @@ contains
 
   !> Agreement against the largest number of its kind.
   subroutine check_numbers(test, numbers, expected, scale, tolerance, why)
-    type(tester_type), intent(inout) :: test
-    real(wp), intent(in) :: numbers(:), expected(:), scale, tolerance
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: numbers(:)         !< that are checked
+    real(wp), intent(in) :: expected(:)        !< the right numbers, as many
+    real(wp), intent(in) :: scale              !< the largest number of their kind
+    real(wp), intent(in) :: tolerance          !< over the scale
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     call test%is_true(scale > 1.0e-3_wp, why//': there is something to compare')
     call test%near(maxval(abs(numbers - expected))/scale, 0.0_wp, tolerance, why)

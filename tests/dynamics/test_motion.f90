@@ -39,9 +39,9 @@ program test_motion
 contains
 
   subroutine check_all(test, mechanism, why)
-    type(tester_type), intent(inout) :: test
-    type(mechanism_type), intent(in) :: mechanism
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test        !< counts the checks
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(mechanism_type) :: conservative
 
     call check_over_time(test, mechanism, why)
@@ -52,7 +52,7 @@ contains
 
   !> Leave the loads that have a potential energy, without their dissipation.
   subroutine keep_conservative(mechanism)
-    type(mechanism_type), intent(inout) :: mechanism
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     type(load_slot_type), allocatable :: kept(:)
     integer :: i, n
 
@@ -80,12 +80,12 @@ contains
 
   !> The assembled start with some rates, and everything that its motion needs.
   subroutine begin(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(dynamics_plan_type), intent(out) :: dynamics
-    type(state_type), intent(out) :: state
-    type(lagrange_work_type), intent(out) :: work
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(out) :: plan                !< its plan
+    type(dynamics_plan_type), intent(out) :: dynamics   !< plan of its dynamics
+    type(state_type), intent(out) :: state              !< at the start, with some rates
+    type(lagrange_work_type), intent(out) :: work       !< the equations at the start
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     call make_plan(mechanism, mechanism%initial_position, plan, state, err)
@@ -102,9 +102,9 @@ contains
   !> Move the independent coordinates by q + dq t + ddq t^2/2 about the start: the differences over time of all
   !> closed coordinates are their rates and accelerations, that of the kinetic energy is the power of all forces.
   subroutine check_over_time(test, mechanism, why)
-    type(tester_type), intent(inout) :: test
-    type(mechanism_type), intent(in) :: mechanism
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test        !< counts the checks
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     !> The accelerations, some hundreds, bend the path within a tenth of a second.
     real(wp), parameter :: h = 1.0_wp/512.0_wp
     type(plan_type) :: plan
@@ -151,9 +151,9 @@ contains
 
   !> Q_p = -dV/dq_p where all loads have a potential energy.
   subroutine check_potential(test, mechanism, why)
-    type(tester_type), intent(inout) :: test
-    type(mechanism_type), intent(in) :: mechanism
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test        !< counts the checks
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     real(wp), parameter :: h = 1.0_wp/128.0_wp
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics

@@ -119,9 +119,9 @@ contains
   !> Both arithmetics on one mechanism. Each number is a sum of some dozens of terms, and what is solved for
   !> is known to round-off over the conditioning of the chains, accelerations to that once more.
   subroutine compare(mechanism, is_planar, why)
-    type(mechanism_type), intent(inout) :: mechanism
-    logical, intent(in) :: is_planar
-    character(len=*), intent(in) :: why
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    logical, intent(in) :: is_planar                   !< it must have planar arithmetic
+    character(len=*), intent(in) :: why                !< the statement that is checked, printed where it is wrong
     type(result_type) :: flat, space
     real(wp) :: tolerance
 
@@ -148,10 +148,10 @@ contains
 
   !> The motion of a mechanism at its start, with some rates.
   subroutine evaluate(mechanism, in_space, why, result)
-    type(mechanism_type), intent(in) :: mechanism
-    logical, intent(in) :: in_space
-    character(len=*), intent(in) :: why
-    type(result_type), intent(out) :: result
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    logical, intent(in) :: in_space                 !< in spatial arithmetic even where planar arithmetic would do
+    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    type(result_type), intent(out) :: result        !< all numbers of its motion
     type(plan_type) :: plan
     type(state_type) :: state
     type(dynamics_plan_type) :: dynamics
@@ -191,8 +191,10 @@ contains
   end subroutine evaluate
 
   subroutine check(numbers, expected, tolerance, why)
-    real(wp), intent(in) :: numbers(:), expected(:), tolerance
-    character(len=*), intent(in) :: why
+    real(wp), intent(in) :: numbers(:)    !< that are checked
+    real(wp), intent(in) :: expected(:)   !< the right numbers, as many
+    real(wp), intent(in) :: tolerance     !< over the largest number
+    character(len=*), intent(in) :: why   !< the statement that is checked, printed where it is wrong
 
     call test%near(maxval(abs(numbers - expected))/max(1.0_wp, maxval(abs(expected))), 0.0_wp, tolerance, why)
   end subroutine check

@@ -35,8 +35,9 @@ program test_step_choice
 contains
 
   pure real(wp) function law(constant, h, order)
-    real(wp), intent(in) :: constant, h
-    integer, intent(in) :: order
+    real(wp), intent(in) :: constant   !< factor of the law
+    real(wp), intent(in) :: h          !< length of the step [s]
+    integer, intent(in) :: order       !< of the method
 
     law = constant*abs(h)**order
   end function law

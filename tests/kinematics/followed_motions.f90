@@ -16,11 +16,11 @@ contains
 
   !> Plan and assemble at time t, and start there. Without a position the test ends.
   subroutine begin_motion(test, mechanism, t, plan, driven, start_error)
-    type(tester_type), intent(inout) :: test
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), intent(in) :: t
-    type(plan_type), intent(out) :: plan
-    type(driven_motion_type), intent(out) :: driven
+    type(tester_type), intent(inout) :: test                              !< counts the checks
+    type(mechanism_type), intent(in) :: mechanism                         !< the mechanism
+    real(wp), intent(in) :: t                                             !< time of the start [s]
+    type(plan_type), intent(out) :: plan                                  !< its plan
+    type(driven_motion_type), intent(out) :: driven                       !< its driven motion, at the start
     type(error_type), allocatable, intent(out), optional :: start_error   !< of a start that need not go well
     type(state_type) :: state
     type(error_type), allocatable :: err
@@ -42,7 +42,8 @@ contains
 
   !> How far two angles are apart, whole turns aside [rad].
   elemental real(wp) function angle_between(a, b)
-    real(wp), intent(in) :: a, b
+    real(wp), intent(in) :: a   !< first angle [rad]
+    real(wp), intent(in) :: b   !< second angle [rad]
 
     angle_between = abs(modulo(a - b + pi, 2.0_wp*pi) - pi)
   end function angle_between

@@ -21,9 +21,10 @@ contains
 
   !> Rows that vanish for the rates that keep all loops closed: (6 loops, M).
   subroutine loop_equations(n_links, links, axes, equations)
-    integer, intent(in) :: n_links, links(:, :)
-    type(axis_type), intent(in) :: axes(:)
-    real(wp), allocatable, intent(out) :: equations(:, :)
+    integer, intent(in) :: n_links                          !< links, the frame included
+    integer, intent(in) :: links(:, :)                      !< (2,M) reference and moving link of each pair
+    type(axis_type), intent(in) :: axes(:)                  !< of each pair in the home position
+    real(wp), allocatable, intent(out) :: equations(:, :)   !< (6 loops,M) that the rates satisfy
     real(wp), allocatable :: twist(:, :, :)
     real(wp) :: screw(6)
     logical :: known(n_links), used(size(axes))
@@ -56,7 +57,7 @@ contains
   end subroutine loop_equations
 
   pure function screw_of(axis) result(screw)
-    type(axis_type), intent(in) :: axis
+    type(axis_type), intent(in) :: axis   !< of a pair
     real(wp) :: screw(6), e(3)
 
     e = axis%along/norm2(axis%along)
@@ -67,9 +68,9 @@ contains
   !> Dependent coordinates by elimination with the largest entry as pivot: as many as the rank. Weights
   !> drawn at random make the choice a random one among good ones.
   subroutine choose_dependent(equations, random, dependent)
-    real(wp), intent(in) :: equations(:, :)
-    type(random_type), intent(inout) :: random
-    logical, intent(out) :: dependent(:)
+    real(wp), intent(in) :: equations(:, :)      !< (6 loops,M) that the rates satisfy
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    logical, intent(out) :: dependent(:)         !< (M) coordinates that follow from the others
     real(wp) :: a(size(equations, 1), size(equations, 2)), weight(size(equations, 2))
     logical :: row_free(size(equations, 1))
     integer :: i, k, at(2)
@@ -96,10 +97,10 @@ contains
   !> All rates from those of the independent coordinates, by Gauss-Jordan elimination; `residual_norm` is the
   !> largest part of an equation that stays.
   subroutine rates_from(equations, dependent, rates, residual_norm)
-    real(wp), intent(in) :: equations(:, :)
-    logical, intent(in) :: dependent(:)
-    real(wp), intent(inout) :: rates(:)        !< on entry those of the independent coordinates
-    real(wp), intent(out) :: residual_norm
+    real(wp), intent(in) :: equations(:, :)   !< (6 loops,M) that the rates satisfy
+    logical, intent(in) :: dependent(:)       !< (M) coordinates that follow from the others
+    real(wp), intent(inout) :: rates(:)       !< on entry those of the independent coordinates
+    real(wp), intent(out) :: residual_norm    !< largest remainder of an equation
     real(wp) :: a(size(equations, 1), size(equations, 2)), right(size(equations, 1))
     logical :: row_free(size(equations, 1))
     integer :: pivot_row(size(dependent)), i, at(2)

@@ -26,9 +26,11 @@ contains
 
   !> The mechanism with these links and axes of its pairs.
   subroutine home_mechanism(n_links, links, axes, cq, mechanism)
-    integer, intent(in) :: n_links, links(:, :), cq(:)
-    type(axis_type), intent(in) :: axes(:)
-    type(mechanism_type), intent(out) :: mechanism
+    integer, intent(in) :: n_links                   !< links, the frame included
+    integer, intent(in) :: links(:, :)               !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: cq(:)                     !< independent coordinates
+    type(axis_type), intent(in) :: axes(:)           !< of each pair in the home position
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     integer :: k
 
     call new_mechanism(n_links, links, cq, mechanism)
@@ -45,9 +47,11 @@ contains
 
   !> Whether the mechanism with these links and axes can be planned in its home position.
   subroutine plan_at_home(n_links, links, axes, cq, err)
-    integer, intent(in) :: n_links, links(:, :), cq(:)
-    type(axis_type), intent(in) :: axes(:)
-    type(error_type), allocatable, intent(out) :: err
+    integer, intent(in) :: n_links                      !< links, the frame included
+    integer, intent(in) :: links(:, :)                  !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: cq(:)                        !< independent coordinates
+    type(axis_type), intent(in) :: axes(:)              !< of each pair in the home position
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(state_type) :: state
@@ -58,8 +62,9 @@ contains
 
   !> Pivots at random places of a plane; of every `slide_each` pairs one slides (0: none).
   function planar_axes(n, slide_each, random) result(axes)
-    integer, intent(in) :: n, slide_each
-    type(random_type), intent(inout) :: random
+    integer, intent(in) :: n                     !< pairs
+    integer, intent(in) :: slide_each            !< of so many pairs one slides; 0: none
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(axis_type) :: axes(n)
     integer :: k
 
@@ -76,8 +81,9 @@ contains
 
   !> Any axes in space; of every `slide_each` pairs one slides (0: none).
   function spatial_axes(n, slide_each, random) result(axes)
-    integer, intent(in) :: n, slide_each
-    type(random_type), intent(inout) :: random
+    integer, intent(in) :: n                     !< pairs
+    integer, intent(in) :: slide_each            !< of so many pairs one slides; 0: none
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(axis_type) :: axes(n)
     integer :: k
 
@@ -90,8 +96,8 @@ contains
 
   !> Revolutes whose axes meet in one point.
   function spherical_axes(n, random) result(axes)
-    integer, intent(in) :: n
-    type(random_type), intent(inout) :: random
+    integer, intent(in) :: n                     !< pairs
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(axis_type) :: axes(n)
     integer :: k
 
@@ -133,7 +139,7 @@ contains
 
   !> n four-bars in a row on the frame, each the crank of the next: crank pairs 1, 4, 7, ...
   pure function crank_row(n) result(links)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< four-bars
     integer, allocatable :: links(:, :)
     integer :: i
 
@@ -149,7 +155,7 @@ contains
   !> n four-bars one on top of the other, without the frame between: each coordinate of the first
   !> pair is that of the crossing pair below.
   pure function lazy_tongs(n) result(links)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< four-bars
     integer, allocatable :: links(:, :)
     integer :: i
 
@@ -164,8 +170,9 @@ contains
 
   !> A tree of links with `extra` pairs more at random places: that many loops.
   function random_links(n, extra, random) result(links)
-    integer, intent(in) :: n, extra
-    type(random_type), intent(inout) :: random
+    integer, intent(in) :: n                     !< links
+    integer, intent(in) :: extra                 !< pairs beyond a tree
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     integer, allocatable :: links(:, :)
     integer :: k
 
@@ -184,7 +191,8 @@ contains
   contains
 
     integer function any_of(low, high)
-      integer, intent(in) :: low, high
+      integer, intent(in) :: low    !< least number
+      integer, intent(in) :: high   !< greatest number
 
       any_of = low + min(high - low, int((high - low + 1)*0.5_wp*(1.0_wp + random%symmetric())))
     end function any_of
@@ -193,7 +201,7 @@ contains
   !> A platform (link 2) on six legs, each a universal joint on the frame, a slider, and a spherical joint, by
   !> links in between: 32 links, 36 pairs. The sliders are coordinates 3, 9, 15, ...
   subroutine stewart_platform(mechanism)
-    type(mechanism_type), intent(out) :: mechanism
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     type(axis_type) :: axes(36)
     integer :: links(2, 36), leg, i, k, first
     real(wp) :: low(3), high(3), along(3), across(3), angle

@@ -17,9 +17,9 @@ contains
   !> Every step and closure is in one block, frames stand on frames that are there before them, and a
   !> block has as many equations as unknowns or more.
   subroutine check_order(test, plan, why)
-    type(tester_type), intent(inout) :: test
-    type(plan_type), intent(in) :: plan
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(plan_type), intent(in) :: plan        !< its plan
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     integer :: b, c, s, step, closure
     logical :: right
 
@@ -46,8 +46,8 @@ contains
   end subroutine check_order
 
   pure integer function link_of(plan, frame)
-    type(plan_type), intent(in) :: plan
-    integer, intent(in) :: frame
+    type(plan_type), intent(in) :: plan   !< its plan
+    integer, intent(in) :: frame          !< its number
 
     link_of = 1
     if (frame > 0) link_of = plan%steps(frame)%link
@@ -56,10 +56,10 @@ contains
   !> All chains are closed: a sum over the steps of a loop leaves some units of round-off, of lengths up
   !> to the reach of the whole mechanism.
   subroutine check_closed(test, plan, state, why)
-    type(tester_type), intent(inout) :: test
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(plan_type), intent(in) :: plan        !< its plan
+    type(state_type), intent(in) :: state      !< its state
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp) :: largest, reach
     integer :: c
 
@@ -79,9 +79,9 @@ contains
   !> No block could be divided: the loops of any part of its chains, and the frames they stand on, leave more
   !> unknowns than the part has equations (the condition of Hall, with strict inequality).
   subroutine check_smallest(test, plan, why)
-    type(tester_type), intent(inout) :: test
-    type(plan_type), intent(in) :: plan
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(plan_type), intent(in) :: plan        !< its plan
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     integer :: b
     logical :: smallest
 
@@ -96,8 +96,8 @@ contains
   end subroutine check_smallest
 
   pure logical function cannot_be_divided(plan, block)
-    type(plan_type), intent(in) :: plan
-    type(block_type), intent(in) :: block
+    type(plan_type), intent(in) :: plan     !< its plan
+    type(block_type), intent(in) :: block   !< one of its blocks
     logical :: met(0:plan%n_coordinates)
     integer :: part, c, s, equations, n
 
@@ -122,7 +122,7 @@ contains
 
   !> Unknowns of the blocks that have any.
   pure function block_sizes(plan) result(sizes)
-    type(plan_type), intent(in) :: plan
+    type(plan_type), intent(in) :: plan   !< its plan
     integer, allocatable :: sizes(:)
     integer :: b
 
@@ -132,9 +132,9 @@ contains
 
   !> Rates of all coordinates from those of the independent ones, block by block.
   subroutine rates_of(plan, state, rates)
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: state
-    real(wp), intent(inout) :: rates(:)        !< on entry those of the independent coordinates
+    type(plan_type), intent(in) :: plan     !< its plan
+    type(state_type), intent(in) :: state   !< closed, with rates of the independent coordinates
+    real(wp), intent(inout) :: rates(:)     !< on entry those of the independent coordinates
     type(state_type) :: moving
     type(block_work_type) :: work
     integer :: b

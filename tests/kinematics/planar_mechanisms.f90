@@ -21,8 +21,8 @@ contains
   !> A four-bar whose crank turns fully: it or the ground is the shortest link, and shortest and longest are
   !> together shorter than the other two by `excess`.
   function random_crank(random, excess) result(bar)
-    type(random_type), intent(inout) :: random
-    real(wp), intent(in) :: excess
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    real(wp), intent(in) :: excess               !< by which the other two are longer [m]
     type(four_bar_type) :: bar
     real(wp) :: shortest, longest, middle, other
 
@@ -40,9 +40,9 @@ contains
 
   !> Angle of the rocker from the triangle of coupler, rocker and the diagonal between them.
   pure real(wp) function four_bar_angle(bar, angle, branch)
-    type(four_bar_type), intent(in) :: bar
-    real(wp), intent(in) :: angle       !< of the crank
-    integer, intent(in) :: branch       !< +1 or -1
+    type(four_bar_type), intent(in) :: bar   !< lengths of the four-bar
+    real(wp), intent(in) :: angle            !< of the crank
+    integer, intent(in) :: branch            !< +1 or -1
     real(wp) :: pin(2)
 
     pin = two_circles(bar%crank*[cos(angle), sin(angle)], bar%coupler, [bar%ground, 0.0_wp], bar%rocker, branch)
@@ -51,9 +51,9 @@ contains
 
   !> Coordinates of a closed position: crank, coupler, rocker to coupler, rocker.
   pure function four_bar_guess(bar, angle, branch) result(q)
-    type(four_bar_type), intent(in) :: bar
-    real(wp), intent(in) :: angle
-    integer, intent(in) :: branch
+    type(four_bar_type), intent(in) :: bar   !< lengths of the four-bar
+    real(wp), intent(in) :: angle            !< of the crank [rad]
+    integer, intent(in) :: branch            !< +1 or -1: which side of the diagonal
     real(wp) :: q(4), pin(2), coupler
 
     pin = two_circles(bar%crank*[cos(angle), sin(angle)], bar%coupler, [bar%ground, 0.0_wp], bar%rocker, branch)
@@ -66,8 +66,8 @@ contains
 
   !> Crank angle between 0 and pi at which coupler and rocker are in line: stretched out, or folded.
   pure real(wp) function four_bar_limit(bar, stretched) result(angle)
-    type(four_bar_type), intent(in) :: bar
-    logical, intent(in) :: stretched
+    type(four_bar_type), intent(in) :: bar   !< lengths of the four-bar
+    logical, intent(in) :: stretched         !< coupler and rocker are stretched out, not folded
     real(wp) :: diagonal
 
     diagonal = merge(bar%coupler + bar%rocker, bar%coupler - bar%rocker, stretched)
@@ -76,8 +76,11 @@ contains
 
   !> Where circles about two points meet; the branch +1 lies left of the way from the first to the second.
   pure function two_circles(a, radius_a, b, radius_b, branch) result(c)
-    real(wp), intent(in) :: a(2), radius_a, b(2), radius_b
-    integer, intent(in) :: branch
+    real(wp), intent(in) :: a(2)       !< centre of the first [m]
+    real(wp), intent(in) :: radius_a   !< of the first [m]
+    real(wp), intent(in) :: b(2)       !< centre of the second [m]
+    real(wp), intent(in) :: radius_b   !< of the second [m]
+    integer, intent(in) :: branch      !< +1 or -1: left or right of the way
     real(wp) :: c(2), d(2), length, along, across
 
     d = b - a
@@ -90,10 +93,12 @@ contains
 
   !> Crank, coupler and a slider along x at the height `offset`; coordinates crank, coupler, slider pin, slider.
   subroutine slider_crank(crank, coupler, offset, angle, branch, mechanism)
-    real(wp), intent(in) :: crank, coupler, offset
-    real(wp), intent(in) :: angle       !< of the crank, for the guesses
-    integer, intent(in) :: branch       !< +1: the slider is right of the crank's pin
-    type(mechanism_type), intent(out) :: mechanism
+    real(wp), intent(in) :: crank                    !< its length [m]
+    real(wp), intent(in) :: coupler                  !< its length [m]
+    real(wp), intent(in) :: offset                   !< height of the guide above the crank's pivot [m]
+    real(wp), intent(in) :: angle                    !< of the crank, for the guesses
+    integer, intent(in) :: branch                    !< +1: the slider is right of the crank's pin
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
     real(wp) :: across, along, direction
 
@@ -111,12 +116,14 @@ contains
   !> A four-bar, and two more links from a point of its coupler to a pivot; coordinates of the four-bar, then
   !> the new ones outwards, the last at the pivot.
   subroutine watt_six_bar(bar, at, pivot, lengths, angle, branch, second, mechanism)
-    type(four_bar_type), intent(in) :: bar
-    real(wp), intent(in) :: at(2)          !< the point in the coupler
-    real(wp), intent(in) :: pivot(2), lengths(2)
-    real(wp), intent(in) :: angle          !< of the crank, for the guesses
-    integer, intent(in) :: branch, second
-    type(mechanism_type), intent(out) :: mechanism
+    type(four_bar_type), intent(in) :: bar           !< lengths of the four-bar
+    real(wp), intent(in) :: at(2)                    !< the point in the coupler
+    real(wp), intent(in) :: pivot(2)                 !< of the last link in the frame [m]
+    real(wp), intent(in) :: lengths(2)               !< of the two links [m]
+    real(wp), intent(in) :: angle                    !< of the crank, for the guesses
+    integer, intent(in) :: branch                    !< of the four-bar, +1 or -1
+    integer, intent(in) :: second                    !< branch of the two links, +1 or -1
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     integer, parameter :: links(2, 7) = reshape([1, 2, 2, 3, 3, 4, 1, 4, 3, 5, 5, 6, 1, 6], [2, 7])
     real(wp) :: q(7), swing, point(2), pin(2), link_5, link_6
 

@@ -18,8 +18,10 @@ contains
 
   !> Structure from the links of each pair and the independent coordinates; no geometry yet.
   subroutine new_mechanism(n_links, links, cq, mechanism)
-    integer, intent(in) :: n_links, links(:, :), cq(:)
-    type(mechanism_type), intent(out) :: mechanism
+    integer, intent(in) :: n_links                   !< links, the frame included
+    integer, intent(in) :: links(:, :)               !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: cq(:)                     !< independent coordinates
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     type(finding_type), allocatable :: findings(:)
     integer :: m
 
@@ -36,7 +38,8 @@ contains
 
   !> A frame with its z along an axis through a point.
   function frame(point, axis)
-    real(wp), intent(in) :: point(3), axis(3)
+    real(wp), intent(in) :: point(3)   !< on the axis [m]
+    real(wp), intent(in) :: axis(3)    !< direction, of any length
     type(pose_type) :: frame
     logical :: ok
 
@@ -44,9 +47,11 @@ contains
   end function frame
 
   subroutine add_pair(mechanism, k, reference, moving, pair)
-    type(mechanism_type), intent(inout) :: mechanism
-    integer, intent(in) :: k, reference, moving
-    type(screw_pair_type), intent(in) :: pair
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    integer, intent(in) :: k                           !< coordinate of the pair
+    integer, intent(in) :: reference                   !< number of its reference link
+    integer, intent(in) :: moving                      !< number of its moving link
+    type(screw_pair_type), intent(in) :: pair          !< that is added
 
     allocate (mechanism%pairs(k)%pair, source=pair)
     mechanism%pairs(k)%pair%coordinate = k
@@ -55,26 +60,32 @@ contains
   end subroutine add_pair
 
   subroutine add_revolute(mechanism, k, reference, moving, in_reference, in_moving)
-    type(mechanism_type), intent(inout) :: mechanism
-    integer, intent(in) :: k, reference, moving
-    type(pose_type), intent(in) :: in_reference, in_moving
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    integer, intent(in) :: k                           !< coordinate of the pair
+    integer, intent(in) :: reference                   !< number of its reference link
+    integer, intent(in) :: moving                      !< number of its moving link
+    type(pose_type), intent(in) :: in_reference        !< frame of the pair in the reference link
+    type(pose_type), intent(in) :: in_moving           !< frame of the pair in the moving link
 
     call add_pair(mechanism, k, reference, moving, revolute_pair(in_reference, in_moving))
   end subroutine add_revolute
 
   subroutine add_prismatic(mechanism, k, reference, moving, in_reference, in_moving)
-    type(mechanism_type), intent(inout) :: mechanism
-    integer, intent(in) :: k, reference, moving
-    type(pose_type), intent(in) :: in_reference, in_moving
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    integer, intent(in) :: k                           !< coordinate of the pair
+    integer, intent(in) :: reference                   !< number of its reference link
+    integer, intent(in) :: moving                      !< number of its moving link
+    type(pose_type), intent(in) :: in_reference        !< frame of the pair in the reference link
+    type(pose_type), intent(in) :: in_moving           !< frame of the pair in the moving link
 
     call add_pair(mechanism, k, reference, moving, prismatic_pair(in_reference, in_moving))
   end subroutine add_prismatic
 
   !> Drive a coordinate by c0 + c1 t + ...
   subroutine drive(mechanism, k, coefficients)
-    type(mechanism_type), intent(inout) :: mechanism
-    integer, intent(in) :: k
-    real(wp), intent(in) :: coefficients(:)
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    integer, intent(in) :: k                           !< the coordinate
+    real(wp), intent(in) :: coefficients(:)            !< of 1, t, t^2, ...
     type(polynomial_drive_type) :: polynomial
 
     polynomial%coordinate = k
@@ -86,8 +97,8 @@ contains
 
   !> The paper's Fig. 1 with dimensions; driven at the coordinate `driven`.
   subroutine fig1(driven, mechanism)
-    integer, intent(in) :: driven
-    type(mechanism_type), intent(out) :: mechanism
+    integer, intent(in) :: driven                    !< number of the driven coordinate
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     integer, parameter :: links(2, 7) = reshape([1, 6, 6, 5, 3, 5, 2, 3, 1, 2, 1, 4, 3, 4], [2, 7])
     real(wp), parameter :: at(2, 7) = reshape([-1.0_wp, 2.5_wp, 1.8_wp, 0.0_wp, 1.6_wp, 1.2_wp, 1.0_wp, 0.0_wp, &
                                                0.0_wp, 0.0_wp, 4.0_wp, 0.0_wp, 3.2_wp, 0.0_wp], [2, 7])
@@ -104,8 +115,12 @@ contains
 
   !> A planar four-bar: ground, crank, coupler, rocker; coordinates crank, coupler, rocker-to-coupler, rocker.
   subroutine four_bar(ground, crank, coupler, rocker, guess, mechanism)
-    real(wp), intent(in) :: ground, crank, coupler, rocker, guess(4)
-    type(mechanism_type), intent(out) :: mechanism
+    real(wp), intent(in) :: ground                   !< length [m]
+    real(wp), intent(in) :: crank                    !< length [m]
+    real(wp), intent(in) :: coupler                  !< length [m]
+    real(wp), intent(in) :: rocker                   !< length [m]
+    real(wp), intent(in) :: guess(4)                 !< of the coordinates [rad]
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
     real(wp), parameter :: origin(3) = 0.0_wp
 
@@ -119,7 +134,7 @@ contains
 
   !> A general spatial loop of seven revolutes, assembled where every coordinate is zero.
   subroutine general_loop(mechanism)
-    type(mechanism_type), intent(out) :: mechanism
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     integer, parameter :: links(2, 7) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 1], [2, 7])
     real(wp), parameter :: at(3, 7) = reshape([ &
       -0.9_wp, 0.4_wp, -0.7_wp, 0.1_wp, -1.0_wp, -0.1_wp, 0.2_wp, 0.5_wp, -0.1_wp, -0.8_wp, 0.3_wp, 0.0_wp, &

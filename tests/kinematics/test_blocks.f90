@@ -82,8 +82,10 @@ contains
 
   !> A planar mechanism driven at each of its coordinates. Unknowns of its only block; 0: blocks of three.
   subroutine all_drives(name, links, three, unknowns)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: links(:, :), three, unknowns(:)
+    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
+    integer, intent(in) :: links(:, :)     !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: three           !< unknowns of each block where there are several
+    integer, intent(in) :: unknowns(:)     !< for each drive, those of its only block; 0: several blocks
     type(axis_type) :: axes(size(links, 2))
     integer :: k, i
 
@@ -101,8 +103,8 @@ contains
 
   !> Assembled, in the blocks expected, from the guess and from another one.
   subroutine check(name, sizes)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: sizes(:)
+    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
+    integer, intent(in) :: sizes(:)        !< unknowns of the blocks
     type(state_type) :: state
     type(error_type), allocatable :: err
     real(wp) :: start(size(mechanism%pairs))
@@ -130,9 +132,10 @@ contains
 
   !> Rates at home against those that the axes alone give.
   subroutine check_rates(name, links, axes, driven)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: links(:, :), driven
-    type(axis_type), intent(in) :: axes(:)
+    character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
+    integer, intent(in) :: links(:, :)       !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: driven            !< number of the driven coordinate
+    type(axis_type), intent(in) :: axes(:)   !< of each pair in the home position
     type(state_type) :: state
     type(error_type), allocatable :: err
     real(wp), allocatable :: equations(:, :)

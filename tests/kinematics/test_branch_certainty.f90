@@ -41,8 +41,8 @@ contains
   !> Both branches of a crank that turns fully: the angle of the rocker at every output by its triangle, and
   !> the number of its turns the same whatever the outputs.
   subroutine check_four_bar(bar, name)
-    type(four_bar_type), intent(in) :: bar
-    character(len=*), intent(in) :: name
+    type(four_bar_type), intent(in) :: bar   !< its lengths
+    character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -75,7 +75,7 @@ contains
 
   !> x = r cos + - root of l^2 - (r sin - e)^2; the crank at the i-th comes nearer and nearer to what it can turn.
   subroutine check_slider_crank(i)
-    integer, intent(in) :: i
+    integer, intent(in) :: i   !< number of the crank
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(driven_motion_type) :: driven

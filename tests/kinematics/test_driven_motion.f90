@@ -30,8 +30,8 @@ contains
 
   !> Rates and accelerations against high-order differences of the positions around t = 0.
   subroutine check_derivatives(mechanism, name)
-    type(mechanism_type), intent(in) :: mechanism
-    character(len=*), intent(in) :: name
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
     real(wp), parameter :: h = 2.0_wp**(-8)
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -87,7 +87,7 @@ contains
 
   !> Angle of the rocker of the open branch.
   real(wp) function rocker_angle(angle)
-    real(wp), intent(in) :: angle
+    real(wp), intent(in) :: angle   !< of the crank [rad]
     real(wp), parameter :: ground = 0.40_wp, crank = 0.15_wp, coupler = 0.35_wp, rocker = 0.30_wp
     real(wp) :: x, y, diagonal
 

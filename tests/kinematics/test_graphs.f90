@@ -19,7 +19,8 @@ program test_graphs
 contains
 
   subroutine try_matching(n_chains, n_unknowns)
-    integer, intent(in) :: n_chains, n_unknowns
+    integer, intent(in) :: n_chains     !< closed chains
+    integer, intent(in) :: n_unknowns   !< unknown coordinates
     logical :: passes(n_chains, n_unknowns)
     integer :: offers(n_chains), owner(n_unknowns), c, u
     logical :: allowed
@@ -53,8 +54,8 @@ contains
 
   !> The largest flow is the least cut: over all sets of chains, what these offer and what others reach.
   pure integer function most_matched(passes, offers) result(most)
-    logical, intent(in) :: passes(:, :)
-    integer, intent(in) :: offers(:)
+    logical, intent(in) :: passes(:, :)   !< (chain,unknown) the unknown occurs in the chain
+    integer, intent(in) :: offers(:)      !< equations of each chain
     logical :: in_set(size(offers))
     integer :: set, c
 
@@ -67,7 +68,7 @@ contains
   end function most_matched
 
   subroutine try_components(n)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< nodes
     logical :: leads(n, n), reaches(n, n)
     integer :: component(n), n_components, i, j, k
     type(graph_type) :: graph

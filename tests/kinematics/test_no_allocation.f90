@@ -30,7 +30,7 @@ program test_no_allocation
 contains
 
   subroutine count_calls(name)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(state_type) :: state
     type(driven_motion_type) :: driven

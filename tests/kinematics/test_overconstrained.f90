@@ -51,7 +51,9 @@ contains
   !> Bennett's loop in a position given by the angle at its first pair: opposite links alike, lengths as the
   !> sines of their twists, and tan(t1/2) tan(t2/2) = sin((b + a)/2)/sin((b - a)/2).
   pure function bennett(twist_a, twist_b, angle) result(axes)
-    real(wp), intent(in) :: twist_a, twist_b, angle
+    real(wp), intent(in) :: twist_a   !< of the first link [rad]
+    real(wp), intent(in) :: twist_b   !< of the second link [rad]
+    real(wp), intent(in) :: angle     !< at the first pair [rad]
     type(axis_type) :: axes(4)
     real(wp) :: angles(4), twists(4)
     type(pose_type) :: place
@@ -71,7 +73,9 @@ contains
 
   !> A turn about z, a way along x, a twist about x.
   pure function turned_and_gone(angle, way, twist) result(pose)
-    real(wp), intent(in) :: angle, way, twist
+    real(wp), intent(in) :: angle   !< about z [rad]
+    real(wp), intent(in) :: way     !< along x [m]
+    real(wp), intent(in) :: twist   !< about x [rad]
     type(pose_type) :: pose
 
     pose%r(:, 1) = [cos(angle), sin(angle), 0.0_wp]
@@ -95,7 +99,7 @@ contains
 
   !> Three parallel horizontal axes, one above the other but for the middle one, in a plane turned by an angle.
   pure function leg(angle) result(axes)
-    real(wp), intent(in) :: angle
+    real(wp), intent(in) :: angle   !< of its plane about the vertical [rad]
     type(axis_type) :: axes(3)
     real(wp), parameter :: out(3) = [1.0_wp, 1.6_wp, 1.2_wp], up(3) = [0.0_wp, 0.5_wp, 1.1_wp]
     integer :: i
@@ -107,7 +111,7 @@ contains
   end function leg
 
   pure function reversed(axes) result(back)
-    type(axis_type), intent(in) :: axes(:)
+    type(axis_type), intent(in) :: axes(:)   !< in order
     type(axis_type) :: back(size(axes))
 
     back = axes(size(axes):1:-1)
@@ -115,9 +119,11 @@ contains
 
   !> Mobility one: closed at home, and with the driven coordinate turned by a little.
   subroutine check(name, n_links, links, axes, driven, sizes)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_links, links(:, :), driven
-    type(axis_type), intent(in) :: axes(:)
+    character(len=*), intent(in) :: name        !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links              !< links, the frame included
+    integer, intent(in) :: links(:, :)          !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: driven               !< number of the driven coordinate
+    type(axis_type), intent(in) :: axes(:)      !< of each pair in the home position
     integer, intent(in), optional :: sizes(:)   !< unknowns of the blocks
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
@@ -143,9 +149,11 @@ contains
   end subroutine check
 
   subroutine fails(name, n_links, links, axes, cq)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_links, links(:, :), cq(:)
-    type(axis_type), intent(in) :: axes(:)
+    character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links           !< links, the frame included
+    integer, intent(in) :: links(:, :)       !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: cq(:)             !< independent coordinates
+    type(axis_type), intent(in) :: axes(:)   !< of each pair in the home position
     type(error_type), allocatable :: err
 
     call plan_at_home(n_links, links, axes, cq, err)

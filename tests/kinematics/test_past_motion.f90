@@ -34,8 +34,8 @@ contains
 
   !> A polynomial with all powers up to one.
   pure real(wp) function value(degree, t)
-    integer, intent(in) :: degree
-    real(wp), intent(in) :: t
+    integer, intent(in) :: degree   !< of the polynomial
+    real(wp), intent(in) :: t       !< time [s]
     integer :: i
 
     value = 0.0_wp
@@ -46,8 +46,9 @@ contains
 
   !> Its derivative of some order.
   pure real(wp) function derivative(degree, order, t)
-    integer, intent(in) :: degree, order
-    real(wp), intent(in) :: t
+    integer, intent(in) :: degree   !< of the polynomial
+    integer, intent(in) :: order    !< of the derivative
+    real(wp), intent(in) :: t       !< time [s]
     integer :: i, k
     real(wp) :: factor
 
@@ -63,9 +64,9 @@ contains
 
   !> Take positions and rates of a polynomial.
   subroutine take(past, degree, times)
-    type(past_motion_type), intent(inout) :: past
-    integer, intent(in) :: degree
-    real(wp), intent(in) :: times(:)
+    type(past_motion_type), intent(inout) :: past   !< takes them
+    integer, intent(in) :: degree                   !< of the polynomial
+    real(wp), intent(in) :: times(:)                !< in order [s]
     integer :: i
 
     do i = 1, size(times)
@@ -76,11 +77,11 @@ contains
 
   !> A prediction is exact for polynomials of a degree, and not for the next.
   subroutine check_degree(times, with_positions, t, degree, why)
-    real(wp), intent(in) :: times(:)
-    logical, intent(in) :: with_positions
-    real(wp), intent(in) :: t                  !< of the prediction
-    integer, intent(in) :: degree
-    character(len=*), intent(in) :: why
+    real(wp), intent(in) :: times(:)        !< that are kept, in order [s]
+    logical, intent(in) :: with_positions   !< positions are used, not rates alone
+    real(wp), intent(in) :: t               !< of the prediction
+    integer, intent(in) :: degree           !< that is predicted exactly
+    character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
     type(past_motion_type) :: past
     real(wp) :: q(2)
     integer :: d, last

@@ -38,9 +38,10 @@ contains
 
   !> A block on the crank's pin slides along a guide that swings about a fixed pin.
   subroutine swinging_guide(crank, ground, angle, mechanism)
-    real(wp), intent(in) :: crank, ground        !< lengths [m]
-    real(wp), intent(in) :: angle                !< of the crank [rad]
-    type(mechanism_type), intent(out) :: mechanism
+    real(wp), intent(in) :: crank                    !< lengths [m]
+    real(wp), intent(in) :: ground                   !< lengths [m]
+    real(wp), intent(in) :: angle                    !< of the crank [rad]
+    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
     real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 4, 3, 1, 4], [2, 4])
     real(wp) :: way(2), guide
@@ -57,9 +58,9 @@ contains
 
   !> Rates and accelerations of coordinates and frames, at random ones of the independent coordinates.
   subroutine check_same_motion(mechanism, chains, name)
-    type(mechanism_type), intent(in) :: mechanism
-    integer, intent(in) :: chains                !< blocks that are such chains
-    character(len=*), intent(in) :: name
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: chains                   !< blocks that are such chains
+    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(state_type) :: state, other
     type(error_type), allocatable :: err
@@ -103,8 +104,10 @@ contains
   end subroutine check_same_motion
 
   subroutine check_close(values, expected, allowed, name)
-    real(wp), intent(in) :: values(:), expected(:), allowed
-    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: values(:)      !< that are checked
+    real(wp), intent(in) :: expected(:)    !< the right ones, as many
+    real(wp), intent(in) :: allowed        !< largest difference
+    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
 
     call test%near(maxval(abs(values - expected))/max(1.0_wp, maxval(abs(expected))), 0.0_wp, allowed, name)
   end subroutine check_close

@@ -35,10 +35,11 @@ program test_random_mechanisms
 contains
 
   subroutine try(name, n_links, loops, family, slide_each)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_links, loops
-    integer, intent(in) :: family              !< 1 planar, 2 spherical, 3 spatial
-    integer, intent(in) :: slide_each
+    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links         !< links, the frame included
+    integer, intent(in) :: loops           !< closed chains
+    integer, intent(in) :: family          !< 1 planar, 2 spherical, 3 spatial
+    integer, intent(in) :: slide_each      !< of so many pairs one slides; 0: none
     integer, allocatable :: links(:, :)
     type(axis_type), allocatable :: axes(:)
     real(wp), allocatable :: equations(:, :)
@@ -62,10 +63,11 @@ contains
   !> The same mechanism in other units of length, over seven orders of magnitude: the same blocks, and the
   !> same position to the last digits from the same guess.
   subroutine check_units(name, n_links, links, axes, mechanism)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_links, links(:, :)
-    type(axis_type), intent(in) :: axes(:)
-    type(mechanism_type), intent(in) :: mechanism
+    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links                  !< links, the frame included
+    integer, intent(in) :: links(:, :)              !< (2,M) reference and moving link of each pair
+    type(axis_type), intent(in) :: axes(:)          !< of each pair in the home position
+    type(mechanism_type), intent(in) :: mechanism   !< that is given in other units
     real(wp), parameter :: units(2) = [1.0e-4_wp, 1.0e3_wp]
     type(axis_type) :: scaled(size(axes))
     type(mechanism_type) :: other
@@ -101,10 +103,10 @@ contains
   end subroutine check_units
 
   subroutine check(name, mechanism, equations, dependent)
-    character(len=*), intent(in) :: name
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), intent(in) :: equations(:, :)
-    logical, intent(in) :: dependent(:)
+    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    real(wp), intent(in) :: equations(:, :)         !< (6 loops,M) that the rates satisfy
+    logical, intent(in) :: dependent(:)             !< (M) coordinates that follow from the others
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err

@@ -33,9 +33,9 @@ program test_range
 contains
 
   subroutine range_of(mechanism, coordinate, range)
-    type(mechanism_type), intent(in) :: mechanism
-    integer, intent(in) :: coordinate
-    type(motion_range_type), intent(out) :: range
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: coordinate               !< that is moved
+    type(motion_range_type), intent(out) :: range   !< that it has
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
@@ -47,9 +47,10 @@ contains
   end subroutine range_of
 
   subroutine check_limits(range, lower, upper, name)
-    type(motion_range_type), intent(in) :: range
-    real(wp), intent(in) :: lower, upper
-    character(len=*), intent(in) :: name
+    type(motion_range_type), intent(in) :: range   !< that was found
+    real(wp), intent(in) :: lower                  !< the right lower end [rad, m]
+    real(wp), intent(in) :: upper                  !< the right upper end [rad, m]
+    character(len=*), intent(in) :: name           !< of the mechanism, for the report of a failure
 
     call test%is_true(range%lower%kind == ends_at_limit .and. range%upper%kind == ends_at_limit, name//': two limits')
     call test%near(range%lower%value, lower, tolerance, name//': the lower one')
@@ -58,17 +59,17 @@ contains
   end subroutine check_limits
 
   !> A crank between two positions in which coupler and rocker are stretched out: it swings through zero.
-  !> The smaller `residual_norm`, the nearer it passes to another dead point at zero, or at half a turn to none.
-  subroutine both_sides(branch, residual_norm)
-    integer, intent(in) :: branch
-    real(wp), intent(in) :: residual_norm
+  !> The smaller `excess`, the nearer it passes to another dead point at zero, or at half a turn to none.
+  subroutine both_sides(branch, excess)
+    integer, intent(in) :: branch    !< +1 or -1: side of the diagonal on which the chain closes
+    real(wp), intent(in) :: excess   !< length of the ground beyond coupler and rocker less the crank [m]
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(motion_range_type) :: range
     real(wp) :: limit
 
     bar = four_bar_type(ground=0.0_wp, crank=0.7_wp, coupler=0.8_wp, rocker=0.75_wp)
-    bar%ground = bar%coupler + bar%rocker - bar%crank + residual_norm
+    bar%ground = bar%coupler + bar%rocker - bar%crank + excess
     limit = four_bar_limit(bar, stretched=.true.)
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.3_wp*limit, branch), mechanism)
     call range_of(mechanism, 1, range)
@@ -77,7 +78,7 @@ contains
 
   !> A crank between the positions in which coupler and rocker are folded and stretched out.
   subroutine folded(branch)
-    integer, intent(in) :: branch
+    integer, intent(in) :: branch    !< +1 or -1: side of the diagonal on which the chain closes
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(motion_range_type) :: range
@@ -95,7 +96,7 @@ contains
   end subroutine folded
 
   subroutine full_turn(branch)
-    integer, intent(in) :: branch
+    integer, intent(in) :: branch    !< +1 or -1: side of the diagonal on which the chain closes
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(motion_range_type) :: range
@@ -109,7 +110,7 @@ contains
 
   !> A slider-crank driven at its slider: between crank and coupler stretched out and folded.
   subroutine slider_as_input(branch)
-    integer, intent(in) :: branch
+    integer, intent(in) :: branch    !< +1 or -1: side of the diagonal on which the chain closes
     type(mechanism_type) :: mechanism
     type(motion_range_type) :: range
     real(wp) :: crank, coupler, offset, lower, upper
@@ -127,7 +128,7 @@ contains
 
   !> The same mechanism with coordinate 4 independent.
   subroutine drive_at_slider(mechanism)
-    type(mechanism_type), intent(inout) :: mechanism
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     type(mechanism_type) :: other
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
 

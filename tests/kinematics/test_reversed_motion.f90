@@ -28,8 +28,8 @@ contains
 
   !> A helical pair, which states its own derivatives.
   subroutine reversed_screw(test, random)
-    type(tester_type), intent(inout) :: test
-    type(random_type), intent(inout) :: random
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(screw_pair_type) :: pair, exchanged
     type(pose_type) :: f, g, poses(-half_width:half_width)
     type(pair_motion_type) :: motion, back, expected
@@ -66,8 +66,8 @@ contains
   !> A motion whose axis turns and whose speed changes, with its derivatives in closed form: two turns
   !> at uneven rates, one after the other, and a curve.
   subroutine reversed_general(test, random)
-    type(tester_type), intent(inout) :: test
-    type(random_type), intent(inout) :: random
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the random numbers
     type(pose_type) :: poses(-half_width:half_width)
     type(pair_motion_type) :: motion, expected
     real(wp) :: a(3), b(3), c(3), d(3), e(3), q, x
@@ -97,8 +97,13 @@ contains
 
   !> w = f' a + Ra g' b, where Ra turns about a by f = x + 0.3 x^2 and the second turn is g = sin x.
   subroutine general_motion(a, b, c, d, e, x, motion)
-    real(wp), intent(in) :: a(3), b(3), c(3), d(3), e(3), x
-    type(pair_motion_type), intent(out) :: motion
+    real(wp), intent(in) :: a(3)                    !< axis of the first turn
+    real(wp), intent(in) :: b(3)                    !< axis of the second turn
+    real(wp), intent(in) :: c(3)                    !< coefficients of the curve
+    real(wp), intent(in) :: d(3)                    !< coefficients of the curve
+    real(wp), intent(in) :: e(3)                    !< coefficients of the curve
+    real(wp), intent(in) :: x                       !< the coordinate
+    type(pair_motion_type), intent(out) :: motion   !< with its derivatives
     real(wp) :: r_a(3, 3), f_first, carried(3), spin(3)
 
     r_a = about_axis(a, x + 0.3_wp*x*x)

@@ -42,7 +42,7 @@ contains
 
   !> Revolutes normal to a plane, at places on one line.
   pure function in_line(places) result(axes)
-    real(wp), intent(in) :: places(:)
+    real(wp), intent(in) :: places(:)   !< on the line [m]
     type(axis_type) :: axes(size(places))
 
     axes%point(1) = places
@@ -50,7 +50,7 @@ contains
 
   !> A four-bar whose first two links are stretched: its rocker, pair 4, can turn one way only.
   pure function dead_point(shift) result(axes)
-    real(wp), intent(in) :: shift
+    real(wp), intent(in) :: shift   !< of the rocker's pivot [m]
     type(axis_type) :: axes(4)
 
     axes%point(1) = shift + [0.0_wp, 1.0_wp, 3.0_wp, 2.5_wp]
@@ -68,7 +68,7 @@ contains
 
   !> n parallelograms in a row, their cranks lying on the frame.
   pure function row_in_line(n) result(axes)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< parallelograms
     type(axis_type) :: axes(3*n + 1)
     integer :: i
 
@@ -80,9 +80,11 @@ contains
   end function row_in_line
 
   subroutine serves(name, n_links, links, axes, cq)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_links, links(:, :), cq(:)
-    type(axis_type), intent(in) :: axes(:)
+    character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links           !< links, the frame included
+    integer, intent(in) :: links(:, :)       !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: cq(:)             !< independent coordinates
+    type(axis_type), intent(in) :: axes(:)   !< of each pair in the home position
     type(error_type), allocatable :: err
 
     call plan_at_home(n_links, links, axes, cq, err)
@@ -90,9 +92,11 @@ contains
   end subroutine serves
 
   subroutine fails(name, n_links, links, axes, cq)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_links, links(:, :), cq(:)
-    type(axis_type), intent(in) :: axes(:)
+    character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links           !< links, the frame included
+    integer, intent(in) :: links(:, :)       !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: cq(:)             !< independent coordinates
+    type(axis_type), intent(in) :: axes(:)   !< of each pair in the home position
     type(error_type), allocatable :: err
 
     call plan_at_home(n_links, links, axes, cq, err)
