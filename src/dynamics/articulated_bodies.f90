@@ -1,13 +1,13 @@
 !> Accelerations of open chains by articulated bodies (Featherstone in docs/bibliography.md), without a matrix, in O(links).
 !>
-!> Lagrange's equations of a mechanism without closed chains are those of Newton and Euler link by link. What
-!> hangs on a step resists the motion (dw, dv) of its frame with a wrench that is linear in it,
+!> Lagrange's equations of a mechanism without closed chains are those of Newton and Euler link by link. The links that
+!> hang on a step resist a motion (dw, dv) of its frame with a wrench that is linear in it,
 !>   torque = J dw + H dv + torque_0,   force = H^T dw + M dv + force_0,
 !> about the frame's origin, in fixed axes. A first pass inward eliminates the steps' accelerations from the tips to
 !> link 1: with the screw S of a step, U = (J H; H^T M) S and D = S . U,
-!>   ddq = (Q - S . wrench_0 - U . (motion of the parent, seen at this frame)) / D,
-!> so that the parent feels the inertia less U U^T / D. A second pass outward finds the accelerations. Motions are counted
-!> from the accelerations that rates alone give, hence no other terms of the rates.
+!>   ddq = (Q - S . wrench_0 - U . (motion of the parent, carried to the origin of this frame)) / D,
+!> so that the inertia less U U^T / D passes to the parent. A second pass outward finds the accelerations. The motions
+!> (dw, dv) are accelerations less those that rates alone give, so that no other terms of the rates appear.
 module mech9_articulated_bodies
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back, combine, cross
@@ -16,34 +16,36 @@ module mech9_articulated_bodies
   public :: articulated_type, articulated_work_type, new_articulated, new_articulated_work, add_to_frame, &
     solve_open_chains
 
-  !> An open mechanism as the passes see it. Indices are those of frames, which are the steps'.
+  !> An open mechanism in the form that the passes use. Indices are the numbers of frames, which are those of the steps.
   type :: articulated_type
     integer, allocatable :: parent(:)            !< (M) frame from which each step departs, 0 for that of link 1
-    integer, allocatable :: coordinate(:)        !< (M) of each step
+    integer, allocatable :: coordinate(:)        !< (M) number of the coordinate of each step
     logical, allocatable :: slides(:)            !< (M) the frame's origin moves by its own step
     real(wp), allocatable :: mass(:)             !< (M) of the frame's bodies together [kg]
     real(wp), allocatable :: moment(:, :)        !< (3,M) mass times centre, in the frame [kg m]
     real(wp), allocatable :: inertia(:, :, :)    !< (3,3,M) about the frame's origin, in the frame [kg m^2]
   end type articulated_type
 
-  !> Scratch of the passes, sized once. Wrenches are (torque, force), motions (angular, of the origin).
+  !> Scratch of the passes, sized once, in fixed axes. A wrench is (torque about the frame's origin, force) [N m, N]; a
+  !> motion is (angular acceleration, acceleration of the frame's origin) [rad/s^2, m/s^2].
   type :: articulated_work_type
     real(wp), allocatable :: applied(:, :)       !< (6,M) wrench of the loads on each frame: to be set before
-    real(wp), allocatable :: inertia(:, :, :)    !< (3,9,0:M) J, H, M side by side
-    real(wp), allocatable :: wrench(:, :)        !< (6,0:M)
+    real(wp), allocatable :: inertia(:, :, :)    !< (3,9,0:M) J, H, M side by side [kg m^2, kg m, kg]
+    real(wp), allocatable :: wrench(:, :)        !< (6,0:M) torque_0 and force_0
     real(wp), allocatable :: column(:, :)        !< (6,M) U
     real(wp), allocatable :: pivot(:)            !< (M) D
     real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
-    real(wp), allocatable :: amount(:, :)        !< (5,0:M) all that hangs on a step, as if rigid: mass, moment, sum of m r^2
-    real(wp), allocatable :: motion(:, :)        !< (6,0:M)
+    real(wp), allocatable :: amount(:, :)        !< (5,0:M) links that hang on a step, as if rigid: mass, moment, sum of m r^2
+    real(wp), allocatable :: motion(:, :)        !< (6,0:M) accelerations less those that rates alone give
   end type articulated_work_type
 
 contains
 
-  !> Frames without mass; `add_to_frame` gives them some.
+  !> An open mechanism whose frames have no mass yet; `add_to_frame` gives them mass.
   pure function new_articulated(parent, coordinate, slides) result(chains)
-    integer, intent(in) :: parent(:), coordinate(:)
-    logical, intent(in) :: slides(:)
+    integer, intent(in) :: parent(:)       !< (M) frame from which each step departs
+    integer, intent(in) :: coordinate(:)   !< (M) number of the coordinate of each step
+    logical, intent(in) :: slides(:)       !< (M) whether the frame's origin moves by its own step
     type(articulated_type) :: chains
 
     chains%parent = parent
@@ -52,21 +54,22 @@ contains
     allocate (chains%mass(size(parent)), chains%moment(3, size(parent)), chains%inertia(3, 3, size(parent)), source=0.0_wp)
   end function new_articulated
 
-  !> Room for the passes over so many steps; no loads yet.
+  !> Room for the passes over a number of steps, without loads.
   pure function new_articulated_work(m) result(work)
-    integer, intent(in) :: m
+    integer, intent(in) :: m   !< number of steps
     type(articulated_work_type) :: work
 
     allocate (work%applied(6, m), work%column(6, m), work%pivot(m), work%rest(m), source=0.0_wp)
     allocate (work%inertia(3, 9, 0:m), work%wrench(6, 0:m), work%amount(5, 0:m), work%motion(6, 0:m), source=0.0_wp)
   end function new_articulated_work
 
-  !> A body moves with a frame.
+  !> Add the mass and inertia of a body to the frame with which it moves.
   pure subroutine add_to_frame(chains, frame, mass, centre, inertia)
-    type(articulated_type), intent(inout) :: chains
-    integer, intent(in) :: frame
-    real(wp), intent(in) :: mass, centre(3)      !< [kg]; in the frame [m]
-    real(wp), intent(in) :: inertia(3, 3)        !< about the centre, frame axes [kg m^2]
+    type(articulated_type), intent(inout) :: chains   !< the open mechanism
+    integer, intent(in) :: frame                      !< number of the frame
+    real(wp), intent(in) :: mass                      !< of the body [kg]
+    real(wp), intent(in) :: centre(3)                 !< mass centre, from the frame's origin, in the frame's axes [m]
+    real(wp), intent(in) :: inertia(3, 3)             !< tensor about the centre, in the frame's axes [kg m^2]
     integer :: i
 
     chains%mass(frame) = chains%mass(frame) + mass
@@ -80,19 +83,23 @@ contains
   end subroutine add_to_frame
 
   !> Accelerations of all coordinates under gravity, the wrenches work%applied and generalized forces. The motion is
-  !> given by frames, screws of the steps, velocities, and the accelerations that rates alone give. `found` is false where
-  !> a coordinate has no inertia beyond round-off.
+  !> given by frames, screws of the steps, velocities, and the accelerations that rates alone give, all in fixed axes.
+  !> `found` is false where a coordinate has no inertia beyond round-off.
   pure subroutine solve_open_chains(chains, m, gravity, r, p, axis_w, axis_v, omega, alpha, a, forces, work, ddq, found)
-    type(articulated_type), intent(in) :: chains
-    integer, intent(in) :: m                                    !< steps
-    real(wp), intent(in) :: gravity(3)                          !< fixed axes [m/s^2]
-    real(wp), intent(in) :: r(3, 3, 0:m), p(3, 0:m)             !< frames
-    real(wp), intent(in) :: axis_w(3, m), axis_v(3, m)          !< angular velocity and that of the origin per unit rate
-    real(wp), intent(in) :: omega(3, 0:m), alpha(3, 0:m), a(3, 0:m)
-    real(wp), intent(in) :: forces(m)                           !< of each coordinate [N m or N]
-    type(articulated_work_type), intent(inout) :: work
-    real(wp), intent(out) :: ddq(m)
-    logical, intent(out) :: found
+    type(articulated_type), intent(in) :: chains         !< the open mechanism
+    integer, intent(in) :: m                             !< number of steps
+    real(wp), intent(in) :: gravity(3)                   !< acceleration of free fall [m/s^2]
+    real(wp), intent(in) :: r(3, 3, 0:m)                 !< rotation of each frame
+    real(wp), intent(in) :: p(3, 0:m)                    !< origin of each frame [m]
+    real(wp), intent(in) :: axis_w(3, m)                 !< angular velocity that each step gives per unit rate
+    real(wp), intent(in) :: axis_v(3, m)                 !< velocity of the new origin per unit rate
+    real(wp), intent(in) :: omega(3, 0:m)                !< angular velocity of each frame [rad/s]
+    real(wp), intent(in) :: alpha(3, 0:m)                !< angular acceleration that rates alone give [rad/s^2]
+    real(wp), intent(in) :: a(3, 0:m)                    !< acceleration of each origin that rates alone give [m/s^2]
+    real(wp), intent(in) :: forces(m)                    !< generalized force on each coordinate [N m or N]
+    type(articulated_work_type), intent(inout) :: work   !< scratch, with the loads' wrenches in `applied`
+    real(wp), intent(out) :: ddq(m)                      !< acceleration of each coordinate [rad/s^2, m/s^2]
+    logical, intent(out) :: found                        !< whether all coordinates have inertia; otherwise `ddq` is not set
 
     call set_bodies(m, chains%mass, chains%moment, chains%inertia, gravity, r, omega, alpha, a, work%applied, &
                     work%inertia, work%wrench, work%amount)
@@ -103,12 +110,22 @@ contains
                     work%motion, ddq)
   end subroutine solve_open_chains
 
-  !> Each frame's own bodies in fixed axes, and the wrench that they need for the motion by rates alone, less the loads'.
+  !> The inertia of each frame's own bodies in fixed axes, and the wrench that these bodies require for the motion by rates
+  !> alone, less that of the loads and of gravity.
   pure subroutine set_bodies(m, mass, moment, tensor, gravity, r, omega, alpha, a, applied, inertia, wrench, amount)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: mass(m), moment(3, m), tensor(3, 3, m), gravity(3)
-    real(wp), intent(in) :: r(3, 3, 0:m), omega(3, 0:m), alpha(3, 0:m), a(3, 0:m), applied(6, m)
-    real(wp), intent(inout) :: inertia(3, 9, 0:m), wrench(6, 0:m), amount(5, 0:m)   !< not of frame 0
+    integer, intent(in) :: m                        !< number of steps
+    real(wp), intent(in) :: mass(m)                 !< of the bodies of each frame together [kg]
+    real(wp), intent(in) :: moment(3, m)            !< mass times centre, in the frame's axes [kg m]
+    real(wp), intent(in) :: tensor(3, 3, m)         !< inertia about the frame's origin, in its axes [kg m^2]
+    real(wp), intent(in) :: gravity(3)              !< acceleration of free fall, fixed axes [m/s^2]
+    real(wp), intent(in) :: r(3, 3, 0:m)            !< rotation of each frame
+    real(wp), intent(in) :: omega(3, 0:m)           !< angular velocity of each frame, fixed axes [rad/s]
+    real(wp), intent(in) :: alpha(3, 0:m)           !< angular acceleration that rates alone give, fixed axes [rad/s^2]
+    real(wp), intent(in) :: a(3, 0:m)               !< acceleration of each origin that rates alone give, fixed axes [m/s^2]
+    real(wp), intent(in) :: applied(6, m)           !< wrench of the loads on each frame, fixed axes [N m, N]
+    real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< gets J, H, M of each frame but 0
+    real(wp), intent(inout) :: wrench(6, 0:m)       !< gets the wrench of each frame but 0
+    real(wp), intent(inout) :: amount(5, 0:m)       !< gets mass, moment and sum of m r^2 of each frame but 0
     real(wp) :: h(3), j(3, 3), fall(3)
     integer :: s, i
 
@@ -120,7 +137,7 @@ contains
       h = turn(r(:, :, s), moment(:, s))
       j = in_fixed_axes(r(:, :, s), tensor(:, :, s))
       inertia(:, 1:3, s) = j
-      ! torque h x dv
+      ! a motion dv requires the torque h x dv
       inertia(2, 4, s) = h(3)
       inertia(3, 4, s) = -h(2)
       inertia(1, 5, s) = -h(3)
@@ -139,10 +156,12 @@ contains
     end do
   end subroutine set_bodies
 
-  !> r t r^T of a symmetric t.
+  !> The tensor r t r^T, by its lower triangle.
   pure function in_fixed_axes(r, t) result(turned)
-    real(wp), intent(in) :: r(3, 3), t(3, 3)
-    real(wp) :: turned(3, 3), half(3, 3)
+    real(wp), intent(in) :: r(3, 3)   !< rotation of the frame
+    real(wp), intent(in) :: t(3, 3)   !< symmetric tensor in the frame's axes
+    real(wp) :: turned(3, 3)          !< the tensor in fixed axes
+    real(wp) :: half(3, 3)
     integer :: i, k
 
     half = combine(r, t)
@@ -154,15 +173,24 @@ contains
     end do
   end function in_fixed_axes
 
-  !> The accelerations of the steps eliminated, the last one first.
+  !> Eliminate the accelerations of the steps, the last one first. All vectors are in fixed axes.
   pure subroutine go_inward(m, parent, coordinate, slides, p, axis_w, axis_v, forces, inertia, wrench, amount, column, &
                             pivot, rest, found)
-    integer, intent(in) :: m, parent(m), coordinate(m)
-    logical, intent(in) :: slides(m)
-    real(wp), intent(in) :: p(3, 0:m), axis_w(3, m), axis_v(3, m), forces(m)
-    real(wp), intent(inout) :: inertia(3, 9, 0:m), wrench(6, 0:m), amount(5, 0:m)
-    real(wp), intent(out) :: column(6, m), pivot(m), rest(m)
-    logical, intent(out) :: found
+    integer, intent(in) :: m                        !< number of steps
+    integer, intent(in) :: parent(m)                !< frame from which each step departs
+    integer, intent(in) :: coordinate(m)            !< number of the coordinate of each step
+    logical, intent(in) :: slides(m)                !< whether the frame's origin moves by its own step
+    real(wp), intent(in) :: p(3, 0:m)               !< origin of each frame [m]
+    real(wp), intent(in) :: axis_w(3, m)            !< angular velocity that each step gives per unit rate
+    real(wp), intent(in) :: axis_v(3, m)            !< velocity of the new origin per unit rate
+    real(wp), intent(in) :: forces(m)               !< generalized force on each coordinate [N m or N]
+    real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< J, H, M of each frame's own bodies; then of all that hang on it
+    real(wp), intent(inout) :: wrench(6, 0:m)       !< torque_0 and force_0 in the same way [N m, N]
+    real(wp), intent(inout) :: amount(5, 0:m)       !< mass, moment and sum of m r^2 in the same way, as if rigid
+    real(wp), intent(out) :: column(6, m)           !< U of each step
+    real(wp), intent(out) :: pivot(m)               !< D of each step
+    real(wp), intent(out) :: rest(m)                !< Q - S . wrench_0 of each step
+    logical, intent(out) :: found                   !< whether all coordinates have inertia
     real(wp) :: u(6), part(6), arm(3)
     integer :: s, i
 
@@ -179,7 +207,7 @@ contains
         pivot(s) = dot_product(axis_w(:, s), u(1:3)) + dot_product(axis_v(:, s), u(4:6))
       end if
       column(:, s) = u
-      ! what is left by round-off is nothing, as in the Cholesky factors
+      ! a pivot within round-off counts as zero, as in the Cholesky factors
       found = pivot(s) > 8.0_wp*m*epsilon(1.0_wp)*rigid_inertia(amount(:, s), axis_w(:, s), axis_v(:, s))
       if (.not. found) return
       if (parent(s) == 0) cycle
@@ -196,19 +224,26 @@ contains
     end do
   end subroutine go_inward
 
-  !> At least the inertia about a screw of all that hangs on it, as if rigid: what round-off is judged by.
+  !> An upper bound of the inertia about a screw of all that hangs on it, as if rigid: the measure of round-off in a pivot.
   pure real(wp) function rigid_inertia(amount, w, v)
-    real(wp), intent(in) :: amount(5), w(3), v(3)
+    real(wp), intent(in) :: amount(5)   !< mass, moment and sum of m r^2 about the frame's origin, fixed axes [kg, kg m, kg m^2]
+    real(wp), intent(in) :: w(3)        !< angular velocity of the screw per unit rate, fixed axes
+    real(wp), intent(in) :: v(3)        !< velocity of the frame's origin per unit rate, fixed axes
 
     rigid_inertia = dot_product(w, w)*amount(5) + dot_product(v, v)*amount(1) &
                     + 2.0_wp*abs(dot_product(v, cross(w, amount(2:4))))
   end function rigid_inertia
 
-  !> What a frame feels, about the origin of its parent: J' = J + [arm] H'^T - H [arm], H' = H + [arm] M.
+  !> Add the inertia and wrench of a frame to those of its parent, about the parent's origin:
+  !> J' = J + [arm] H'^T - H [arm], H' = H + [arm] M. All vectors are in fixed axes.
   pure subroutine add_to_parent(arm, inertia, wrench, amount, parent_inertia, parent_wrench, parent_amount)
-    real(wp), intent(in) :: arm(3)               !< from the parent's origin to the frame's
-    real(wp), intent(in) :: inertia(3, 9), wrench(6), amount(5)
-    real(wp), intent(inout) :: parent_inertia(3, 9), parent_wrench(6), parent_amount(5)
+    real(wp), intent(in) :: arm(3)                    !< from the parent's origin to the frame's [m]
+    real(wp), intent(in) :: inertia(3, 9)             !< J, H, M of the frame
+    real(wp), intent(in) :: wrench(6)                 !< torque and force on the frame [N m, N]
+    real(wp), intent(in) :: amount(5)                 !< mass, moment and sum of m r^2 of the frame
+    real(wp), intent(inout) :: parent_inertia(3, 9)   !< J, H, M of the parent
+    real(wp), intent(inout) :: parent_wrench(6)       !< torque and force on the parent [N m, N]
+    real(wp), intent(inout) :: parent_amount(5)       !< mass, moment and sum of m r^2 of the parent
     real(wp) :: h(3, 3), j(3, 3)
     integer :: i
 
@@ -231,12 +266,19 @@ contains
     parent_amount(5) = parent_amount(5) + amount(5) + 2.0_wp*dot_product(arm, amount(2:4)) + amount(1)*dot_product(arm, arm)
   end subroutine add_to_parent
 
-  !> The accelerations, the first step first.
+  !> Find the accelerations, the first step first. All vectors are in fixed axes.
   pure subroutine go_outward(m, parent, coordinate, p, axis_w, axis_v, column, pivot, rest, motion, ddq)
-    integer, intent(in) :: m, parent(m), coordinate(m)
-    real(wp), intent(in) :: p(3, 0:m), axis_w(3, m), axis_v(3, m), column(6, m), pivot(m), rest(m)
-    real(wp), intent(inout) :: motion(6, 0:m)    !< none of frame 0
-    real(wp), intent(out) :: ddq(m)
+    integer, intent(in) :: m                    !< number of steps
+    integer, intent(in) :: parent(m)            !< frame from which each step departs
+    integer, intent(in) :: coordinate(m)        !< number of the coordinate of each step
+    real(wp), intent(in) :: p(3, 0:m)           !< origin of each frame [m]
+    real(wp), intent(in) :: axis_w(3, m)        !< angular velocity that each step gives per unit rate
+    real(wp), intent(in) :: axis_v(3, m)        !< velocity of the new origin per unit rate
+    real(wp), intent(in) :: column(6, m)        !< U of each step
+    real(wp), intent(in) :: pivot(m)            !< D of each step
+    real(wp), intent(in) :: rest(m)             !< Q - S . wrench_0 of each step
+    real(wp), intent(inout) :: motion(6, 0:m)   !< gets accelerations less those that rates alone give; zero for frame 0
+    real(wp), intent(out) :: ddq(m)             !< acceleration of each coordinate [rad/s^2, m/s^2]
     real(wp) :: dw(3), dv(3), x
     integer :: s
 
