@@ -1,4 +1,4 @@
-!> Rates and Jacobians of one block, and its accelerations from rates alone.
+!> Rates and Jacobians of one block, and the accelerations that its rates alone give.
 module mech9_block_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
@@ -19,14 +19,15 @@ module mech9_block_motion
 
 contains
 
-  !> Move block b: frames must be in place, the rates of the independent coordinates known, earlier blocks done.
-  !> Fails with exit_singular in a singular position.
+  !> Find the rates, Jacobian entries and accelerations from rates of block b. Its frames must have their poses, the rates
+  !> of the independent coordinates must be known, and earlier blocks must be done. Fails with exit_singular in a singular
+  !> position.
   subroutine move_block(plan, dynamics, b, state, work, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    integer, intent(in) :: b
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    integer, intent(in) :: b                            !< number of the block
+    type(state_type), intent(inout) :: state            !< with poses and independent rates; gets the motion of the block
+    type(lagrange_work_type), intent(inout) :: work     !< scratch; gets the Jacobian entries of the block
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: conditioning
     logical :: moved
@@ -51,24 +52,22 @@ contains
     end associate
   end subroutine move_block
 
-  !> What B and the accelerations from rates are expected to be, once in an evaluation.
+  !> Extrapolate B and the accelerations from rates to this evaluation's time, once in an evaluation.
   pure subroutine expect(t, work)
-    real(wp), intent(in) :: t
-    type(lagrange_work_type), intent(inout) :: work
+    real(wp), intent(in) :: t                         !< time [s]
+    type(lagrange_work_type), intent(inout) :: work   !< with the expectation; gets `expected_b` and `expected_ddq`
 
     if (.not. work%expects) call work%expectation%continue_to(t, work%expected_b, work%expected_ddq)
     work%expects = .true.
   end subroutine expect
 
-
-
-  !> In general: from what is expected, which stays where the equations say no more than noise.
+  !> The general way: corrections are added to the expected values, which remain where round-off hides the correction.
   subroutine move_as_expected(plan, dynamics, b, state, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    integer, intent(in) :: b
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    integer, intent(in) :: b                           !< number of the block
+    type(state_type), intent(inout) :: state           !< with poses and independent rates; gets the motion of the block
+    type(lagrange_work_type), intent(inout) :: work    !< with the expected values; gets the Jacobian entries of the block
 
     associate (block => plan%blocks(b))
       call find_jacobian(plan, dynamics, block, state, work%expected_b, work%blocks(b), work%jacobian)
@@ -80,11 +79,11 @@ contains
 
   !> Rates of the dependent coordinates of a block, B times those of the independent ones.
   pure subroutine find_rates(plan, dynamics, block, b, dq)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block   !< the block
-    real(wp), intent(in) :: b(:)              !< (entries)
-    real(wp), intent(inout) :: dq(:)          !< (M)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(block_type), intent(in) :: block              !< the block
+    real(wp), intent(in) :: b(:)   !< (entries) B, rates of dependent coordinates per unit rate of independent ones
+    real(wp), intent(inout) :: dq(:)                   !< (M) independent rates in, dependent rates of the block out [rad/s, m/s]
     real(wp) :: rate
     integer :: i, s, e
 
@@ -98,13 +97,13 @@ contains
     end do
   end subroutine find_rates
 
-  !> Accelerations that rates alone give a block, from what is expected; see find_jacobian.
+  !> Accelerations that rates alone give a block, as corrections of the expected ones; see find_jacobian.
   subroutine find_bias(plan, block, expected, state, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    real(wp), intent(in) :: expected(:)       !< (M)
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(block_type), intent(in) :: block          !< the block
+    real(wp), intent(in) :: expected(:)            !< (M) accelerations from rates, extrapolated [rad/s^2, m/s^2]
+    type(state_type), intent(inout) :: state       !< with velocities; gets accelerations of the block's coordinates and frames
+    type(block_work_type), intent(inout) :: work   !< with the block's Jacobian factorized; scratch
     real(wp) :: scale
     integer :: i, k
 

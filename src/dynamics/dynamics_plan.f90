@@ -14,11 +14,11 @@ module mech9_dynamics_plan
 
 contains
 
-  !> Make it; `plan` must have its blocks.
+  !> Make the plan of dynamics; `plan` must have its blocks.
   subroutine make_dynamics_plan(mechanism, plan, dynamics)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(out) :: dynamics
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(dynamics_plan_type), intent(out) :: dynamics   !< the plan of dynamics
     integer :: i
 
     dynamics%gravity = mechanism%gravity
@@ -44,11 +44,11 @@ contains
     end if
   end subroutine make_dynamics_plan
 
-  !> Bodies with mass, moved into the frames of their links.
+  !> Bodies with mass or inertia, moved into the frames of their links.
   subroutine find_bodies(mechanism, plan, dynamics)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(inout) :: dynamics
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< gets the bodies
     integer :: i, n
 
     allocate (dynamics%bodies(size(mechanism%bodies)))
@@ -70,8 +70,8 @@ contains
 
   !> The columns of all frames, block by block.
   subroutine find_columns(plan, dynamics)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(inout) :: dynamics
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with `place_of`; gets the lists of entries
     integer :: b, s, m, last
 
     m = plan%n_coordinates
@@ -95,10 +95,10 @@ contains
     call resize(dynamics%first(m + 1) - 1, dynamics)
   end subroutine find_columns
 
-  !> Lists of entries of another length, what they hold kept.
+  !> Change the length of the lists of entries; the entries that they keep do not change, and new ones are zero.
   pure subroutine resize(n, dynamics)
-    integer, intent(in) :: n
-    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer, intent(in) :: n                              !< number of entries from now on
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with the lists of entries
     integer :: filler(max(0, n - size(dynamics%column)))
 
     filler = 0
@@ -107,10 +107,11 @@ contains
     dynamics%target_entry = [dynamics%target_entry(:min(n, size(dynamics%target_entry))), filler]
   end subroutine resize
 
+  !> The columns of the frames of a block with closed chains: every frame has those of the whole block.
   subroutine add_closed_block(plan, block, dynamics)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(dynamics_plan_type), intent(inout) :: dynamics
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(block_type), intent(in) :: block                 !< the block
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with the entries of earlier blocks; gets those of this one
     integer, allocatable :: columns(:)
     integer :: s, c
 
@@ -131,14 +132,14 @@ contains
     end do
   end subroutine add_closed_block
 
+  !> The entries of one frame. Frames are added in the order of their numbers.
   subroutine add_frame(plan, s, columns, dynamics)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: s
-    integer, intent(in) :: columns(:)
-    type(dynamics_plan_type), intent(inout) :: dynamics
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    integer, intent(in) :: s                              !< number of the frame
+    integer, intent(in) :: columns(:)                     !< places of its coordinates among the independent ones, ascending
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with the entries of earlier frames; gets those of this one
     integer :: i, e
 
-    ! frames come in order
     dynamics%first(s + 1) = dynamics%first(s) + size(columns)
     if (dynamics%first(s + 1) - 1 > size(dynamics%column)) &
       call resize(max(dynamics%first(s + 1) - 1, 2*size(dynamics%column)), dynamics)
@@ -149,9 +150,11 @@ contains
     end do
   end subroutine add_frame
 
+  !> For each entry of a closing frame, the entry of its target frame with the same column.
   subroutine find_target_entries(closing, target, dynamics)
-    integer, intent(in) :: closing, target
-    type(dynamics_plan_type), intent(inout) :: dynamics
+    integer, intent(in) :: closing                        !< number of the closing frame
+    integer, intent(in) :: target                         !< number of the target frame
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with the entries of both; gets `target_entry`
     integer :: e
 
     do e = dynamics%first(closing), dynamics%first(closing + 1) - 1
@@ -161,8 +164,9 @@ contains
 
   !> The entry of a column in a frame's list; 0 where the frame does not depend on it.
   pure integer function entry_of(dynamics, frame, column) result(e)
-    type(dynamics_plan_type), intent(in) :: dynamics
-    integer, intent(in) :: frame, column
+    type(dynamics_plan_type), intent(in) :: dynamics   !< with the entries of the frame
+    integer, intent(in) :: frame                       !< number of the frame
+    integer, intent(in) :: column                      !< place of a coordinate among the independent ones
 
     do e = dynamics%first(frame), dynamics%first(frame + 1) - 1
       if (dynamics%column(e) == column) return
@@ -170,28 +174,30 @@ contains
     e = 0
   end function entry_of
 
+  !> The columns of a frame.
   pure function columns_of(dynamics, frame) result(columns)
-    type(dynamics_plan_type), intent(in) :: dynamics
-    integer, intent(in) :: frame
-    integer, allocatable :: columns(:)
+    type(dynamics_plan_type), intent(in) :: dynamics   !< with the entries of the frame
+    integer, intent(in) :: frame                       !< number of the frame
+    integer, allocatable :: columns(:)   !< places of its coordinates among the independent ones, ascending
 
     columns = dynamics%column(dynamics%first(frame):dynamics%first(frame + 1) - 1)
   end function columns_of
 
-  !> The independent coordinate of a step itself, or none.
+  !> The column of a step's own coordinate, or none where this coordinate is dependent.
   pure function own_column(plan, dynamics, s) result(columns)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    integer, intent(in) :: s
-    integer, allocatable :: columns(:)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< with `place_of`
+    integer, intent(in) :: s                           !< number of the step
+    integer, allocatable :: columns(:)   !< place of the coordinate among the independent ones; empty for none
 
     columns = pack([dynamics%place_of(plan%steps(s)%coordinate)], [.not. plan%steps(s)%dependent])
   end function own_column
 
-  !> Both sets, ascending.
+  !> The union of two sets of numbers.
   pure function united(a, b) result(c)
-    integer, intent(in) :: a(:), b(:)
-    integer, allocatable :: c(:)
+    integer, intent(in) :: a(:)   !< one set, ascending
+    integer, intent(in) :: b(:)   !< the other set, ascending
+    integer, allocatable :: c(:)   !< the numbers that are in either, ascending
     integer :: buffer(size(a) + size(b)), i, j, n
 
     i = 1
@@ -216,11 +222,11 @@ contains
     c = buffer(:n)
   end function united
 
-  !> Frames on which a mass, a load or a closed chain of a later block depends. Inside its own block a closed
-  !> chain needs no more than the first pass that finds its dependent rates.
+  !> Frames on which a mass, a load or a closed chain of a later block depends. The columns of the other frames of a closed
+  !> chain are used only while the dependent rates of its block are found.
   subroutine find_carriers(plan, dynamics)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(inout) :: dynamics
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with bodies and links of loads; gets `carries`
     integer :: b, i, s, c
 
     allocate (dynamics%carries(0:plan%n_coordinates), source=.false.)
