@@ -4,6 +4,9 @@
 !> Columns of Jacobians are kept only where a frame depends on the independent coordinate: frame s has the entries
 !> first(s) .. first(s+1)-1 of one long list. All frames of a closed block share one set of coordinates; along an open chain the
 !> set grows by each coordinate.
+!>
+!> "The accelerations that rates alone give" are those of coordinates and frames when the independent coordinates keep their
+!> rates. Fixed axes are those of frame 0. Numbers in parentheses are those of the paper's equations.
 module mech9_lagrange_types
   use mech9_kinds, only: wp
   use mech9_motion_view, only: motion_view_type
@@ -18,17 +21,17 @@ module mech9_lagrange_types
   private
   public :: frame_body_type, dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
 
-  !> A link with mass, in its frame.
+  !> A link with mass or inertia, in its frame.
   type :: frame_body_type
-    integer :: link = 0
-    integer :: frame = 0
+    integer :: link = 0                   !< number of the link
+    integer :: frame = 0                  !< number of its first frame
     real(wp) :: mass = 0.0_wp             !< [kg]
-    real(wp) :: centre(3) = 0.0_wp        !< in the frame [m]
-    real(wp) :: inertia(3, 3) = 0.0_wp    !< about the centre, frame axes [kg m^2]
-    logical :: is_point = .true.          !< no inertia but its mass
+    real(wp) :: centre(3) = 0.0_wp        !< mass centre, from the frame's origin, in the frame's axes [m]
+    real(wp) :: inertia(3, 3) = 0.0_wp    !< tensor about the centre, in the frame's axes [kg m^2]
+    logical :: is_point = .true.          !< the tensor is zero
   end type frame_body_type
 
-  !> What Lagrange's equations do in one way in space and in another in a plane; with the constant data that this needs.
+  !> The operations of Lagrange's equations that differ between space and a plane, with the constant data that they use.
   type, abstract :: dynamics_arithmetic_type
   contains
     procedure(work_maker), deferred :: make_work
@@ -42,51 +45,51 @@ module mech9_lagrange_types
     procedure(energy_of), deferred :: kinetic_energy
   end type dynamics_arithmetic_type
 
-  !> Everything of dynamics that can be decided once.
+  !> The plan of dynamics holds everything of dynamics that can be decided once.
   type :: dynamics_plan_type
-    type(frame_body_type), allocatable :: bodies(:)    !< none of link 1, none without mass
+    type(frame_body_type), allocatable :: bodies(:)    !< links with mass or inertia, without link 1
     real(wp) :: gravity(3) = 0.0_wp                    !< in the axes of frame 0 [m/s^2]
-    integer, allocatable :: place_of(:)                !< (M) number of a coordinate among the independent ones, 0
+    integer, allocatable :: place_of(:)                !< (M) place of a coordinate among the independent ones, or 0
     integer, allocatable :: first(:)                   !< (0:M+1) first entry of each frame
-    integer, allocatable :: column(:)                  !< (entries) number of the independent coordinate
+    integer, allocatable :: column(:)                  !< (entries) place of the coordinate among the independent ones
     integer, allocatable :: parent_entry(:)            !< (entries) the same column in the parent frame, 0 for none
-    integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame
+    integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame, or 0
     logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
-    integer, allocatable :: acting(:)                  !< numbers of the loads that may move anything
-    logical, allocatable :: load_links(:)              !< (N) links whose motion loads ask for
-    integer, allocatable :: loaded(:)                  !< the same without link 1, which stays where it is
+    integer, allocatable :: acting(:)                  !< numbers of the loads that are not idle
+    logical, allocatable :: load_links(:)              !< (N) whether a load acts on the link or reads its motion
+    integer, allocatable :: loaded(:)                  !< numbers of these links but link 1, which does not move
     logical :: open_chains = .false.                   !< no chain is closed: accelerations by articulated bodies
-    class(dynamics_arithmetic_type), allocatable :: arithmetic
+    class(dynamics_arithmetic_type), allocatable :: arithmetic   !< the arithmetic, in space or in a plane
   end type dynamics_plan_type
 
-  !> Entries as in the dynamics plan: derivatives of a frame's angular velocity and of the velocity of its
-  !> origin (fixed axes) by the rate of an independent coordinate; `b` is dq_k/dq_i of the step's coordinate.
+  !> Derivatives of a frame's angular velocity and of the velocity of its origin, in fixed axes, by the rate of an independent
+  !> coordinate. The entries are those of the dynamics plan; `b` is B = dq_k/dq_i of the coordinate k of the frame's step.
   type :: jacobian_type
-    real(wp), allocatable :: w(:, :)    !< (3, entries)
-    real(wp), allocatable :: v(:, :)    !< (3, entries)
-    real(wp), allocatable :: flat(:, :) !< (3, entries) in planar arithmetic, instead of both
-    real(wp), allocatable :: b(:)       !< (entries)
+    real(wp), allocatable :: w(:, :)    !< (3, entries) angular velocity per unit rate
+    real(wp), allocatable :: v(:, :)    !< (3, entries) velocity of the origin per unit rate
+    real(wp), allocatable :: flat(:, :) !< (3, entries) in planar arithmetic, instead of both: w about the normal, v in the plane
+    real(wp), allocatable :: b(:)       !< (entries) rate of the step's coordinate per unit rate
   end type jacobian_type
 
   !> Scratch and results of one evaluation, sized once.
   type :: lagrange_work_type
-    type(block_work_type), allocatable :: blocks(:)
-    real(wp), allocatable :: sides(:, :)             !< right-hand sides for B; room for any block
-    type(jacobian_type) :: jacobian
-    !> What rates and accelerations are expected to be, by continuation from before: B, entry by entry, and
-    !> the accelerations that rates alone give. They only count beside noise; zero will do.
+    type(block_work_type), allocatable :: blocks(:)  !< equations of each block
+    real(wp), allocatable :: sides(:, :)             !< (equations of the largest block, independent coordinates) sides for B
+    type(jacobian_type) :: jacobian                  !< of all frames
+    !> B, entry by entry, and accelerations from rates, extrapolated from earlier evaluations. The extrapolated values matter
+    !> only where round-off hides the true ones; zeros will do.
     type(expectation_type) :: expectation
     logical :: expects = .false.                     !< the two below are those of this evaluation
-    real(wp), allocatable :: expected_b(:)
-    real(wp), allocatable :: expected_ddq(:)
-    !> Of find_equations, and of find_motion where the plan does without articulated bodies.
+    real(wp), allocatable :: expected_b(:)           !< (entries) B
+    real(wp), allocatable :: expected_ddq(:)         !< (M) accelerations that rates alone give [rad/s^2, m/s^2]
+    !> Results of find_equations; find_motion needs these too, unless articulated bodies give the accelerations.
     real(wp), allocatable :: coefficients(:, :)      !< a_pr, lower triangle
-    real(wp), allocatable :: factors(:, :)
+    real(wp), allocatable :: factors(:, :)           !< their Cholesky factors, lower triangle
     real(wp), allocatable :: velocity_terms(:)       !< h_p
-    real(wp), allocatable :: forces(:)               !< Q_p
-    real(wp), allocatable :: accelerations(:)        !< of the independent coordinates
-    type(motion_view_type) :: view
-    type(force_sum_type) :: sum
+    real(wp), allocatable :: forces(:)               !< Q_p [N m or N]
+    real(wp), allocatable :: accelerations(:)        !< of the independent coordinates [rad/s^2, m/s^2]
+    type(motion_view_type) :: view                   !< the motion as loads read it
+    type(force_sum_type) :: sum                      !< forces of all loads
     type(articulated_work_type) :: articulated       !< of open chains in space
     type(planar_work_type) :: planar                 !< of open chains in a plane
   end type lagrange_work_type
@@ -108,19 +111,19 @@ module mech9_lagrange_types
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       integer, intent(in) :: b                              !< number of the block
-      type(state_type), intent(in) :: state                 !< with the frames in place
+      type(state_type), intent(in) :: state                 !< with the poses of the frames
       type(lagrange_work_type), intent(inout) :: work       !< gets the factors
     end subroutine block_factorizer
 
-    !> Rates, Jacobian entries and accelerations from rates of a well conditioned block in a way of its own; `moved` is false
-    !> where there is none, and nothing is changed then.
+    !> Rates, Jacobian entries and accelerations from rates of a well conditioned block, by a shorter way that an arithmetic may
+    !> have. Where it has none, `moved` is false and nothing is changed.
     subroutine block_mover(self, plan, dynamics, b, conditioning, state, work, moved)
       import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, state_type, lagrange_work_type, wp
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
       integer, intent(in) :: b                              !< number of the block
-      real(wp), intent(in) :: conditioning                  !< of its Jacobian
+      real(wp), intent(in) :: conditioning                  !< least pivot of the block's Jacobian over the largest
       type(state_type), intent(inout) :: state              !< gets the motion of the block
       type(lagrange_work_type), intent(inout) :: work       !< with the block factorized; gets the entries
       logical, intent(out) :: moved                         !< whether it was done
@@ -133,25 +136,26 @@ module mech9_lagrange_types
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
       type(block_type), intent(in) :: block                 !< the block
-      type(state_type), intent(in) :: state                 !< with the frames in place
+      type(state_type), intent(in) :: state                 !< with the poses of the frames
       logical, intent(in) :: all_frames                     !< also frames that carry nothing
       type(jacobian_type), intent(inout) :: jacobian        !< with `b` of the block's steps
     end subroutine jacobian_spreader
 
-    !> The opening of a closure per unit rate of one independent coordinate, from the entries of its two frames.
+    !> Velocity of the closing frame relative to the target, as rows of the closure's equations, per unit rate of one
+    !> independent coordinate, from the entries of the two frames.
     pure subroutine column_finder(self, plan, c, state, jacobian, e, t, column)
       import :: dynamics_arithmetic_type, plan_type, state_type, jacobian_type, wp
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       integer, intent(in) :: c                              !< number of the closure
-      type(state_type), intent(in) :: state                 !< with the frames in place
+      type(state_type), intent(in) :: state                 !< with the poses of the frames
       type(jacobian_type), intent(in) :: jacobian           !< entries of all frames
       integer, intent(in) :: e                              !< entry of the closing frame
-      integer, intent(in) :: t                              !< entry of the target frame; 0: it does not move
+      integer, intent(in) :: t                              !< entry of the target frame, 0 where it does not move
       real(wp), intent(out), contiguous :: column(:)        !< (rank) in the equations of the closure
     end subroutine column_finder
 
-    !> Add a_pr (21), the velocity terms of (19) and weights of all bodies.
+    !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies.
     pure subroutine inertia_adder(self, dynamics, state, work)
       import :: dynamics_arithmetic_type, dynamics_plan_type, state_type, lagrange_work_type
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
@@ -166,8 +170,8 @@ module mech9_lagrange_types
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-      type(state_type), intent(in) :: state                 !< with the frames in place
-      integer, intent(in) :: link                           !< that loads act on
+      type(state_type), intent(in) :: state                 !< with the poses of the frames
+      integer, intent(in) :: link                           !< number of the link
       type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the generalized ones
     end subroutine force_adder
 
