@@ -131,6 +131,7 @@ contains
               '(xy is minus the integral of x y dm)'
   end subroutine judge_tensor
 
+  !> The name of a moment of inertia.
   pure function moment_name(i) result(name)
     integer, intent(in) :: i  !< number of the axis: 1, 2 or 3
     character(len=2) :: name
@@ -148,6 +149,7 @@ contains
     minor = a(i, i)*a(j, j) - a(i, j)*a(j, i)
   end function minor
 
+  !> Determinant of a matrix.
   pure real(wp) function determinant(a)
     real(wp), intent(in) :: a(3, 3)  !< symmetric matrix
 

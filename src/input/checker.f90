@@ -44,6 +44,7 @@ contains
     end do
   end subroutine check_document
 
+  !> Report a group that is not in the grammar, with the nearest known name.
   pure subroutine report_unknown_group(group, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
@@ -67,6 +68,7 @@ contains
     has_bad_value = .false.
   end function has_bad_value
 
+  !> Check the names and values of one group.
   pure subroutine check_group(group, diagnostics)
     type(group_type), intent(inout) :: group              !< the group of the data file
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
@@ -108,6 +110,7 @@ contains
     group%items = merged(:count)
   end subroutine merge_group
 
+  !> Whether an item belongs to the coincidence matrix.
   pure logical function is_matrix(group, item)
     type(group_type), intent(in) :: group  !< the group of the data file
     type(item_type), intent(in) :: item    !< the item that may be the coincidence matrix
@@ -132,6 +135,7 @@ contains
     end do
   end function kind_of
 
+  !> Check each item of a group against the row of its name.
   pure subroutine check_items(group, kind, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     character(len=*), intent(in) :: kind                  !< the kind of the group; empty where it has none
@@ -155,6 +159,7 @@ contains
     end do
   end subroutine check_items
 
+  !> Report a name that is not in the group, with the nearest known name or the group to which it belongs.
   pure subroutine report_unknown_name(group, item, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(item_type), intent(in) :: item                   !< the item whose name is unknown
@@ -192,6 +197,7 @@ contains
     end do
   end subroutine check_missing
 
+  !> Whether a group gives a name.
   pure logical function is_given(group, name)
     type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item that is sought
@@ -259,6 +265,7 @@ contains
     end if
   end function key_number
 
+  !> The value of the name that tells groups of a kind apart.
   pure function key_value(group, key) result(value)
     type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: key    !< the name whose value is returned
@@ -270,6 +277,7 @@ contains
     end do
   end function key_value
 
+  !> Report a group that must not be repeated, with the line of the first one.
   pure subroutine report_repeated(group, first, key, diagnostics)
     type(group_type), intent(in) :: group                 !< the group that stands there again
     type(group_type), intent(in) :: first                 !< the group that stands there first

@@ -66,6 +66,7 @@ contains
     end if
   end function hint
 
+  !> Write a line for each group.
   subroutine list_groups(unit)
     integer, intent(in) :: unit  !< Fortran unit to write to
     integer :: i
@@ -76,6 +77,7 @@ contains
     end do
   end subroutine list_groups
 
+  !> Write the example, the meaning and the values of one name.
   subroutine describe_item(unit, row)
     integer, intent(in) :: unit             !< Fortran unit to write to
     type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
@@ -104,6 +106,7 @@ contains
     end do
   end subroutine write_data_tables
 
+  !> Write the row of a name in a Markdown table.
   subroutine write_table_row(unit, row)
     integer, intent(in) :: unit             !< Fortran unit to write to
     type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
@@ -112,6 +115,7 @@ contains
       default_text(row), ' | ', meaning_text(row), ' | `', trim(row%example), '` |'
   end subroutine write_table_row
 
+  !> The text with its first letter raised.
   pure function capital(text) result(raised)
     character(len=*), intent(in) :: text  !< a text that is not empty
     character(len=len(text)) :: raised

@@ -92,6 +92,7 @@ contains
     length = max(length, 1)
   end function word_length
 
+  !> Make room for more errors.
   pure subroutine grow(kept)
     type(diagnostic_type), allocatable, intent(inout) :: kept(:)  !< the errors; their number of places is doubled
     type(diagnostic_type), allocatable :: grown(:)
@@ -116,6 +117,7 @@ contains
     call move_alloc(grown, self%sources)
   end subroutine add_source
 
+  !> Whether there are errors.
   pure logical function failed(self)
     class(diagnostics_type), intent(in) :: self  !< the diagnostics
 
@@ -145,6 +147,7 @@ contains
     if (span%source == 1) place = self%sources(1)%place(span%first)
   end function place
 
+  !> Length of a text that is cut where it is too long.
   pure integer function cut_length(text, longest) result(length)
     character(len=*), intent(in) :: text  !< the text that is shown
     integer, intent(in) :: longest        !< most bytes that are shown
@@ -153,6 +156,7 @@ contains
     if (length > longest) length = character_start(text, longest, 1) - 1 + len('...')
   end function cut_length
 
+  !> Length of the result of text_of.
   pure integer function length_of(self, span) result(length)
     type(diagnostics_type), intent(in) :: self  !< the diagnostics
     type(span_type), intent(in) :: span         !< the bytes that are quoted
@@ -251,6 +255,7 @@ contains
     end do
   end function sorted
 
+  !> Whether the first of two places is shown before the other.
   pure logical function before(a, b)
     type(span_type), intent(in) :: a  !< the place that may come first
     type(span_type), intent(in) :: b  !< the place that it is compared with
@@ -309,6 +314,7 @@ contains
     end do
   end function character_start
 
+  !> Number of characters of a text.
   pure integer function count_characters(text) result(n)
     character(len=*), intent(in) :: text  !< a text in UTF-8
     integer :: i

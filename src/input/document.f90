@@ -77,6 +77,7 @@ contains
     call move_group(group, groups(count))
   end subroutine add_group
 
+  !> Move the content of a group without copying it.
   pure subroutine move_group(from, to)
     type(group_type), intent(inout) :: from  !< the group that is emptied
     type(group_type), intent(inout) :: to    !< the group that gets its content
@@ -108,6 +109,7 @@ contains
     call move_item(item, items(count))
   end subroutine add_item
 
+  !> Move the content of an item without copying it.
   pure subroutine move_item(from, to)
     type(item_type), intent(inout) :: from  !< the item that is emptied
     type(item_type), intent(inout) :: to    !< the item that gets its content

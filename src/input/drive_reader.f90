@@ -73,6 +73,7 @@ contains
     if (pairs(k)%pair%angular) unit = angle_unit
   end function unit_of_coordinate
 
+  !> Report a drive of a coordinate that does not exist or is dependent.
   pure subroutine check_coordinate(group, structure, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(structure_type), intent(in) :: structure         !< links and coordinates of the mechanism; none where it is unknown
@@ -169,6 +170,7 @@ contains
     if (allocated(err)) call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
   end subroutine read_drive
 
+  !> A drive through the points of a file.
   subroutine read_table_drive(document, group, unit, slot, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(group_type), intent(in) :: group                 !< the group of the data file

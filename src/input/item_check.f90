@@ -45,6 +45,7 @@ contains
     if (value%kind == value_word) equals_is_missing = size(find_item_rows(row%group, value%text)) > 0
   end function equals_is_missing
 
+  !> Report a value of the wrong type.
   pure subroutine check_type(value, number, name, row, diagnostics)
     type(value_type), intent(in) :: value                 !< the value that is checked
     integer, intent(in) :: number                         !< position of the value in its list
@@ -91,6 +92,7 @@ contains
     is_sensible = abs(number) <= 1.0e100_wp .and. (abs(number) >= 1.0e-100_wp .or. .not. abs(number) > 0.0_wp)
   end function is_sensible
 
+  !> Report too few or too many values.
   pure subroutine check_count(item, row, diagnostics)
     type(item_type), intent(in) :: item                   !< the item whose values are checked
     type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
@@ -113,6 +115,7 @@ contains
     end if
   end subroutine check_count
 
+  !> The allowed number of values, in words.
   pure function expected_count(row) result(text)
     type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=60) :: text
@@ -151,6 +154,7 @@ contains
     if (last%span%source == cover%source .and. last%span%last > cover%last) cover%last = last%span%last
   end function cover
 
+  !> Report a number outside its range.
   pure subroutine check_range(value, name, row, diagnostics)
     type(value_type), intent(in) :: value                 !< the value that is checked
     character(len=*), intent(in) :: name                  !< name of the item, for the message
@@ -174,6 +178,7 @@ contains
                                            diagnostics%text_of(value%span))
   end subroutine check_range
 
+  !> Report a text that is not one of the allowed words.
   pure subroutine check_word(value, name, row, diagnostics)
     type(value_type), intent(in) :: value                 !< the value that is checked
     character(len=*), intent(in) :: name                  !< name of the item, for the message

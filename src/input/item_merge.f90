@@ -85,6 +85,7 @@ contains
     end select
   end subroutine check_subscripts
 
+  !> The line of an earlier item, in words; empty where it does not stand in the data file.
   pure function line_of(span, diagnostics) result(text)
     type(span_type), intent(in) :: span                !< place of the earlier item
     type(diagnostics_type), intent(in) :: diagnostics  !< gets what is wrong

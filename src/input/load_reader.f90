@@ -52,6 +52,7 @@ contains
     end do
   end subroutine read_loads
 
+  !> A force or torque on a link.
   pure function force_load(group) result(load)
     type(group_type), intent(in) :: group  !< the group of the data file
     type(force_load_type) :: load
@@ -66,6 +67,7 @@ contains
     end if
   end function force_load
 
+  !> A spring and damper between two points.
   pure function spring_load(group) result(load)
     type(group_type), intent(in) :: group  !< the group of the data file
     type(spring_load_type) :: load
@@ -95,6 +97,7 @@ contains
     if (pairs(load%coordinate)%pair%angular) load%rest = load%rest*angle_unit
   end function coordinate_load
 
+  !> Report a load on a coordinate that does not exist.
   pure subroutine check_coordinate(group, n_coordinates, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: n_coordinates                  !< how many coordinates there are; 0: unknown
@@ -105,6 +108,7 @@ contains
                            to_text(get_integer(group, 'coordinate'))//'; they are 1 to '//to_text(n_coordinates))
   end subroutine check_coordinate
 
+  !> Report a spring whose links do not exist or are the same.
   pure subroutine check_spring(group, n_links, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: n_links                        !< how many links there are; 0: unknown

@@ -50,6 +50,7 @@ contains
     ok = diagnostics%count == found
   end subroutine read_matrix
 
+  !> The place of the first item of the matrix.
   pure type(span_type) function first_span(group)
     type(group_type), intent(in) :: group  !< the group of the data file
     integer :: i
@@ -148,6 +149,7 @@ contains
     end associate
   end function label
 
+  !> Report elements of the matrix that are not given.
   pure subroutine check_complete(group, matrix, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(matrix_type), intent(in) :: matrix               !< the coincidence matrix with the places of its elements

@@ -86,6 +86,7 @@ contains
     is_mantissa = point == index(text, '.', back=.true.)
   end function is_mantissa
 
+  !> Whether a text is digits, with a sign or none.
   pure logical function is_exponent(text)
     character(len=*), intent(in) :: text  !< the numeral after its exponent letter
     integer :: first

@@ -130,6 +130,7 @@ contains
     call read_time(group_or_empty(document, 'time'), mechanism%time, diagnostics)
   end subroutine read_settings
 
+  !> Read the times of the results.
   pure subroutine read_time(group, time, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(time_grid_type), intent(out) :: time             !< the times of the results [s]

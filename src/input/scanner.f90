@@ -191,6 +191,7 @@ contains
     end if
   end subroutine scan_value
 
+  !> Advice for an unexpected character; blank where there is none.
   pure function advice(mark) result(text)
     character, intent(in) :: mark  !< the unexpected character
     character(len=64) :: text

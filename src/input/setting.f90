@@ -103,6 +103,7 @@ contains
     item%overrides = .true.
   end subroutine read_item
 
+  !> Whether a name takes a text.
   pure logical function takes_text(group, name)
     character(len=*), intent(in) :: group  !< name of the group
     character(len=*), intent(in) :: name   !< name of the item
@@ -113,6 +114,7 @@ contains
     if (size(rows) > 0) takes_text = item_table(rows(1))%type == 'text'
   end function takes_text
 
+  !> Whether a value is given without quotes.
   pure logical function is_unquoted(value)
     character(len=*), intent(in) :: value  !< the setting after its equals sign
 

@@ -103,6 +103,7 @@ contains
     end do
   end subroutine find_lines
 
+  !> Whether a byte is the last one of a line end.
   pure logical function ends_line(text, i)
     character(len=*), intent(in) :: text  !< the whole text
     integer, intent(in) :: i              !< number of a byte
@@ -174,6 +175,7 @@ contains
     end do
   end function byte_at
 
+  !> Whether all bytes of a text are ASCII characters.
   pure logical function all_ascii(text)
     character(len=*), intent(in) :: text  !< the whole text
     integer :: i

@@ -66,6 +66,7 @@ contains
     if (known .and. .not. has_vectors) call transform(structure, vectors)
   end subroutine read_structure
 
+  !> Collect the data on the structure from all groups.
   pure subroutine gather(document, data)
     type(document_type), intent(in) :: document  !< the data file as groups and items
     type(source_data_type), intent(out) :: data  !< the data on the structure, gathered from all groups
@@ -88,6 +89,7 @@ contains
     data%all_pairs = .not. has_unsound(document, 'pair')
   end subroutine gather
 
+  !> Make the structure from the coincidence matrix.
   pure subroutine from_matrix(document, data, structure, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
@@ -111,6 +113,7 @@ contains
     call report(findings, document, data, diagnostics)
   end subroutine from_matrix
 
+  !> Make the structure from the links of the pairs.
   pure subroutine from_pairs(document, data, structure, known, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
@@ -137,6 +140,7 @@ contains
     known = size(findings) == 0
   end subroutine from_pairs
 
+  !> Make the structure from the structural vectors, and compare it with the other data.
   pure subroutine from_vectors(document, data, structure, vectors, diagnostics)
     type(document_type), intent(in) :: document              !< the data file as groups and items
     type(source_data_type), intent(in) :: data               !< the data on the structure, gathered from all groups
@@ -205,6 +209,7 @@ contains
     position = findloc(get_integers(data%structure, 'nws'), coordinate, dim=1)
   end function findloc_value
 
+  !> Report contradictions between cq and the second set about independent coordinates.
   pure subroutine compare_independent(data, cq, second, diagnostics)
     type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
     integer, intent(in) :: cq(:)                          !< numbers of the independent coordinates
@@ -286,6 +291,7 @@ contains
                            trim(merge('s', ' ', size(missing) > 1))//' '//some_of(missing, longest_list), exit_structure)
   end subroutine take_pairs
 
+  !> The kind of a coordinate in words, padded with a blank.
   pure function kind_word(independent) result(word)
     logical, intent(in) :: independent  !< whether the coordinate is independent
     character(len=11) :: word
@@ -306,6 +312,7 @@ contains
     end do
   end subroutine report
 
+  !> The place of the number that causes an error.
   pure type(span_type) function span_of_finding(finding, document, data) result(span)
     type(finding_type), intent(in) :: finding    !< an error that the structure floor found
     type(document_type), intent(in) :: document  !< the data file as groups and items

@@ -34,6 +34,7 @@ module mech9_facts
 
 contains
 
+  !> Add a real number.
   subroutine add_number(self, name, value, long_name, unit)
     class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores
@@ -45,6 +46,7 @@ contains
     self%items(self%count)%number = value
   end subroutine add_number
 
+  !> Add a whole number.
   subroutine add_count(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores
@@ -54,6 +56,7 @@ contains
     call self%add_whole(name, int(value, long), long_name)
   end subroutine add_count
 
+  !> Add a whole number of long kind.
   subroutine add_whole(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores
@@ -64,6 +67,7 @@ contains
     self%items(self%count)%whole = value
   end subroutine add_whole
 
+  !> Add a text.
   subroutine add_text(self, name, value, long_name)
     class(facts_type), intent(inout) :: self   !< the facts
     character(len=*), intent(in) :: name       !< a word of lower-case letters and underscores

@@ -26,6 +26,8 @@ module mech9_hdf5_file
   !> Size of the block for metadata at the beginning of the file [bytes]. A flush writes the block at once, so that
   !> a run that is killed leaves either the old state or the new one.
   integer(hsize_t), parameter :: metadata_block = 131072
+  !> Extents of a data set that is a single value.
+  integer(hsize_t), parameter :: no_extents(0) = [integer(hsize_t) ::]
 
   type :: hdf5_file_type
     character(len=:), allocatable :: path
@@ -99,6 +101,7 @@ contains
     call h5pset_create_inter_group_f(self%make_groups, 1, status)
   end subroutine create_file
 
+  !> Whether the file is open.
   pure logical function is_open(self)
     class(hdf5_file_type), intent(in) :: self  !< the HDF5 file
 
@@ -155,7 +158,7 @@ contains
     type(string_type) :: texts(1)
 
     texts(1)%text = text
-    call put_text_values(self, name, texts, [integer(hsize_t) ::], long_name)
+    call put_text_values(self, name, texts, no_extents, long_name)
   end subroutine put_text
 
   subroutine put_texts(self, name, texts, long_name)
@@ -167,6 +170,7 @@ contains
     call put_text_values(self, name, texts, [size(texts, kind=hsize_t)], long_name)
   end subroutine put_texts
 
+  !> Write texts as a data set of the given extents.
   subroutine put_text_values(self, name, texts, extents, long_name)
     class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
     character(len=*), intent(in) :: name          !< path of the data set
@@ -187,7 +191,7 @@ contains
     real(wp), intent(in), target :: value           !< the number
     character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
 
-    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, [integer(hsize_t) ::], c_loc(value), long_name, unit)
+    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, no_extents, c_loc(value), long_name, unit)
   end subroutine put_real
 
   subroutine put_reals(self, name, values, long_name, unit)
@@ -218,7 +222,7 @@ contains
     character(len=*), intent(in) :: long_name     !< a few words that describe it
     integer, intent(in), target :: value          !< the number
 
-    call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(value), h5_integer_kind), [integer(hsize_t) ::], &
+    call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(value), h5_integer_kind), no_extents, &
                          c_loc(value), long_name)
   end subroutine put_integer
 
@@ -248,7 +252,7 @@ contains
     character(len=*), intent(in) :: long_name     !< a few words that describe it
     integer(long), intent(in), target :: value    !< the number
 
-    call self%put_values(name, h5t_std_i64le, h5kind_to_type(kind(value), h5_integer_kind), [integer(hsize_t) ::], &
+    call self%put_values(name, h5t_std_i64le, h5kind_to_type(kind(value), h5_integer_kind), no_extents, &
                          c_loc(value), long_name)
   end subroutine put_long
 

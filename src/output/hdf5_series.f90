@@ -226,6 +226,7 @@ contains
     self%waiting = 0
   end subroutine hand_over
 
+  !> Write the rows in the buffer of one quantity.
   subroutine write_block(self, quantity, file)
     class(hdf5_series_type), intent(in) :: self          !< the quantities over time
     type(quantity_type), intent(in), target :: quantity  !< the quantity whose buffer is written

@@ -176,6 +176,7 @@ contains
     call file%attach_scales('shape/line_link', ['/shape/line_number'])
   end subroutine add_pose_scales
 
+  !> Write a scale with the names of the axes x, y, z.
   subroutine put_axes(file, name, long_name)
     type(hdf5_file_type), intent(inout) :: file  !< the open file
     character(len=*), intent(in) :: name         !< path of the data set
@@ -190,6 +191,7 @@ contains
     call file%make_scale(name)
   end subroutine put_axes
 
+  !> Write the numbers, units and kinds of the coordinates.
   subroutine add_coordinate_scales(file, mechanism, columns)
     type(hdf5_file_type), intent(inout) :: file    !< the open file
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
@@ -208,6 +210,7 @@ contains
     call file%attach_scales('coordinate_kind', ['/coordinate'])
   end subroutine add_coordinate_scales
 
+  !> Write the names and links of the points, and the axes.
   subroutine add_point_scales(file, mechanism)
     type(hdf5_file_type), intent(inout) :: file    !< the open file
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
@@ -305,6 +308,7 @@ contains
     call self%tell(err)
   end subroutine flush_sink
 
+  !> Write all rows and close the file.
   subroutine close_sink(self, err)
     class(hdf5_sink_type), intent(inout) :: self       !< the HDF5 sink
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -316,6 +320,7 @@ contains
     call self%tell(err)
   end subroutine close_sink
 
+  !> The path of the file in words.
   function words(self)
     class(hdf5_sink_type), intent(in) :: self  !< the HDF5 sink
     character(len=:), allocatable :: words

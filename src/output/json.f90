@@ -46,6 +46,7 @@ module mech9_json
 
 contains
 
+  !> Begin an object.
   subroutine begin_object(self, name)
     class(json_type), intent(inout) :: self         !< the document
     character(len=*), intent(in), optional :: name  !< name in the object around it; absent in an array and for the whole document
@@ -53,12 +54,14 @@ contains
     call self%begin('{', '}', name)
   end subroutine begin_object
 
+  !> End the innermost object.
   subroutine end_object(self)
     class(json_type), intent(inout) :: self  !< the document
 
     call self%finish('}')
   end subroutine end_object
 
+  !> Begin an array.
   subroutine begin_array(self, name)
     class(json_type), intent(inout) :: self         !< the document
     character(len=*), intent(in), optional :: name  !< name in the object around it; absent in an array and for the whole document
@@ -66,12 +69,14 @@ contains
     call self%begin('[', ']', name)
   end subroutine begin_array
 
+  !> End the innermost array.
   subroutine end_array(self)
     class(json_type), intent(inout) :: self  !< the document
 
     call self%finish(']')
   end subroutine end_array
 
+  !> Add a real number to an object.
   subroutine add_real(self, name, value)
     class(json_type), intent(inout) :: self  !< the document
     character(len=*), intent(in) :: name     !< name in the object
@@ -80,6 +85,7 @@ contains
     call self%put_item(number_text(value), name)
   end subroutine add_real
 
+  !> Add a whole number to an object.
   subroutine add_integer(self, name, value)
     class(json_type), intent(inout) :: self  !< the document
     character(len=*), intent(in) :: name     !< name in the object
@@ -88,6 +94,7 @@ contains
     call self%put_item(to_text(value), name)
   end subroutine add_integer
 
+  !> Add a whole number of long kind to an object.
   subroutine add_long(self, name, value)
     class(json_type), intent(inout) :: self  !< the document
     character(len=*), intent(in) :: name     !< name in the object
@@ -96,6 +103,7 @@ contains
     call self%put_item(to_text(value), name)
   end subroutine add_long
 
+  !> Add a truth value to an object.
   subroutine add_logical(self, name, value)
     class(json_type), intent(inout) :: self  !< the document
     character(len=*), intent(in) :: name     !< name in the object
@@ -104,6 +112,7 @@ contains
     call self%put_item(trim(merge('true ', 'false', value)), name)
   end subroutine add_logical
 
+  !> Add a text to an object.
   subroutine add_text(self, name, value)
     class(json_type), intent(inout) :: self  !< the document
     character(len=*), intent(in) :: name     !< name in the object
@@ -112,6 +121,7 @@ contains
     call self%put_item(quoted(value), name)
   end subroutine add_text
 
+  !> Add an array of real numbers to an object.
   subroutine add_reals(self, name, values)
     class(json_type), intent(inout) :: self  !< the document
     character(len=*), intent(in) :: name     !< name in the object
@@ -125,6 +135,7 @@ contains
     call self%end_array()
   end subroutine add_reals
 
+  !> Add a real number to an array.
   subroutine item_real(self, value)
     class(json_type), intent(inout) :: self  !< the document
     real(wp), intent(in) :: value            !< the value to add
@@ -132,6 +143,7 @@ contains
     call self%put_item(number_text(value))
   end subroutine item_real
 
+  !> Add a whole number to an array.
   subroutine item_integer(self, value)
     class(json_type), intent(inout) :: self  !< the document
     integer, intent(in) :: value             !< the value to add
@@ -139,6 +151,7 @@ contains
     call self%put_item(to_text(value))
   end subroutine item_integer
 
+  !> Add a whole number of long kind to an array.
   subroutine item_long(self, value)
     class(json_type), intent(inout) :: self  !< the document
     integer(long), intent(in) :: value       !< the value to add
@@ -146,6 +159,7 @@ contains
     call self%put_item(to_text(value))
   end subroutine item_long
 
+  !> Add a truth value to an array.
   subroutine item_logical(self, value)
     class(json_type), intent(inout) :: self  !< the document
     logical, intent(in) :: value             !< the value to add
@@ -153,6 +167,7 @@ contains
     call self%put_item(trim(merge('true ', 'false', value)))
   end subroutine item_logical
 
+  !> Add a text to an array.
   subroutine item_text(self, value)
     class(json_type), intent(inout) :: self  !< the document
     character(len=*), intent(in) :: value    !< the value to add
@@ -173,6 +188,7 @@ contains
     call save_text(path, self%page%text()//line_end, err)
   end subroutine save_document
 
+  !> Begin an object or array.
   subroutine begin(self, opening, closing, name)
     class(json_type), intent(inout) :: self         !< the document
     character, intent(in) :: opening                !< the bracket that opens it
@@ -187,6 +203,7 @@ contains
     self%empty = .true.
   end subroutine begin
 
+  !> End the innermost object or array.
   subroutine finish(self, closing)
     class(json_type), intent(inout) :: self  !< the document
     character, intent(in) :: closing         !< the bracket that closes it

@@ -65,6 +65,7 @@ contains
     end do
   end function new_number_format
 
+  !> Multiply a long integer by 5.
   pure subroutine multiply_by_5(number)
     integer(long), intent(inout) :: number(limbs)  !< long integer, least limb first
     integer(long) :: carry
@@ -78,6 +79,7 @@ contains
     end do
   end subroutine multiply_by_5
 
+  !> Divide a long integer by 5, without the remainder.
   pure subroutine divide_by_5(number)
     integer(long), intent(inout) :: number(limbs)  !< long integer, least limb first
     integer(long) :: rest
@@ -144,6 +146,7 @@ contains
     call put_digits(digits, exponent, bits < 0, field)
   end subroutine put
 
+  !> The text of a number that is not finite.
   pure function not_finite(is_nan, negative) result(field)
     logical, intent(in) :: is_nan    !< whether it is not a number
     logical, intent(in) :: negative  !< whether its sign bit is set
@@ -244,6 +247,7 @@ contains
     field(24:25) = pairs(2*size + 1:2*size + 2)
   end subroutine put_digits
 
+  !> Write eight digits of a number.
   pure subroutine put_8_digits(number, text)
     integer, intent(in) :: number          !< from 0 to 99999999
     character(len=8), intent(out) :: text  !< its digits, with leading zeros

@@ -77,6 +77,7 @@ contains
     end do
   end function with_escapes
 
+  !> Whether a byte is a control character.
   pure logical function is_control(letter)
     character, intent(in) :: letter  !< one byte
 

@@ -98,6 +98,7 @@ contains
     end do
   end subroutine pair_times
 
+  !> The largest difference of two columns, with its time and values.
   pure type(difference_type) function difference_in(before, after, times) result(difference)
     real(wp), intent(in) :: before(:)  !< the column in the earlier run, at the common times
     real(wp), intent(in) :: after(:)   !< the column in the later run, at the common times

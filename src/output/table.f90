@@ -213,6 +213,7 @@ contains
     line = line//line_end
   end function unit_line
 
+  !> The unit as a heading: 1 for a plain number.
   pure function unit_name(unit) result(name)
     character(len=*), intent(in) :: unit  !< unit of a column; empty where it has none
     character(len=:), allocatable :: name
@@ -224,6 +225,7 @@ contains
     end if
   end function unit_name
 
+  !> The headings, each above its column.
   pure function name_line(names) result(line)
     type(string_type), intent(in) :: names(:)  !< headings of the columns
     character(len=:), allocatable :: line

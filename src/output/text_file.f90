@@ -73,6 +73,7 @@ contains
     end if
   end subroutine open_file
 
+  !> Whether the file is open.
   pure logical function is_open(self)
     class(text_file_type), intent(in) :: self  !< the text file
 

@@ -305,6 +305,7 @@ contains
     text = to_bytes(points)
   end function line_to_cursor
 
+  !> The data of an editor.
   function box_of(editor) result(box)
     type(c_ptr), intent(in) :: editor  !< address of the editor
     type(box_type), pointer :: box

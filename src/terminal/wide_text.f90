@@ -68,6 +68,7 @@ contains
     text = buffer(:used)
   end function to_bytes
 
+  !> Number of bytes of a code point in UTF-8.
   pure integer function bytes_of(point)
     integer, intent(in) :: point  !< a code point
 

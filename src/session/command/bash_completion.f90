@@ -88,6 +88,7 @@ contains
     text = text//'return ;;'//eol
   end function choice
 
+  !> The options of a program, each with its dashes.
   pure function options_of(program_name) result(text)
     character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
@@ -100,6 +101,7 @@ contains
     text = text(2:)
   end function options_of
 
+  !> The names of all groups of the data file, each with a blank after it.
   pure function groups_of_data() result(text)
     character(len=:), allocatable :: text
     integer :: i
@@ -122,6 +124,7 @@ contains
     end do
   end function names_of_data
 
+  !> The name of a row of the grammar as GROUP.NAME.
   pure function data_name(row) result(text)
     integer, intent(in) :: row  !< row of item_table
     character(len=:), allocatable :: text

@@ -143,6 +143,7 @@ contains
     is_option = starts_with(word, '-') .and. len(word) > 1
   end function is_option
 
+  !> Take a word as the data file.
   pure subroutine take_file(word, options, err)
     character(len=*), intent(in) :: word               !< the path of the data file
     type(command_line_type), intent(inout) :: options  !< gets the data file
@@ -195,6 +196,7 @@ contains
     if (.not. allocated(err)) call append(options%given, options_table(place)%name, argument)
   end subroutine read_option
 
+  !> Fail because of an unknown option, with the nearest known one.
   pure subroutine raise_unknown(name, program_name, err)
     character(len=*), intent(in) :: name               !< the option as it was given, with its dashes
     character(len=*), intent(in) :: program_name       !< mech9k or mech9d

@@ -27,6 +27,7 @@ contains
            examples(program_name)//environment()//exit_status()
   end function manual_page
 
+  !> The section on the purpose of the program.
   pure function description(program_name) result(text)
     character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
@@ -47,6 +48,7 @@ contains
                 &on a terminal.')
   end function description
 
+  !> The section on the options.
   pure function options_of(program_name) result(text)
     character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
@@ -59,6 +61,7 @@ contains
     end do
   end function options_of
 
+  !> The section on the conversation.
   pure function conversation(program_name) result(text)
     character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
@@ -77,6 +80,7 @@ contains
                 &Answers can also be read from a file or a pipe: '//program_name//' < answers.')
   end function conversation
 
+  !> The section on environment variables.
   pure function environment() result(text)
     character(len=:), allocatable :: text
 
@@ -103,6 +107,7 @@ contains
     end do
   end function data_file
 
+  !> The entry of one name of the data file.
   pure function item(row) result(text)
     type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
     character(len=:), allocatable :: text, example
@@ -112,6 +117,7 @@ contains
     text = entry(example, meaning_text(row))//'.br'//eol//line(takes_text(row))
   end function item
 
+  !> The section with examples.
   pure function examples(program_name) result(text)
     character(len=*), intent(in) :: program_name  !< mech9k or mech9d
     character(len=:), allocatable :: text
@@ -127,6 +133,7 @@ contains
                  'Run it for two seconds; the table goes to standard output.')
   end function examples
 
+  !> The section on exit codes.
   pure function exit_status() result(text)
     character(len=:), allocatable :: text
     integer :: i
@@ -147,6 +154,7 @@ contains
     text = '.TP'//eol//'.B "'//escaped(label)//'"'//eol//line(words)
   end function entry
 
+  !> Sentences as a new paragraph.
   pure function paragraph(words) result(text)
     character(len=*), intent(in) :: words  !< the sentences
     character(len=:), allocatable :: text

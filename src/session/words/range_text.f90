@@ -45,6 +45,7 @@ contains
     end do
   end subroutine print_ranges
 
+  !> A text in a column of the given width.
   pure function column(text, width) result(padded)
     character(len=*), intent(in) :: text  !< the text of the column
     integer, intent(in) :: width          !< letters of the column
@@ -77,6 +78,7 @@ contains
     if (lower /= upper) text = 'below: '//lower//'; above: '//upper
   end function reasons
 
+  !> The cause of one end of a range.
   pure function reason(plan, found, factor, unit) result(text)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(end_type), intent(in) :: found   !< one end of the range

@@ -146,6 +146,7 @@ contains
     call json%end_array()
   end subroutine add_structure
 
+  !> Add an array of whole numbers.
   subroutine add_integers(json, name, numbers)
     type(json_type), intent(inout) :: json  !< the report, which is being composed
     character(len=*), intent(in) :: name    !< name of the list in the report

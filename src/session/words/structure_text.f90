@@ -59,6 +59,7 @@ contains
     if (equations > unknowns) write (unit, '(a)') 'redundant equations: '//to_text(equations - unknowns)
   end subroutine print_mobility
 
+  !> Write the numbers of links, coordinates and closed chains, and the independent coordinates.
   subroutine print_counts(unit, plan)
     integer, intent(in) :: unit          !< Fortran unit to write to
     type(plan_type), intent(in) :: plan  !< the plan of the mechanism
