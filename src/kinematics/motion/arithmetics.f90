@@ -1,4 +1,4 @@
-!> The one place that decides in which arithmetic a plan is executed: in space, or in the plane of a planar mechanism.
+!> The choice of the arithmetic in which a plan is executed: in space, or in the plane of a planar mechanism.
 module mech9_arithmetics
   use mech9_plan, only: plan_type
   use mech9_planar_plan, only: planar_plan_type
@@ -12,9 +12,9 @@ module mech9_arithmetics
 
 contains
 
-  !> Execute a plan in space. The ranks of its closures count as they are now.
+  !> Execute a plan in space. Each constraint has as many equations as the rank of its closure is at this call.
   pure subroutine set_in_space(plan)
-    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
+    type(plan_type), intent(inout) :: plan   !< the plan; gets the arithmetic and the constraints in space
     integer :: c
 
     plan%planar = planar_plan_type()
@@ -29,7 +29,7 @@ contains
 
   !> Execute a plan in its plane, if it has been laid out there.
   pure subroutine set_in_plane(plan)
-    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
+    type(plan_type), intent(inout) :: plan   !< the plan; gets the arithmetic and the constraints in the plane
     integer :: c
 
     if (.not. plan%planar%used) return

@@ -9,12 +9,12 @@ module mech9_block_equations
 
 contains
 
-  !> By how much the constraints of a block are not satisfied: rotations in rad, translations in lengths of the mechanism.
+  !> The residual of the constraints of a block: rotations in rad, translations in lengths of the mechanism.
   pure subroutine block_residual(plan, block, state, residual)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out), contiguous :: residual(:)      !< (equations)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(block_type), intent(in) :: block              !< the block
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    real(wp), intent(out), contiguous :: residual(:)   !< (equations) [rad, lengths of the mechanism]
     integer :: c, row
 
     row = 0
@@ -29,10 +29,10 @@ contains
   !> Derivatives of the block's equations with respect to its unknowns, each coordinate in its own unit (rad, or the
   !> mechanism's length).
   pure subroutine block_jacobian(plan, block, state, column_of, jacobian)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in), contiguous :: column_of(:)       !< column of each of the block's steps; 0: not an unknown
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(block_type), intent(in) :: block                 !< the block
+    type(state_type), intent(in) :: state                 !< with the poses of the frames and the screws of the steps
+    integer, intent(in), contiguous :: column_of(:)   !< (steps of the block) column of each step's coordinate; 0: not an unknown
     real(wp), intent(out), contiguous :: jacobian(:, :)   !< (equations, unknowns)
     integer :: c, row
 
@@ -50,15 +50,15 @@ contains
     end do
   end subroutine block_jacobian
 
-  !> First or second time derivatives of the block's residual at the rates, or rates and accelerations, in `state`. The frames of
-  !> earlier blocks must move as these say; of the block's own frames no accelerations are needed, and no velocities for the
-  !> first derivatives.
+  !> First or second time derivatives of the block's residual at the rates, or rates and accelerations, in `state`. The motion
+  !> of the frames of earlier blocks must agree with these rates. Accelerations of the block's own frames are not used, nor are
+  !> their velocities for the first derivatives.
   pure subroutine block_rates(plan, block, order, state, rates)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    integer, intent(in) :: order                          !< 1 or 2
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out), contiguous :: rates(:)         !< (equations)
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(block_type), intent(in) :: block           !< the block
+    integer, intent(in) :: order                    !< 1: first derivatives, 2: second derivatives
+    type(state_type), intent(in) :: state           !< with the motion of the frames
+    real(wp), intent(out), contiguous :: rates(:)   !< (equations) [rad, lengths of the mechanism; per s or s^2]
     integer :: c, row
 
     row = 0
@@ -70,10 +70,11 @@ contains
     end do
   end subroutine block_rates
 
-  !> Largest gap of any constraint that the plan's blocks solve: a length [m], rotations times the mechanism's size.
+  !> The largest gap of any constraint that the plan's blocks solve: a length [m]; rotations are multiplied by the
+  !> mechanism's size.
   pure real(wp) function largest_gap(plan, state) result(largest)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the poses of the frames
     integer :: b, c
 
     largest = 0.0_wp

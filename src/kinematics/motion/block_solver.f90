@@ -1,4 +1,4 @@
-!> One block at one time: Newton's method for its positions, then its exact rates and accelerations.
+!> The solution of one block at one time: Newton's method for the positions, then the exact rates and accelerations.
 module mech9_block_solver
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
@@ -25,42 +25,42 @@ module mech9_block_solver
   real(wp), parameter :: same_place = 8.0_wp*epsilon(1.0_wp)
   integer, parameter :: most_iterations = 12
 
-  !> How much was done.
+  !> Numbers of operations done.
   type :: work_count_type
-    integer(long) :: frames_placed = 0       !< poses of frames
-    integer(long) :: frames_moved = 0        !< their velocities, and their accelerations
-    integer(long) :: factorizations = 0      !< Jacobians of blocks
+    integer(long) :: frames_placed = 0       !< poses of frames computed
+    integer(long) :: frames_moved = 0        !< velocities and accelerations of frames computed, counted together
+    integer(long) :: factorizations = 0      !< Jacobians of blocks factorized
     integer(long) :: rates = 0               !< blocks solved for their rates
     integer(long) :: accelerations = 0       !< blocks solved for their accelerations
   end type work_count_type
 
   !> Scratch of one block, sized once.
   type :: block_work_type
-    real(wp), allocatable :: jacobian(:, :)    !< (equations,unknowns), as it was factorized last
+    real(wp), allocatable :: jacobian(:, :)    !< (equations,unknowns) the Jacobian that was factorized last
     type(least_squares_type) :: equations      !< its factors
-    type(planar_chain_type) :: chain           !< the block in arithmetic of its own, where that is used
-    integer, allocatable :: column_of(:)       !< unknown of each of the block's steps, 0 for none
-    real(wp), allocatable :: right(:)          !< (equations)
-    real(wp), allocatable :: change(:)         !< (unknowns)
-    logical :: factors_stay = .false.          !< the Jacobian never changes, and was factorized
-    type(work_count_type) :: count             !< of what was done for the block
+    type(planar_chain_type) :: chain           !< the block as a planar chain, if it is one
+    integer, allocatable :: column_of(:)       !< (steps of the block) number of the unknown of each step; 0: none
+    real(wp), allocatable :: right(:)          !< (equations) right-hand sides
+    real(wp), allocatable :: change(:)         !< (unknowns) solution, in units of the coordinates
+    logical :: factors_stay = .false.          !< the Jacobian is constant and has been factorized
+    type(work_count_type) :: count             !< operations done for the block
   end type block_work_type
 
-  !> How Newton's method went.
+  !> The course of Newton's method.
   type :: newton_outcome_type
-    logical :: converged = .false.
-    integer :: iterations = 0
-    real(wp) :: correction = 0.0_wp      !< of all iterations together, largest coordinate in its unit
-    real(wp) :: contraction = 0.0_wp     !< second correction against the first; 0 where one was enough
-    logical :: factorized = .false.      !< the Jacobian's factors are those of the closed position
+    logical :: converged = .false.       !< the chains are closed
+    integer :: iterations = 0            !< number of corrections applied
+    real(wp) :: correction = 0.0_wp      !< sum over the iterations of the largest change of a coordinate, in its unit
+    real(wp) :: contraction = 0.0_wp     !< ratio of the second correction to the first; 0 where one was enough
+    logical :: factorized = .false.      !< the factors of the Jacobian are those of the closed position
   end type newton_outcome_type
 
 contains
 
-  !> Scratch for a block. With its plan complete, a planar chain of three unknowns gets arithmetic of its own.
+  !> Scratch for a block. If the complete plan is given, a planar chain of three unknowns gets an arithmetic of its own.
   pure function new_block_work(block, plan) result(work)
-    type(block_type), intent(in) :: block   !< the block
-    type(plan_type), intent(in), optional :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block           !< the block
+    type(plan_type), intent(in), optional :: plan   !< the complete plan; without it no arithmetic of its own is chosen
     type(block_work_type) :: work
     integer :: i
 
@@ -74,16 +74,16 @@ contains
     allocate (work%right(block%equations), work%change(size(block%unknowns)), source=0.0_wp)
   end function new_block_work
 
-  !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its
-  !> frames are in place. Whether it converged, and how, is in `outcome`. Fails only where a pair has no pose.
+  !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its frames are in place.
+  !> `outcome` says whether the method converged. An error arises only where a pair has no pose.
   subroutine close_block(plan, block, state, work, outcome, err, at_least)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    type(newton_outcome_type), intent(out) :: outcome
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    integer, intent(in), optional :: at_least        !< iterations also where the chains are closed enough
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(block_type), intent(in) :: block               !< the block
+    type(state_type), intent(inout) :: state            !< first guess in; the closed block and poses of its frames out
+    type(block_work_type), intent(inout) :: work        !< scratch of the block; gets the factors of its Jacobian
+    type(newton_outcome_type), intent(out) :: outcome   !< the course of Newton's method
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a pair has no pose
+    integer, intent(in), optional :: at_least           !< least number of iterations; 0 unless given
     real(wp) :: size_of_change, previous, residual_norm
     integer :: least
 
@@ -99,7 +99,7 @@ contains
       residual_norm = maxval(abs(work%right))
       outcome%converged = residual_norm <= closed_enough .and. outcome%iterations >= least
       if (outcome%converged) return
-      ! not a number, or no progress
+      ! the iteration has diverged, or takes too many steps
       if (outcome%iterations == most_iterations .or. .not. residual_norm < huge(residual_norm)) return
       call factorize_block(plan, block, state, work)
       work%right = -work%right
@@ -127,10 +127,10 @@ contains
 
   !> Jacobian of a block at the position in `state`, factorized.
   subroutine factorize_block(plan, block, state, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(block_type), intent(in) :: block          !< the block
+    type(state_type), intent(in) :: state          !< with the poses of the frames and the screws of the steps
+    type(block_work_type), intent(inout) :: work   !< scratch of the block; gets the Jacobian and its factors
 
     if (work%factors_stay) return
     if (work%chain%used) then
@@ -143,10 +143,10 @@ contains
     work%factors_stay = block%is_constant
   end subroutine factorize_block
 
-  !> What was done for all blocks together, and before them.
+  !> Numbers of operations done for all blocks together, added to earlier ones.
   pure function work_of(blocks, before) result(all)
-    type(block_work_type), intent(in) :: blocks(:)
-    type(work_count_type), intent(in), optional :: before   !< nothing unless given
+    type(block_work_type), intent(in) :: blocks(:)          !< scratch of all blocks
+    type(work_count_type), intent(in), optional :: before   !< number of earlier operations to be added; none unless given
     type(work_count_type) :: all
 
     if (present(before)) all = before
@@ -157,7 +157,7 @@ contains
     all%accelerations = all%accelerations + sum(blocks%count%accelerations)
   end function work_of
 
-  !> Frames that a block makes.
+  !> The number of frames that a block makes.
   pure integer function steps_of(block)
     type(block_type), intent(in) :: block   !< the block
 
@@ -166,10 +166,10 @@ contains
 
   !> Add a change, given in units of the coordinates, to the block's dependent coordinates.
   pure subroutine apply_change(plan, block, change, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    real(wp), intent(in), contiguous :: change(:)
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(block_type), intent(in) :: block           !< the block
+    real(wp), intent(in), contiguous :: change(:)   !< (unknowns) in units of the coordinates (rad, or lengths of the mechanism)
+    type(state_type), intent(inout) :: state        !< its coordinates are changed; its frames stay
 
     call add_at(size(change), block%coordinates, change, plan%unit_of, state%q)
   end subroutine apply_change
@@ -177,12 +177,12 @@ contains
   !> Rates of the block's dependent coordinates, J_d dq_d = -J_i dq_i, and velocities of its frames.
   !> The Jacobian must be factorized at this position.
   subroutine solve_rates(plan, block, state, work, remainder, no_more)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
-    real(wp), intent(out), optional :: remainder   !< what no rates of the unknowns can make up for
-    logical, intent(in), optional :: no_more       !< accelerations are not asked for: velocities only as `last_moved` wants
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(block_type), intent(in) :: block          !< the block
+    type(state_type), intent(inout) :: state       !< given rates in; rates of the block and velocities of its frames out
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its factors
+    real(wp), intent(out), optional :: remainder   !< norm of the residual that no rates of the unknowns remove
+    logical, intent(in), optional :: no_more   !< true: no accelerations follow; only velocities that other blocks use are needed
     integer :: last
 
     work%count%rates = work%count%rates + 1
@@ -215,10 +215,10 @@ contains
   !> Rates and accelerations of the block's dependent coordinates and the motion of its frames. The Jacobian must be
   !> factorized at this position.
   subroutine solve_motion(plan, block, state, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(block_type), intent(in) :: block          !< the block
+    type(state_type), intent(inout) :: state       !< given rates and accelerations in; motion of the block out
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its factors
 
     if (work%chain%used .and. work%equations%by_cofactors) then
       call chain_motion(plan%planar, work%chain, work%equations%inverse, state%dq, state%ddq, state%planar)
@@ -235,10 +235,10 @@ contains
   !> Accelerations of the block's dependent coordinates, J_d ddq_d = -J_i ddq_i - dJ/dt dq, and of its frames.
   !> The Jacobian must be factorized at this position and the rates be known.
   subroutine solve_accelerations(plan, block, state, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(block_type), intent(in) :: block          !< the block
+    type(state_type), intent(inout) :: state       !< rates and given accelerations in; accelerations of the block out
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with its factors
     integer :: last
 
     work%count%accelerations = work%count%accelerations + 1
@@ -254,11 +254,13 @@ contains
     work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
   end subroutine solve_accelerations
 
-  ! Over arrays of known shape: the compiler then keeps their addresses in registers.
+  ! The next two take arrays of known shape, so that the compiler keeps their addresses in registers.
 
+  !> Set some of the values to zero.
   pure subroutine clear_at(n, places, values)
-    integer, intent(in) :: n, places(n)
-    real(wp), intent(inout) :: values(*)
+    integer, intent(in) :: n               !< number of places
+    integer, intent(in) :: places(n)       !< indices in `values`
+    real(wp), intent(inout) :: values(*)   !< rates or accelerations of all coordinates; zero at these places afterwards
     integer :: i
 
     do i = 1, n
@@ -268,9 +270,11 @@ contains
 
   !> Add a change, given in units, to some of the values.
   pure subroutine add_at(n, places, change, unit_of, values)
-    integer, intent(in) :: n, places(n)
-    real(wp), intent(in) :: change(n), unit_of(*)
-    real(wp), intent(inout) :: values(*)
+    integer, intent(in) :: n               !< number of places
+    integer, intent(in) :: places(n)       !< indices in `values`
+    real(wp), intent(in) :: change(n)      !< in units of the coordinates
+    real(wp), intent(in) :: unit_of(*)     !< unit of each coordinate: 1 rad, or the length of the mechanism [m]
+    real(wp), intent(inout) :: values(*)   !< all coordinates, rates or accelerations [rad, m; per s or s^2]
     integer :: i
 
     do i = 1, n

@@ -1,6 +1,6 @@
-!> How near closed chains are to a singular position: the least singular value of their Jacobians.
+!> The distance of closed chains from a singular position, measured by the least singular value of their Jacobians.
 !>
-!> Rotations count in rad, lengths in the mechanism's; 1 where there is no closed chain.
+!> Rotations are in rad, translations in lengths of the mechanism. The value is 1 where there is no closed chain.
 module mech9_conditioning
   use mech9_kinds, only: wp
   use mech9_block_solver, only: block_work_type
@@ -16,9 +16,9 @@ module mech9_conditioning
   !> The worst of several positions.
   type :: conditioning_type
     real(wp) :: least = 1.0_wp            !< least singular value of any block
-    real(wp) :: t = 0.0_wp                !< when it was met [s]
-    integer :: block = 0                  !< and in which block; 0: none yet
-    real(wp) :: pivot = huge(1.0_wp)      !< least pivot when it was looked at last
+    real(wp) :: t = 0.0_wp                !< time of that position [s]
+    integer :: block = 0                  !< number of that block; 0: none yet
+    real(wp) :: pivot = huge(1.0_wp)      !< least pivot when singular values were computed last
   contains
     procedure :: glance
     procedure :: look
@@ -26,12 +26,12 @@ module mech9_conditioning
 
 contains
 
-  !> Take a position into account whose Jacobians stand factorized in `work`. Not every one is looked at: pivots
-  !> tell when it is worth while.
+  !> Take a position into account whose factorized Jacobians are in `work`. Singular values are computed only when the
+  !> least pivot has become smaller than it was at their last computation.
   subroutine glance(self, t, work)
-    class(conditioning_type), intent(inout) :: self   !< the conditioning
-    real(wp), intent(in) :: t
-    type(block_work_type), intent(inout) :: work(:)
+    class(conditioning_type), intent(inout) :: self   !< the worst of the positions so far
+    real(wp), intent(in) :: t                         !< time of the position [s]
+    type(block_work_type), intent(inout) :: work(:)   !< scratch of all blocks, with the factors of their Jacobians
     real(wp) :: pivot, least
     integer :: b
 
@@ -44,12 +44,12 @@ contains
     call self%look(t, work, least)
   end subroutine glance
 
-  !> The same without exception; `least` is that of this position.
+  !> Take a position into account whose factorized Jacobians are in `work`, and compute its singular values always.
   subroutine look(self, t, work, least)
-    class(conditioning_type), intent(inout) :: self   !< the conditioning
-    real(wp), intent(in) :: t
-    type(block_work_type), intent(inout) :: work(:)
-    real(wp), intent(out) :: least
+    class(conditioning_type), intent(inout) :: self   !< the worst of the positions so far
+    real(wp), intent(in) :: t                         !< time of the position [s]
+    type(block_work_type), intent(inout) :: work(:)   !< scratch of all blocks, with the factors of their Jacobians
+    real(wp), intent(out) :: least                    !< least singular value at this position; 1 where there is no closed chain
     integer :: block
 
     call find_conditioning(work, least, block)
@@ -59,11 +59,11 @@ contains
     self%block = block
   end subroutine look
 
-  !> Least singular value of any block, and which; 1 and 0 where there is no closed chain.
+  !> The least singular value of any block and the number of this block; 1 and 0 where there is no closed chain.
   subroutine find_conditioning(work, least, block)
-    type(block_work_type), intent(inout) :: work(:)
-    real(wp), intent(out) :: least
-    integer, intent(out) :: block
+    type(block_work_type), intent(inout) :: work(:)   !< scratch of all blocks, with the factors of their Jacobians
+    real(wp), intent(out) :: least                    !< least singular value of any block
+    integer, intent(out) :: block                     !< number of the block that has it; 0: none
     real(wp) :: value
     integer :: b
 

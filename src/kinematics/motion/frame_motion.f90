@@ -12,23 +12,24 @@ module mech9_frame_motion
 contains
 
   !> Poses of a block's frames and the screws of their steps, from the coordinates in `state`. The frames of earlier blocks must
-  !> be in place. Fails only where a user pair has no pose.
+  !> be in place. An error arises only where a user pair has no pose.
   subroutine place_frames(plan, block, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(block_type), intent(in) :: block               !< the block
+    type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of the block's frames out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
 
     call plan%arithmetics(block%arithmetic)%kind%place(plan, block%first_step, block%last_step, state, err)
   end subroutine place_frames
 
-  !> The same after a small change of the block's unknowns: their angles are turned on, not computed anew.
+  !> Poses of a block's frames after a small change of its unknowns. The cosines and sines of their angles are corrected to
+  !> second order and not computed anew.
   subroutine place_frames_after_change(plan, block, change, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    real(wp), intent(in) :: change(:)             !< (unknowns) of the coordinates, in units of these
-    type(state_type), intent(inout) :: state      !< its coordinates are changed already
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(block_type), intent(in) :: block               !< the block
+    real(wp), intent(in) :: change(:)                   !< (unknowns) change of the coordinates, in units of these
+    type(state_type), intent(inout) :: state            !< changed coordinates in; poses and screws of the block's frames out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
 
     call plan%arithmetics(block%arithmetic)%kind%place_after_change(plan, block%first_step, block%last_step, block%unknowns, &
                                                                     change, state, err)
@@ -36,28 +37,28 @@ contains
 
   !> Velocities of a block's frames from the rates in `state`.
   pure subroutine spread_velocities(plan, block, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    type(block_type), intent(in) :: block      !< the block
+    type(state_type), intent(inout) :: state   !< rates in; velocities of the block's frames out
 
     call plan%arithmetics(block%arithmetic)%kind%spread_velocities(plan, block%first_step, block%last_step, state)
   end subroutine spread_velocities
 
   !> Accelerations of a block's frames from the rates and accelerations in `state`.
   pure subroutine spread_accelerations(plan, block, last, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: block   !< the block
-    integer, intent(in) :: last                   !< frames up to this one
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    type(block_type), intent(in) :: block      !< the block
+    integer, intent(in) :: last                !< frames up to this one
+    type(state_type), intent(inout) :: state   !< rates and accelerations in; accelerations of the block's frames out
 
     call plan%arithmetics(block%arithmetic)%kind%spread_accelerations(plan, block%first_step, last, state)
   end subroutine spread_accelerations
 
   !> Poses of the frames of all blocks.
   subroutine place_all(plan, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of all frames out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
     integer :: b
 
     do b = 1, size(plan%blocks)
@@ -68,8 +69,8 @@ contains
 
   !> Velocities of the frames of all blocks.
   pure subroutine spread_all_velocities(plan, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    type(state_type), intent(inout) :: state   !< rates in; velocities of all frames out
     integer :: b
 
     do b = 1, size(plan%blocks)
@@ -79,8 +80,8 @@ contains
 
   !> Accelerations of the frames of all blocks.
   pure subroutine spread_all_accelerations(plan, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    type(state_type), intent(inout) :: state   !< rates and accelerations in; accelerations of all frames out
     integer :: b
 
     do b = 1, size(plan%blocks)
@@ -90,27 +91,27 @@ contains
 
   !> A link's own system, its angular velocity and the velocity of its origin, in the system of link 1.
   pure subroutine link_motion(plan, state, link, r, p, omega, v)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link
-    real(wp), intent(out) :: r(3, 3)              !< rotation
-    real(wp), intent(out) :: p(3)                 !< origin [m]
-    real(wp), intent(out) :: omega(3)             !< [rad/s]
-    real(wp), intent(out) :: v(3)                 !< of the origin [m/s]
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the velocities of the frames
+    integer, intent(in) :: link             !< number of the link
+    real(wp), intent(out) :: r(3, 3)        !< rotation from the link's axes to those of link 1
+    real(wp), intent(out) :: p(3)           !< origin of the link [m]
+    real(wp), intent(out) :: omega(3)       !< angular velocity [rad/s]
+    real(wp), intent(out) :: v(3)           !< velocity of the origin [m/s]
 
     call plan%arithmetics(1)%kind%link_motion(plan, state, link, r, p, omega, v)
   end subroutine link_motion
 
   !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1; those that are
-  !> asked for must be known of the state.
+  !> present must be known in `state`.
   pure subroutine point_motion(plan, state, link, place, position, velocity, acceleration)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link
-    real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
-    real(wp), intent(out) :: position(3)          !< [m]
-    real(wp), intent(out), optional :: velocity(3)      !< [m/s]
-    real(wp), intent(out), optional :: acceleration(3)  !< [m/s^2]
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
+    type(state_type), intent(in) :: state                !< with the motion of the frames
+    integer, intent(in) :: link                          !< number of the link
+    real(wp), intent(in) :: place(3)                     !< position of the point in the link's own system [m]
+    real(wp), intent(out) :: position(3)                 !< in the system of link 1 [m]
+    real(wp), intent(out), optional :: velocity(3)       !< in the axes of link 1 [m/s]
+    real(wp), intent(out), optional :: acceleration(3)   !< in the axes of link 1 [m/s^2]
 
     call plan%arithmetics(1)%kind%point_motion(plan, state, link, place, position, velocity, acceleration)
   end subroutine point_motion
@@ -118,12 +119,12 @@ contains
   !> The angular velocity and the velocity of the new frame's origin that a step gives per unit rate, and that origin; in the
   !> axes of frame 0, from its origin.
   pure subroutine step_screw(plan, state, s, w, v, place)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: s                      !< step
-    real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
-    real(wp), intent(out) :: v(3)                 !< [m per unit of q]
-    real(wp), intent(out) :: place(3)             !< [m]
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the poses of the frames
+    integer, intent(in) :: s                !< number of the step
+    real(wp), intent(out) :: w(3)           !< angular velocity per unit rate [rad per unit of q]
+    real(wp), intent(out) :: v(3)           !< velocity of the new frame's origin per unit rate [m per unit of q]
+    real(wp), intent(out) :: place(3)       !< origin of the new frame, from that of frame 0 [m]
 
     call plan%arithmetics(1)%kind%step_screw(plan, state, s, w, v, place)
   end subroutine step_screw
