@@ -1,4 +1,4 @@
-!> Kinetic (20) and potential energy of a state.
+!> Kinetic energy (20) and potential energy of a mechanism in a state.
 module mech9_energy
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn
@@ -14,20 +14,20 @@ module mech9_energy
 
 contains
 
-  !> Sum over the bodies of half m v^2 of the centre and half omega . I omega [J].
+  !> Kinetic energy: the sum over the bodies of half m v^2 of the centre and half omega . I omega [J].
   pure real(wp) function kinetic_energy(dynamics, state) result(energy)
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state       !< with its velocities
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with its velocities
 
     energy = dynamics%arithmetic%kinetic_energy(dynamics, state)
   end function kinetic_energy
 
-  !> Of gravity, zero where all centres are in the origin of link 1, and of the springs [J].
+  !> Potential energy of gravity, which is zero where all centres are in the origin of link 1, and of the springs [J].
   pure real(wp) function potential_energy(mechanism, plan, state, view) result(energy)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(motion_view_type), intent(in) :: view      !< of the same state
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(state_type), intent(in) :: state           !< position and motion of the mechanism
+    type(motion_view_type), intent(in) :: view      !< the motion of the same state as loads read it
     real(wp) :: r(3, 3), p(3), omega(3), v(3)
     integer :: i
 

@@ -1,22 +1,22 @@
-!> What rates and accelerations are expected to be, by continuation from the positions before.
+!> Extrapolation of rates and of the accelerations that rates alone give, from the two last evaluations.
 module mech9_expectation
   use mech9_kinds, only: wp
   implicit none
   private
   public :: expectation_type
 
-  !> What was found at one time.
+  !> The results of one evaluation.
   type :: past_type
-    logical :: known = .false.
-    real(wp) :: t = 0.0_wp
-    real(wp), allocatable :: b(:)      !< dependent rates per independent ones, as in the Jacobian
-    real(wp), allocatable :: ddq(:)    !< (M) accelerations that rates alone give
+    logical :: known = .false.         !< there are results
+    real(wp) :: t = 0.0_wp             !< their time [s]
+    real(wp), allocatable :: b(:)      !< (entries) dependent rates per unit rate of independent coordinates, as in the Jacobian
+    real(wp), allocatable :: ddq(:)    !< (M) accelerations that rates alone give [rad/s^2, m/s^2]
   end type past_type
 
-  !> The last two times, the later one first.
+  !> The results at the last two times, the later one first.
   type :: expectation_type
     private
-    type(past_type) :: past(2)
+    type(past_type) :: past(2)   !< the later results, the earlier ones
   contains
     procedure :: remember
     procedure :: continue_to
@@ -24,14 +24,15 @@ module mech9_expectation
 
 contains
 
-  !> Keep what was found at time t.
+  !> Keep the results of an evaluation at time t.
   pure subroutine remember(self, t, b, ddq)
     class(expectation_type), intent(inout) :: self   !< the expectation
-    real(wp), intent(in) :: t                  !< [s]
-    real(wp), intent(in) :: b(:), ddq(:)
+    real(wp), intent(in) :: t                        !< time [s]
+    real(wp), intent(in) :: b(:)                     !< (entries) dependent rates per unit rate of independent coordinates
+    real(wp), intent(in) :: ddq(:)                   !< (M) accelerations that rates alone give [rad/s^2, m/s^2]
 
     if (self%past(1)%known) then
-      ! no straight line through two states at one time
+      ! two results at one time determine no straight line
       if (.not. abs(t - self%past(1)%t) > 0.0_wp) return
       self%past(2)%known = .true.
       self%past(2)%t = self%past(1)%t
@@ -44,11 +45,12 @@ contains
     self%past(1)%ddq = ddq
   end subroutine remember
 
-  !> What is expected at time t, by a straight line through what is kept. Left as it is where nothing is.
+  !> Expected values at time t, on a straight line through the kept results; with nothing kept, they do not change.
   pure subroutine continue_to(self, t, b, ddq)
     class(expectation_type), intent(in) :: self   !< the expectation
-    real(wp), intent(in) :: t                  !< [s]
-    real(wp), intent(inout) :: b(:), ddq(:)
+    real(wp), intent(in) :: t                     !< time [s]
+    real(wp), intent(inout) :: b(:)               !< (entries) dependent rates per unit rate of independent coordinates
+    real(wp), intent(inout) :: ddq(:)             !< (M) accelerations that rates alone give [rad/s^2, m/s^2]
     real(wp) :: part
 
     if (.not. self%past(1)%known) return

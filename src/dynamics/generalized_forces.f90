@@ -1,4 +1,4 @@
-!> What loads exert and the generalized forces Q_p (25) of it.
+!> Forces and torques that loads exert, and the generalized forces Q_p (25) that result from them.
 module mech9_generalized_forces
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -15,14 +15,14 @@ module mech9_generalized_forces
 
 contains
 
-  !> What the loads exert, on links and on coordinates.
+  !> Collect the forces and torques of the loads on links, and their generalized forces on coordinates, in work%sum.
   subroutine collect_loads(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    type(state_type), intent(in) :: state               !< position and motion of the mechanism
+    type(lagrange_work_type), intent(inout) :: work     !< gets the loads' sums and the motion that they read
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
     type(call_fault_type), target :: fault
     integer :: i
 
@@ -37,12 +37,12 @@ contains
     call work%view%note_no_faults()
   end subroutine collect_loads
 
-  !> Q_p (25) of what the loads exert.
+  !> Add the generalized forces Q_p (25) of all loads to work%forces.
   pure subroutine collect_forces(plan, dynamics, state, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< position and motion of the mechanism
+    type(lagrange_work_type), intent(inout) :: work    !< with the loads' sums and the Jacobian; gets `forces`
     integer :: i, e, p, s
 
     do i = 1, size(dynamics%loaded)
@@ -59,12 +59,12 @@ contains
     end do
   end subroutine collect_forces
 
-  !> The state as loads see it: the links' own systems in that of link 1.
+  !> The state as loads read it: coordinates, and the motion of the links' own systems in that of link 1.
   pure subroutine show_state(plan, dynamics, state, view)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(motion_view_type), intent(inout) :: view
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< position and motion of the mechanism
+    type(motion_view_type), intent(inout) :: view      !< gets time, coordinates and the links on which loads depend
     integer :: i, k
 
     view%t = state%t
