@@ -15,11 +15,11 @@ module mech9_jacobian
 
 contains
 
-  !> The part of B that never changes: independent coordinates are themselves.
+  !> Set the part of B that never changes: the rate of an independent coordinate by itself is one, by any other zero.
   pure subroutine start_jacobian(plan, dynamics, jacobian)
-    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
-    type(jacobian_type), intent(inout) :: jacobian      !< gets `b`
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(jacobian_type), intent(inout) :: jacobian     !< gets `b`
     integer :: s, e
 
     allocate (jacobian%b(size(dynamics%column)), source=0.0_wp)
@@ -31,17 +31,17 @@ contains
     end do
   end subroutine start_jacobian
 
-  !> The entries of a block's frames and its part of B = dq/dq_i. Frames must be in place, the block's
-  !> Jacobian factorized, earlier blocks done. Where a dependent coordinate is determined no better than
-  !> by noise, near a position where branches meet, it keeps to `expected`: the tangent is continued.
+  !> Find the entries of a block's frames and its part of B = dq/dq_i. The frames must have their poses, the block's Jacobian
+  !> must be factorized, and earlier blocks must be done. Where round-off hides the rate of a dependent coordinate, near a
+  !> position where branches meet, the rate keeps its expected value, so that the motion goes on in the same direction.
   subroutine find_jacobian(plan, dynamics, block, state, expected, work, jacobian)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(in) :: expected(:)       !< (entries) B as it was found before, continued
-    type(block_work_type), intent(inout) :: work
-    type(jacobian_type), intent(inout) :: jacobian
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(block_type), intent(in) :: block              !< the block
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    real(wp), intent(in) :: expected(:)                !< (entries) B, extrapolated from earlier evaluations
+    type(block_work_type), intent(inout) :: work       !< with the block's Jacobian factorized; scratch
+    type(jacobian_type), intent(inout) :: jacobian     !< with the entries of earlier blocks; gets those of this one
     integer :: s, e, c
 
     do s = block%first_step, block%last_step
@@ -59,16 +59,16 @@ contains
     call dynamics%arithmetic%spread_jacobian(plan, dynamics, block, state, .false., jacobian)
   end subroutine find_jacobian
 
-  !> Rates of the block's dependent coordinates for one independent coordinate, number `offset` + 1
-  !> of the block's, from what is expected: J_d (change of b_d) = -(what opens the closures).
+  !> Rates of the block's dependent coordinates per unit rate of one independent coordinate, as corrections of the rates b_d
+  !> that `jacobian` has: J_d (correction of b_d) = -(relative velocity of the closures' frames with these rates).
   subroutine eliminate(plan, dynamics, block, state, offset, work, jacobian)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block   !< the block
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: offset
-    type(block_work_type), intent(inout) :: work
-    type(jacobian_type), intent(inout) :: jacobian
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(block_type), intent(in) :: block              !< the block
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    integer, intent(in) :: offset                      !< number of the independent coordinate among those of the block, less one
+    type(block_work_type), intent(inout) :: work       !< with the block's Jacobian factorized; scratch
+    type(jacobian_type), intent(inout) :: jacobian     !< with expected rates in `b` and their columns; gets the corrected `b`
     integer :: c, e, row, i, s, k
 
     row = 0

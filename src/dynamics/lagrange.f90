@@ -1,13 +1,13 @@
 !> Lagrange's equations in the independent coordinates, (19): coefficients of motion, velocity terms and generalized forces from
 !> the Jacobians of the frames.
 !>
-!> (21) and the terms of (19) that are squares of rates are not differentiated: with the Jacobians J_c of
-!> mass centres and J_w of angular velocities,
+!> The coefficients (21) and the terms of (19) that are quadratic in the rates are found without differentiation: with the
+!> Jacobians J_c of mass centres and J_w of angular velocities,
 !>   a_pr = sum m J_c,p . J_c,r + J_w,p . I J_w,r,
 !>   h_p  = sum m J_c,p . a_c + J_w,p . (I alpha + omega x I omega)
 !> with the accelerations a_c, alpha that rates alone give (no accelerations of independent coordinates);
-!> then a ddq_i = Q - h. The result is the same, at O(links I^2). Open chains need no coefficients for their
-!> accelerations: the plan says where articulated bodies give them.
+!> then a ddq_i = Q - h. The result is the same, at the cost O(links I^2) for I independent coordinates. Open chains do not
+!> require coefficients for their accelerations: the plan says where articulated bodies give them.
 module mech9_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
@@ -27,22 +27,22 @@ module mech9_lagrange
 contains
 
   !> Rates of the dependent coordinates and accelerations of the independent ones, for closed positions
-  !> (frames in place) and the rates of the independent coordinates in `state`. Dependent accelerations
-  !> in `state` are then those that rates alone give. Fails with exit_singular in a singular position of
-  !> a block, with exit_data where a coordinate has no inertia, and where a load fails.
+  !> (frames with their poses) and the rates of the independent coordinates in `state`. Dependent accelerations
+  !> in `state` are then those that rates alone give. Fails in a singular position of a block, where a coordinate has no
+  !> inertia, and where a load fails.
   subroutine find_motion(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    type(state_type), intent(inout) :: state            !< with poses and independent rates; gets rates and accelerations from rates
+    type(lagrange_work_type), intent(inout) :: work     !< scratch; gets `accelerations`
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: n, failed_at
     logical :: found
 
     if (dynamics%open_chains) then
       call move_open_chains(mechanism, plan, dynamics, state, work, found, err)
-      ! where a coordinate has no inertia, the coefficients tell which
+      ! where a coordinate has no inertia, the coefficients show its number
       if (allocated(err) .or. found) return
     end if
     call find_equations(mechanism, plan, dynamics, state, work, err)
@@ -66,11 +66,11 @@ contains
   !> Coefficients of motion, velocity terms and generalized forces, and the rates of the dependent coordinates;
   !> see find_motion.
   subroutine find_equations(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    type(state_type), intent(inout) :: state            !< poses and independent rates in; velocities and accelerations from rates out
+    type(lagrange_work_type), intent(inout) :: work     !< scratch; gets `coefficients`, `velocity_terms`, `forces`
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: b
 
@@ -90,13 +90,13 @@ contains
 
   !> The motion of open chains by articulated bodies. `found` is false where a coordinate has no inertia.
   subroutine move_open_chains(mechanism, plan, dynamics, state, work, found, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work
-    logical, intent(out) :: found
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics, of open chains only
+    type(state_type), intent(inout) :: state            !< with poses and rates; gets velocities and accelerations from rates
+    type(lagrange_work_type), intent(inout) :: work     !< scratch; gets `accelerations`
+    logical, intent(out) :: found                       !< whether all coordinates have inertia
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
 
     found = .false.
     state%ddq = 0.0_wp
@@ -107,11 +107,11 @@ contains
     call dynamics%arithmetic%solve_open_chains(plan, dynamics, state, work, found)
   end subroutine move_open_chains
 
-  !> a_pr (21) and the velocity terms of (19).
+  !> The coefficients a_pr (21), the velocity terms of (19), and the generalized forces of the weights.
   subroutine collect_inertia(dynamics, state, work)
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with velocities and the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work    !< with the Jacobian; gets `coefficients`, `velocity_terms`, `forces`
 
     work%coefficients = 0.0_wp
     work%velocity_terms = 0.0_wp
@@ -119,14 +119,12 @@ contains
     call dynamics%arithmetic%add_inertia(dynamics, state, work)
   end subroutine collect_inertia
 
-
-
-  !> After find_motion: the accelerations of all coordinates and frames, for results.
+  !> The accelerations of all coordinates and frames, for results, after find_motion.
   pure subroutine complete_accelerations(plan, dynamics, work, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(lagrange_work_type), intent(in) :: work
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(lagrange_work_type), intent(in) :: work       !< with the results of find_motion
+    type(state_type), intent(inout) :: state           !< as find_motion left it; gets the accelerations
     integer :: s, e
 
     if (dynamics%open_chains) then

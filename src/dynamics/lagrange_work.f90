@@ -12,10 +12,10 @@ module mech9_lagrange_work
 
 contains
 
-  !> Scratch for a mechanism with this plan.
+  !> Scratch for the evaluations of a mechanism.
   function new_lagrange_work(plan, dynamics) result(work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(lagrange_work_type) :: work
     integer :: b, n
 
