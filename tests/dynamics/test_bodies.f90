@@ -37,11 +37,11 @@ contains
 
   !> Assemble and work out the motion for some rates of the independent coordinates.
   subroutine find(mechanism, plan, dynamics, work, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(out) :: plan
-    type(dynamics_plan_type), intent(out) :: dynamics
-    type(lagrange_work_type), intent(out) :: work
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(out) :: plan                !< its plan
+    type(dynamics_plan_type), intent(out) :: dynamics   !< plan of its dynamics
+    type(lagrange_work_type), intent(out) :: work       !< the equations at the start
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: state
     integer :: i
 
@@ -71,9 +71,10 @@ contains
   !> Two mechanisms have the same equations. They are sums over the same matter in another order: some
   !> dozens of units of round-off of the largest number.
   subroutine check_same(test, first, second, why)
-    type(tester_type), intent(inout) :: test
-    type(mechanism_type), intent(in) :: first, second
-    character(len=*), intent(in) :: why
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(mechanism_type), intent(in) :: first    !< first mechanism
+    type(mechanism_type), intent(in) :: second   !< second mechanism
+    character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: a, b
@@ -93,7 +94,7 @@ contains
 
   !> Of the lower triangle, which alone is kept.
   pure real(wp) function largest(a)
-    real(wp), intent(in) :: a(:, :)
+    real(wp), intent(in) :: a(:, :)   !< symmetric
     integer :: i
 
     largest = maxval([(maxval(abs(a(i:, i))), i=1, size(a, 2))])
@@ -101,7 +102,7 @@ contains
 
   !> A rigid body is its point masses: parallel axes, tensors and mass centres, on two spatial loops.
   subroutine test_point_masses(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: bodies, points
     type(random_type) :: random
     real(wp) :: masses(4, 6)
@@ -124,7 +125,7 @@ contains
 
   !> Two bodies of half the mass in the same place are the whole one.
   subroutine test_halves(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: whole, halves
     integer :: i
 
@@ -143,7 +144,7 @@ contains
 
   !> Links without mass are not in the plan, nor is the frame; what they are left out of is the same.
   subroutine test_massless(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: mechanism, padded
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
@@ -170,7 +171,7 @@ contains
 
   !> The coordinate that moves no mass is named, whichever it is.
   subroutine test_no_inertia(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
@@ -194,7 +195,7 @@ contains
 
   !> Inertia without mass, turned by a torque on its coordinate: J ddq = M.
   subroutine test_flywheel(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
@@ -214,7 +215,7 @@ contains
   !> A double pendulum of two point masses, angles q1 and q1 + q2 from the x axis, gravity along x:
   !> the textbook's equations with c = cos q2, s = sin q2.
   subroutine test_double_pendulum(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
@@ -244,7 +245,7 @@ contains
 
   !> A spring of free length zero may shrink to nothing, where its damper alone is left; any other may not.
   subroutine test_spring_without_length(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics

@@ -30,8 +30,8 @@ contains
 
   !> y' = y**2 is infinite at t = 1, and there it ends.
   subroutine check_explosion(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(explosion_type), target :: explosion
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -52,8 +52,8 @@ contains
 
   !> A wall in time or in y is approached by ever smaller steps, then told with its own words and code.
   subroutine check_obstacles(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(obstacle_type), target :: obstacle
     type(integrator_type) :: integrator
     type(integration_statistics_type) :: statistics
@@ -98,8 +98,8 @@ contains
 
   !> What fails at the start fails at once.
   subroutine check_start(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(obstacle_type), target :: obstacle
     type(integration_statistics_type) :: statistics
     type(error_type), allocatable :: err
@@ -115,8 +115,8 @@ contains
 
   !> A step after which the system cannot settle is made again, smaller; where nothing helps, it ends.
   subroutine check_refused_settling(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(rotation_type), target :: rotation
     type(integration_statistics_type) :: statistics
     type(error_type), allocatable :: err
@@ -140,8 +140,8 @@ contains
 
   !> More steps than allowed to one stop: said so, and one may go on by asking for less.
   subroutine check_many_steps(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(orbit_type), target :: orbit
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -167,8 +167,8 @@ contains
 
   !> More digits than there are.
   subroutine check_accuracy(test, method)
-    type(tester_type), intent(inout) :: test
-    character(len=*), intent(in) :: method
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: method     !< name of the method
     type(orbit_type), target :: orbit
     type(integration_statistics_type) :: statistics
     type(error_type), allocatable :: err
@@ -182,7 +182,7 @@ contains
 
   !> Settings that mean nothing.
   subroutine check_settings(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(orbit_type), target :: orbit
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -205,7 +205,7 @@ contains
 
   !> Each Runge-Kutta method has a table of its own. A method without one is refused, not taken for another.
   subroutine check_tables(test)
-    type(tester_type), intent(inout) :: test
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(integration_method_type) :: method
     type(system_box_type), pointer :: box
     type(orbit_type), target :: orbit
@@ -231,11 +231,11 @@ contains
 
   !> Check that a message holds some words (trailing blanks do not count).
   subroutine check_words(test, err, words, why, any_of)
-    type(tester_type), intent(inout) :: test
-    type(error_type), allocatable, intent(in) :: err
-    character(len=*), intent(in) :: words(:)
-    character(len=*), intent(in) :: why
-    logical, intent(in), optional :: any_of   !< one of them is enough
+    type(tester_type), intent(inout) :: test           !< counts the checks
+    type(error_type), allocatable, intent(in) :: err   !< the failure
+    character(len=*), intent(in) :: words(:)           !< of its message
+    character(len=*), intent(in) :: why                !< the statement that is checked, printed where it is wrong
+    logical, intent(in), optional :: any_of            !< one of them is enough
     logical :: found(size(words))
     integer :: i
 

@@ -65,11 +65,11 @@ contains
 
   !> Steps of all kinds, from any earlier link to the next, either way round, coordinates in any order.
   subroutine random_tree(random, m, planar, links, mechanism)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: m
-    logical, intent(in) :: planar                         !< only pairs about and across z
-    integer, allocatable, intent(out) :: links(:, :)      !< (2,m) reference and moving link of each coordinate
-    type(mechanism_type), intent(out) :: mechanism
+    type(random_type), intent(inout) :: random         !< source of the random numbers
+    integer, intent(in) :: m                           !< coordinates
+    logical, intent(in) :: planar                      !< only pairs about and across z
+    integer, allocatable, intent(out) :: links(:, :)   !< (2,m) reference and moving link of each coordinate
+    type(mechanism_type), intent(out) :: mechanism     !< the mechanism
     integer :: order(m), i, k, other
 
     order = [(i, i=1, m)]
@@ -96,9 +96,10 @@ contains
   end subroutine random_tree
 
   subroutine add_random_pair(random, k, links, mechanism)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: k, links(2)
-    type(mechanism_type), intent(inout) :: mechanism
+    type(random_type), intent(inout) :: random         !< source of the random numbers
+    integer, intent(in) :: k                           !< its coordinate
+    integer, intent(in) :: links(2)                    !< reference and moving link
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     type(screw_pair_type) :: helix
     type(curved_pair_type) :: curved
     type(pose_type) :: here, there
@@ -123,9 +124,10 @@ contains
   end subroutine add_random_pair
 
   subroutine add_planar_pair(random, k, links, mechanism)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: k, links(2)
-    type(mechanism_type), intent(inout) :: mechanism
+    type(random_type), intent(inout) :: random         !< source of the random numbers
+    integer, intent(in) :: k                           !< its coordinate
+    integer, intent(in) :: links(2)                    !< reference and moving link
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     type(pose_type) :: here, there
     real(wp) :: along(3)
     logical :: slides
@@ -145,8 +147,8 @@ contains
 
   !> A whole number from 0 to n - 1.
   integer function below(random, n)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: n
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    integer, intent(in) :: n                     !< greater than the greatest number
 
     below = min(n - 1, int(0.5_wp*n*(1.0_wp + random%symmetric())))
   end function below
@@ -154,10 +156,10 @@ contains
   !> Some links that carry another one lose their mass; a body at the end of them all resists six steps in
   !> general, in the plane three, but only two of them slides.
   subroutine lighten(random, links, most, mechanism)
-    type(random_type), intent(inout) :: random
-    integer, intent(in) :: links(:, :)
-    integer, intent(in) :: most                  !< links
-    type(mechanism_type), intent(inout) :: mechanism
+    type(random_type), intent(inout) :: random         !< source of the random numbers
+    integer, intent(in) :: links(:, :)                 !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: most                        !< links
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     integer :: i, light, toss
 
     light = 0
@@ -174,8 +176,8 @@ contains
 
   !> Plan, and some rates.
   subroutine prepare(this, why)
-    type(case_type), intent(inout) :: this
-    character(len=*), intent(in) :: why
+    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
+    character(len=*), intent(in) :: why      !< the statement that is checked, printed where it is wrong
     type(error_type), allocatable :: err
     integer :: i
 
@@ -189,8 +191,8 @@ contains
   !> The accelerations satisfy a ddq = Q - h. What is left over is round-off of the terms: of sums over all links
   !> along a chain, some hundreds of units.
   subroutine check_motion(this, why)
-    type(case_type), intent(inout) :: this
-    character(len=*), intent(in) :: why
+    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
+    character(len=*), intent(in) :: why      !< the statement that is checked, printed where it is wrong
     type(error_type), allocatable :: err
     real(wp), allocatable :: ddq(:), a(:, :), left(:)
     real(wp) :: terms
@@ -218,7 +220,7 @@ contains
   end subroutine check_motion
 
   subroutine check_memory(this)
-    type(case_type), intent(inout) :: this
+    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
     type(error_type), allocatable :: err
     integer :: i, before
 
@@ -279,7 +281,7 @@ contains
   end subroutine without_inertia
 
   subroutine check_refusal(this)
-    type(case_type), intent(inout) :: this
+    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
     type(error_type), allocatable :: err, expected
 
     call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)

@@ -70,7 +70,8 @@ contains
 
   !> The two angles of the rocker for an angle of the crank, by the law of cosines.
   pure function rocker_angles(length, crank) result(angles)
-    real(wp), intent(in) :: length(4), crank
+    real(wp), intent(in) :: length(4)   !< of ground, crank, coupler and rocker [m]
+    real(wp), intent(in) :: crank       !< its angle [rad]
     real(wp) :: angles(2), to_tip(2), diagonal, opening
 
     to_tip = [length(2)*cos(crank) - length(1), length(2)*sin(crank)]
@@ -152,8 +153,10 @@ contains
   end subroutine platforms
 
   subroutine platform(base, plate, legs, most)
-    real(wp), intent(in) :: base(2, 3), plate(2, 3), legs(3)
-    integer, intent(inout) :: most
+    real(wp), intent(in) :: base(2, 3)    !< (2,3) pivots in the frame [m]
+    real(wp), intent(in) :: plate(2, 3)   !< (2,3) joints in the platform [m]
+    real(wp), intent(in) :: legs(3)       !< their lengths [m]
+    integer, intent(inout) :: most        !< the greatest number of positions so far
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
     type(state_type) :: state
@@ -183,7 +186,9 @@ contains
   !> Number of positions of a platform: for each orientation two legs leave two places, and the third leg
   !> fits where its lack changes sign.
   integer function positions_of(base, plate, legs) result(found)
-    real(wp), intent(in) :: base(2, 3), plate(2, 3), legs(3)
+    real(wp), intent(in) :: base(2, 3)    !< (2,3) pivots in the frame [m]
+    real(wp), intent(in) :: plate(2, 3)   !< (2,3) joints in the platform [m]
+    real(wp), intent(in) :: legs(3)       !< their lengths [m]
     integer, parameter :: n = 200000
     real(wp) :: turn(2, 2), centre(2), apart(2), along, across, place(2), residual_norm, before(2), angle
     logical :: had(2)
@@ -253,7 +258,7 @@ contains
 
   !> The rotation nearest to one printed with six digits, by Newton's iteration for the polar factor.
   subroutine orthonormalize(r)
-    real(wp), intent(inout) :: r(3, 3)
+    real(wp), intent(inout) :: r(3, 3)   !< nearly a rotation, then a rotation
     integer :: i
 
     do i = 1, 6

@@ -31,9 +31,10 @@ program test_choice_of_inputs
 contains
 
   subroutine try(name, n_links, loops, planar)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_links, loops
-    logical, intent(in) :: planar
+    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links         !< links, the frame included
+    integer, intent(in) :: loops           !< closed chains
+    logical, intent(in) :: planar          !< all axes are parallel
     integer, allocatable :: links(:, :)
     type(axis_type), allocatable :: axes(:)
     real(wp), allocatable :: equations(:, :)
@@ -58,8 +59,8 @@ contains
 
   !> Make any one of the coordinates dependent that are not, or the other way round.
   subroutine change_one(dependent, to)
-    logical, intent(inout) :: dependent(:)
-    logical, intent(in) :: to
+    logical, intent(inout) :: dependent(:)   !< (M) coordinates that follow from the others
+    logical, intent(in) :: to                !< it becomes dependent
     integer :: k, trial
 
     do trial = 1, 1000
@@ -72,9 +73,9 @@ contains
 
   !> Do these dependent coordinates follow from the others? By the rank of their columns.
   logical function serves(equations, rank, dependent)
-    real(wp), intent(in) :: equations(:, :)
-    integer, intent(in) :: rank
-    logical, intent(in) :: dependent(:)
+    real(wp), intent(in) :: equations(:, :)   !< (6 loops,M) that the rates satisfy
+    integer, intent(in) :: rank               !< of the equations
+    logical, intent(in) :: dependent(:)       !< (M) coordinates that follow from the others
     real(wp) :: columns(size(equations, 1), size(equations, 2))
     logical :: chosen(size(dependent))
     integer :: k
@@ -88,11 +89,11 @@ contains
   end function serves
 
   subroutine check(name, mechanism, equations, rank, dependent)
-    character(len=*), intent(in) :: name
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), intent(in) :: equations(:, :)
-    integer, intent(in) :: rank
-    logical, intent(in) :: dependent(:)
+    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    real(wp), intent(in) :: equations(:, :)         !< (6 loops,M) that the rates satisfy
+    integer, intent(in) :: rank                     !< of the equations
+    logical, intent(in) :: dependent(:)             !< (M) coordinates that follow from the others
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
@@ -120,7 +121,8 @@ contains
 
   !> The numbers separated by commas that follow a mark.
   function numbers_after(text, mark) result(numbers)
-    character(len=*), intent(in) :: text, mark
+    character(len=*), intent(in) :: text   !< of a message
+    character(len=*), intent(in) :: mark   !< text before the numbers
     integer, allocatable :: numbers(:)
     character(len=:), allocatable :: list
     integer :: i, status

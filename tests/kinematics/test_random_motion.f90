@@ -32,8 +32,10 @@ program test_random_motion
 contains
 
   subroutine try(name, n_links, loops, family)
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n_links, loops, family
+    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links         !< links, the frame included
+    integer, intent(in) :: loops           !< closed chains
+    integer, intent(in) :: family          !< of the axes
     integer, allocatable :: links(:, :)
     type(axis_type), allocatable :: axes(:)
     real(wp), allocatable :: equations(:, :)
@@ -55,8 +57,8 @@ contains
 
   !> Swing all independent coordinates.
   subroutine compare(name, mechanism)
-    character(len=*), intent(in) :: name
-    type(mechanism_type), intent(inout) :: mechanism
+    character(len=*), intent(in) :: name               !< of the mechanism, for the report of a failure
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
     type(plan_type) :: plan
     type(state_type) :: start
     type(driven_motion_type) :: few, many
@@ -97,12 +99,12 @@ contains
   end subroutine compare
 
   subroutine follow(mechanism, plan, start, outputs, driven, err)
-    type(mechanism_type), intent(in) :: mechanism
-    type(plan_type), intent(in) :: plan
-    type(state_type), intent(in) :: start
-    integer, intent(in) :: outputs
-    type(driven_motion_type), intent(out) :: driven
-    type(error_type), allocatable, intent(out) :: err
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< its plan
+    type(state_type), intent(in) :: start               !< assembled position
+    integer, intent(in) :: outputs                      !< how many
+    type(driven_motion_type), intent(out) :: driven     !< at the last output
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: j
 
     call start_driven_motion(mechanism, plan, start, 0.0_wp, driven, err)

@@ -78,7 +78,7 @@ contains
 
   !> A crank between the positions in which coupler and rocker are folded and stretched out.
   subroutine folded(branch)
-    integer, intent(in) :: branch    !< +1 or -1: side of the diagonal on which the chain closes
+    integer, intent(in) :: branch   !< +1 or -1: side of the diagonal on which the chain closes
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(motion_range_type) :: range
@@ -96,7 +96,7 @@ contains
   end subroutine folded
 
   subroutine full_turn(branch)
-    integer, intent(in) :: branch    !< +1 or -1: side of the diagonal on which the chain closes
+    integer, intent(in) :: branch   !< +1 or -1: side of the diagonal on which the chain closes
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(motion_range_type) :: range
@@ -110,7 +110,7 @@ contains
 
   !> A slider-crank driven at its slider: between crank and coupler stretched out and folded.
   subroutine slider_as_input(branch)
-    integer, intent(in) :: branch    !< +1 or -1: side of the diagonal on which the chain closes
+    integer, intent(in) :: branch   !< +1 or -1: side of the diagonal on which the chain closes
     type(mechanism_type) :: mechanism
     type(motion_range_type) :: range
     real(wp) :: crank, coupler, offset, lower, upper

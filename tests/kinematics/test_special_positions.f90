@@ -37,10 +37,10 @@ program test_special_positions
 
 contains
 
-  !> A crank that cannot turn fully because the longest and the shortest link are by `residual_norm` too long
+  !> A crank that cannot turn fully because the longest and the shortest link are too long by `excess`
   !> together: it stops on both sides where coupler and rocker are in line.
-  subroutine check_dead_point(residual_norm)
-    real(wp), intent(in) :: residual_norm
+  subroutine check_dead_point(excess)
+    real(wp), intent(in) :: excess   !< sum of ground and rocker less that of coupler and crank [m]
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     real(wp) :: limit
@@ -48,7 +48,7 @@ contains
 
     ! not of Grashof's kind: crank and ground are the two middle links or hold the longest
     bar = four_bar_type(ground=1.2_wp, crank=0.7_wp, coupler=0.9_wp, rocker=0.4_wp)
-    bar%ground = bar%coupler + bar%crank - bar%rocker + residual_norm
+    bar%ground = bar%coupler + bar%crank - bar%rocker + excess
     limit = four_bar_limit(bar, stretched=.true.)
     do branch = -1, 1, 2
       do direction = -1, 1, 2
@@ -81,10 +81,10 @@ contains
 
   !> Run to the dead point with few and with many outputs.
   subroutine find_end(mechanism, limit, direction, name)
-    type(mechanism_type), intent(in) :: mechanism
-    real(wp), intent(in) :: limit
-    integer, intent(in) :: direction
-    character(len=*), intent(in) :: name
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    real(wp), intent(in) :: limit                   !< the crank at the dead point [rad]
+    integer, intent(in) :: direction                !< +1 or -1: of the crank
+    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -112,12 +112,12 @@ contains
   !> Turn the crank by one and a half turns and compare coordinates 2 to 4, their rates and accelerations
   !> with multiples of the crank's: coupler against crank, rocker against coupler, rocker.
   subroutine check_proportional(mechanism, n, start, expected, factors, name)
-    type(mechanism_type), intent(inout) :: mechanism
-    integer, intent(in) :: n
-    real(wp), intent(in) :: start               !< of the crank
-    real(wp), intent(in) :: expected(2:4)       !< at the crank's angle zero
-    real(wp), intent(in) :: factors(2:4)
-    character(len=*), intent(in) :: name
+    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    integer, intent(in) :: n                           !< outputs
+    real(wp), intent(in) :: start                      !< of the crank
+    real(wp), intent(in) :: expected(2:4)              !< at the crank's angle zero
+    real(wp), intent(in) :: factors(2:4)               !< of coordinates 2 to 4 over the crank
+    character(len=*), intent(in) :: name               !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -144,8 +144,8 @@ contains
 
   !> The rocker turns with the crank, the coupler stays parallel to the ground, also through the flat positions.
   subroutine check_parallelogram(n, start)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: start
+    integer, intent(in) :: n        !< outputs
+    real(wp), intent(in) :: start   !< angle of the crank at the start [rad]
     type(mechanism_type) :: mechanism
 
     call four_bar(1.0_wp, 0.4_wp, 1.0_wp, 0.4_wp, [start, -start, start, start], mechanism)
@@ -155,7 +155,7 @@ contains
   !> The same links crossed: the tangents of half the angles of crank and rocker have a fixed product, hence
   !> the rate below.
   subroutine check_antiparallelogram(n)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< outputs
     real(wp), parameter :: ground = 1.0_wp, crank = 0.4_wp, start = 0.5_wp*pi
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
@@ -187,7 +187,7 @@ contains
   !> Crank and ground alike, coupler and rocker alike: where the crank lies on the ground its pin is in the
   !> pivot of the rocker, which could then turn by itself; the kite passes.
   subroutine check_kite(n)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< outputs
     real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
@@ -216,8 +216,8 @@ contains
 
   !> Crank and coupler alike: x = 2 r cos q1 goes through zero, where the crank could turn without the slider.
   subroutine check_equal_arms(n, start)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: start
+    integer, intent(in) :: n        !< outputs
+    real(wp), intent(in) :: start   !< angle of the crank at the start [rad]
     real(wp), parameter :: arm = 0.6_wp
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
@@ -243,7 +243,7 @@ contains
   !> A drive that comes to rest just at the dead point and turns back: the mechanism swings through to its
   !> other branch with continuous velocity.
   subroutine check_touched_dead_point(n)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< outputs
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
@@ -276,7 +276,7 @@ contains
 
   !> A parallelogram, and a second one on its coupler: both are flat at once.
   subroutine check_two_at_once(n)
-    integer, intent(in) :: n
+    integer, intent(in) :: n   !< outputs
     real(wp), parameter :: start = 0.8_wp, crank = 0.4_wp
     type(four_bar_type) :: bar
     type(mechanism_type) :: mechanism

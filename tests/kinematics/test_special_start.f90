@@ -27,8 +27,8 @@ contains
   !> A kite whose crank lies on the ground: coupler and rocker could turn together, but only one motion takes
   !> the crank along. q4 = q1/2 + 90 degrees - acos(short sin(q1/2)/long).
   subroutine kite(n, speed)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: speed
+    integer, intent(in) :: n        !< outputs
+    real(wp), intent(in) :: speed   !< of the crank [rad/s]
     real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
     type(mechanism_type) :: mechanism
     type(plan_type) :: plan
@@ -78,8 +78,9 @@ contains
 
   !> The message tells of both rates.
   subroutine refused(err, first, second)
-    type(error_type), allocatable, intent(in) :: err
-    character(len=*), intent(in) :: first, second
+    type(error_type), allocatable, intent(in) :: err   !< the failure
+    character(len=*), intent(in) :: first              !< words of the first rate
+    character(len=*), intent(in) :: second             !< words of the second rate
     character(len=:), allocatable :: text
     integer :: i
 

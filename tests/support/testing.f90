@@ -23,7 +23,7 @@ contains
 
   !> The message of an error as users read it.
   pure function message_of(err) result(message)
-    type(error_type), intent(in) :: err      !< the error, which stays as it is
+    type(error_type), intent(in) :: err   !< the error, which stays as it is
     character(len=:), allocatable :: message
     type(error_type) :: explained
 
@@ -34,9 +34,9 @@ contains
 
   !> Check that a condition holds.
   subroutine is_true(self, condition, why)
-    class(tester_type), intent(inout) :: self
-    logical, intent(in) :: condition
-    character(len=*), intent(in) :: why
+    class(tester_type), intent(inout) :: self   !< counts the checks
+    logical, intent(in) :: condition            !< that must hold
+    character(len=*), intent(in) :: why         !< the statement that is checked, printed where it is wrong
 
     if (condition) then
       self%passed = self%passed + 1
@@ -48,9 +48,11 @@ contains
 
   !> Check |value - expected| <= tol*max(1, |expected|).
   subroutine near(self, value, expected, tol, why)
-    class(tester_type), intent(inout) :: self
-    real(wp), intent(in) :: value, expected, tol
-    character(len=*), intent(in) :: why
+    class(tester_type), intent(inout) :: self   !< counts the checks
+    real(wp), intent(in) :: value               !< that is checked
+    real(wp), intent(in) :: expected            !< the right value
+    real(wp), intent(in) :: tol                 !< over the larger of one and the right value
+    character(len=*), intent(in) :: why         !< the statement that is checked, printed where it is wrong
 
     if (abs(value - expected) <= tol*max(1.0_wp, abs(expected))) then
       self%passed = self%passed + 1
@@ -62,9 +64,9 @@ contains
 
   !> Check that a call went well.
   subroutine no_error(self, err, why)
-    class(tester_type), intent(inout) :: self
-    type(error_type), allocatable, intent(in) :: err
-    character(len=*), intent(in) :: why
+    class(tester_type), intent(inout) :: self          !< counts the checks
+    type(error_type), allocatable, intent(in) :: err   !< of the call; not allocated where all is well
+    character(len=*), intent(in) :: why                !< the statement that is checked, printed where it is wrong
 
     call self%is_true(.not. allocated(err), why)
     if (allocated(err)) print '(2a)', '  it answered: ', message_of(err)
@@ -72,10 +74,10 @@ contains
 
   !> Check that a call failed with this code.
   subroutine has_error(self, err, code, why)
-    class(tester_type), intent(inout) :: self
-    type(error_type), allocatable, intent(in) :: err
-    integer, intent(in) :: code
-    character(len=*), intent(in) :: why
+    class(tester_type), intent(inout) :: self          !< counts the checks
+    type(error_type), allocatable, intent(in) :: err   !< of the call
+    integer, intent(in) :: code                        !< the right code
+    character(len=*), intent(in) :: why                !< the statement that is checked, printed where it is wrong
 
     if (allocated(err)) then
       call self%is_true(err%code == code, why)
@@ -86,7 +88,7 @@ contains
 
   !> Print the counts and end the program, with 1 if anything failed.
   subroutine finish(self)
-    class(tester_type), intent(in) :: self
+    class(tester_type), intent(in) :: self   !< counts the checks
 
     print '(i0,a,i0,a)', self%passed, ' checks passed, ', self%failed, ' failed'
     if (self%failed > 0 .or. self%passed == 0) stop 1
