@@ -69,7 +69,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
-    type(state_type), intent(inout) :: state            !< poses and independent rates in; velocities and accelerations from rates out
+    type(state_type), intent(inout) :: state            !< poses and independent rates in; velocities, accelerations from rates out
     type(lagrange_work_type), intent(inout) :: work     !< scratch; gets `coefficients`, `velocity_terms`, `forces`
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: b
