@@ -10,7 +10,7 @@ program bench_positions
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_requested, only: requested_type, requested_by_results, leave_out
+  use mech9_requested, only: requested_type, requested_by_results, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_driven_simulation, only: assemble_driven
   use mech9_closed_four_bar, only: four_bar_position, four_bar_motion
@@ -88,9 +88,9 @@ contains
     call stop_at(err, name)
     lean = plan
     requested = requested_by_results(mechanism)
-    call leave_out(plan, requested)
+    call leave_out_unrequested(plan, requested)
     requested%derivatives = 0
-    call leave_out(lean, requested)
+    call leave_out_unrequested(lean, requested)
     do pass = 1, passes
       call time_positions(mechanism, lean, start, each(1, pass))
       call time_motion(mechanism, plan, start, name == 'four_bar', each(2, pass), error)
