@@ -1,4 +1,4 @@
-!> Frames that keep one normal: poses, velocities and accelerations in the plane's axes, and how these look in space.
+!> Planar arithmetic: poses, velocities and accelerations of frames that keep one normal, and their conversion to space.
 module mech9_planar_arithmetic
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -11,7 +11,7 @@ module mech9_planar_arithmetic
   private
   public :: planar_arithmetic_type
 
-  !> Chosen for each block; it has no data of its own.
+  !> The arithmetic in the plane. It has no data of its own.
   type, extends(arithmetic_type) :: planar_arithmetic_type
   contains
     procedure, nopass :: make_frames
@@ -28,65 +28,66 @@ contains
 
   !> Room in a state for frames 0 .. m, all in the place of frame 0 and at rest.
   pure subroutine make_frames(m, state)
-    integer, intent(in) :: m                      !< steps
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    integer, intent(in) :: m                   !< number of steps
+    type(state_type), intent(inout) :: state   !< gets room for the frames
 
     state%planar = new_planar_motion(m)
   end subroutine make_frames
 
-  !> Poses of frames and the ways of their slides, from the coordinates in `state`.
+  !> Poses of frames and the directions in which their steps slide, from the coordinates in `state`.
   subroutine place(plan, first, last, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of these frames out
     type(error_type), allocatable, intent(out) :: err   !< never allocated: user pairs are not planar
 
     call place_in_plane(plan%planar, first, last, state%q, state%planar)
   end subroutine place
 
-  !> The same after a small change of the coordinates of some steps.
+  !> Poses of frames after a small change of the coordinates of some steps. The cosines and sines of their angles are corrected
+  !> to second order and not computed anew.
   subroutine place_after_change(plan, first, last, changed, change, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    integer, intent(in) :: changed(:)             !< steps
-    real(wp), intent(in) :: change(:)             !< of their coordinates, in units of these
-    type(state_type), intent(inout) :: state      !< its coordinates are changed already
-    type(error_type), allocatable, intent(out) :: err   !< never allocated
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    integer, intent(in) :: changed(:)                   !< steps whose coordinates have changed
+    real(wp), intent(in) :: change(:)                   !< changes of their coordinates, in units of these
+    type(state_type), intent(inout) :: state            !< changed coordinates in; poses and screws of these frames out
+    type(error_type), allocatable, intent(out) :: err   !< never allocated: user pairs are not planar
 
     call change_in_plane(plan%planar, first, last, changed, change, state%q, state%planar)
   end subroutine place_after_change
 
   !> Velocities of frames from the rates in `state`.
   pure subroutine spread_velocities(plan, first, last, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    integer, intent(in) :: first               !< frames from this one
+    integer, intent(in) :: last                !< to this one
+    type(state_type), intent(inout) :: state   !< rates in; velocities of these frames out
 
     call planar_velocities(plan%planar, first, last, state%dq, state%planar)
   end subroutine spread_velocities
 
   !> Accelerations of frames from the rates and accelerations in `state`.
   pure subroutine spread_accelerations(plan, first, last, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    integer, intent(in) :: first               !< frames from this one
+    integer, intent(in) :: last                !< to this one
+    type(state_type), intent(inout) :: state   !< rates and accelerations in; accelerations of these frames out
 
     call planar_accelerations(plan%planar, first, last, state%dq, state%ddq, state%planar)
   end subroutine spread_accelerations
 
   !> A link's own system and its motion, in the system of link 1.
   pure subroutine link_motion(plan, state, link, r, p, omega, v)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link
-    real(wp), intent(out) :: r(3, 3)              !< rotation
-    real(wp), intent(out) :: p(3)                 !< origin [m]
-    real(wp), intent(out) :: omega(3)             !< [rad/s]
-    real(wp), intent(out) :: v(3)                 !< of the origin [m/s]
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the velocities of the frames
+    integer, intent(in) :: link             !< number of the link
+    real(wp), intent(out) :: r(3, 3)        !< rotation from the link's axes to those of link 1
+    real(wp), intent(out) :: p(3)           !< origin of the link [m]
+    real(wp), intent(out) :: omega(3)       !< angular velocity [rad/s]
+    real(wp), intent(out) :: v(3)           !< velocity of the origin [m/s]
     real(wp) :: x, y
     integer :: i, j
 
@@ -106,13 +107,13 @@ contains
 
   !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1.
   pure subroutine point_motion(plan, state, link, place, position, velocity, acceleration)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link
-    real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
-    real(wp), intent(out) :: position(3)          !< [m]
-    real(wp), intent(out), optional :: velocity(3)      !< [m/s]
-    real(wp), intent(out), optional :: acceleration(3)  !< [m/s^2]
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
+    type(state_type), intent(in) :: state                !< with the motion of the frames
+    integer, intent(in) :: link                          !< number of the link
+    real(wp), intent(in) :: place(3)                     !< position of the point in the link's own system [m]
+    real(wp), intent(out) :: position(3)                 !< in the system of link 1 [m]
+    real(wp), intent(out), optional :: velocity(3)       !< in the axes of link 1 [m/s]
+    real(wp), intent(out), optional :: acceleration(3)   !< in the axes of link 1 [m/s^2]
     real(wp) :: in_frame(3), x, y
     integer :: i
 
@@ -130,12 +131,12 @@ contains
 
   !> The screw of a step at its new frame's origin, in the axes of frame 0.
   pure subroutine step_screw(plan, state, s, w, v, place)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: s                      !< step
-    real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
-    real(wp), intent(out) :: v(3)                 !< [m per unit of q]
-    real(wp), intent(out) :: place(3)             !< [m]
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the poses of the frames
+    integer, intent(in) :: s                !< number of the step
+    real(wp), intent(out) :: w(3)           !< angular velocity per unit rate [rad per unit of q]
+    real(wp), intent(out) :: v(3)           !< velocity of the new frame's origin per unit rate [m per unit of q]
+    real(wp), intent(out) :: place(3)       !< origin of the new frame, from that of frame 0 [m]
 
     associate (planar => plan%planar, pose => state%planar%pose(:, s), slide => state%planar%slide(:, s))
       w = to_space(planar, 0.0_wp, 0.0_wp, planar%steps(s)%turn)

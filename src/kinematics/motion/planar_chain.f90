@@ -8,7 +8,7 @@ module mech9_planar_chain
   use mech9_plan, only: plan_type, block_type
   use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
   use mech9_planar_motion, only: find_accelerations
-  use mech9_planar_formulas, only: step_column, step_velocity, add_rate, add_swing, stem_difference, rows_at_base
+  use mech9_planar_formulas, only: step_column, step_velocity, add_rate, add_bias, stem_difference, rows_at_base
   use mech9_state, only: planar_motion_type
   implicit none
   private
@@ -202,7 +202,7 @@ contains
       x = f(3, i) - f(3, p)
       y = f(4, i) - f(4, p)
       call step_velocity(steps(i), rate, x, y, slide(:, i), v(:, p), v(:, i))
-      call add_swing(steps(i), signs(i), rate, x, y, slide(:, i), v(1, p), swing)
+      call add_bias(steps(i), signs(i), rate, x, y, slide(:, i), v(1, p), swing)
     end do
   end subroutine find_velocities
 end module mech9_planar_chain

@@ -3,7 +3,7 @@
 module mech9_planar_closure
   use mech9_kinds, only: wp
   use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
-  use mech9_planar_formulas, only: step_column, add_rate, add_swing, stem_difference, rows_at_base
+  use mech9_planar_formulas, only: step_column, add_rate, add_bias, stem_difference, rows_at_base
   use mech9_plan, only: plan_type, loop_type, constraint_type
   use mech9_state, only: planar_motion_type, state_type
   implicit none
@@ -206,7 +206,7 @@ contains
     do i = 1, n_steps
       s = steps(i)
       p = flat(s)%parent
-      call add_swing(flat(s), signs(i), dq(flat(s)%coordinate), f(3, s) - f(3, p), f(4, s) - f(4, p), slide(:, s), v(1, p), &
+      call add_bias(flat(s), signs(i), dq(flat(s)%coordinate), f(3, s) - f(3, p), f(4, s) - f(4, p), slide(:, s), v(1, p), &
                      opening(2:3))
     end do
     opening(2:3) = opening(2:3) + v(1, closure%target)**2*(f(3:4, closure%closing) - f(3:4, closure%target))

@@ -1,25 +1,26 @@
-!> The formulas of planar motion, each written once: what one step does to frames and to closures.
+!> The formulas of planar motion: the contributions of one step to the motion of frames and to the equations of closures.
 !>
-!> A pose is (cosine, sine, x, y) in the plane's axes; a motion is (angular velocity about the normal, velocity of an origin), or
-!> the same of accelerations. They are small, so that the compiler can put them into the loops that use them.
+!> A pose is (cosine, sine, x, y) in the plane's axes; a velocity is (angular velocity about the normal, velocity of an
+!> origin), and an acceleration has the same three parts. The procedures are small, so that the compiler can put them into the
+!> loops that use them.
 module mech9_planar_formulas
   use mech9_kinds, only: wp
   use mech9_planar_plan, only: planar_step_type, planar_closure_type
   implicit none
   private
-  public :: step_column, step_velocity, step_acceleration, add_rate, add_swing, stem_difference, rows_at_base
+  public :: step_column, step_velocity, step_acceleration, add_rate, add_bias, stem_difference, rows_at_base
 
 contains
 
   !> Derivatives of a closure's three equations with respect to the coordinate of a step of its loop.
   pure subroutine step_column(step, sign, pose, slide, base, per_length, column)
-    type(planar_step_type), intent(in) :: step
-    real(wp), intent(in) :: sign                  !< of the step in the loop
-    real(wp), intent(in) :: pose(4)               !< of its frame [m]
-    real(wp), intent(in) :: slide(2)              !< velocity of its origin per unit rate
-    real(wp), intent(in) :: base(2)               !< origin of the frame at which the closure is written [m]
-    real(wp), intent(in) :: per_length            !< one over the mechanism's size [1/m]
-    real(wp), intent(out) :: column(3)            !< per rad, or per size
+    type(planar_step_type), intent(in) :: step   !< the step
+    real(wp), intent(in) :: sign                 !< of the step in the loop: 1 or -1
+    real(wp), intent(in) :: pose(4)              !< pose of the step's frame [m]
+    real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate
+    real(wp), intent(in) :: base(2)              !< origin of the frame at which the closure is written [m]
+    real(wp), intent(in) :: per_length           !< one over the mechanism's size [1/m]
+    real(wp), intent(out) :: column(3)           !< per rad of a turn, or per length of the mechanism of a slide
     real(wp) :: w
 
     if (step%turns) then
@@ -35,15 +36,15 @@ contains
     end if
   end subroutine step_column
 
-  !> Velocity of a step's frame from that of its parent.
+  !> Velocity of a step's frame from the velocity of its parent frame.
   pure subroutine step_velocity(step, rate, x, y, slide, parent, v)
-    type(planar_step_type), intent(in) :: step
-    real(wp), intent(in) :: rate                  !< of its coordinate [rad/s, m/s]
-    real(wp), intent(in) :: x                     !< from the parent's origin to the frame's [m]
-    real(wp), intent(in) :: y                     !< the same along the second axis [m]
-    real(wp), intent(in) :: slide(2)              !< velocity of the origin per unit rate
-    real(wp), intent(in) :: parent(3)             !< motion of the parent [rad/s, m/s]
-    real(wp), intent(out) :: v(3)                 !< motion of the frame [rad/s, m/s]
+    type(planar_step_type), intent(in) :: step   !< the step
+    real(wp), intent(in) :: rate                 !< of the step's coordinate [rad/s, m/s]
+    real(wp), intent(in) :: x                    !< from the parent's origin to the frame's, along the plane's first axis [m]
+    real(wp), intent(in) :: y                    !< the same along the plane's second axis [m]
+    real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate
+    real(wp), intent(in) :: parent(3)            !< velocity of the parent [rad/s, m/s]
+    real(wp), intent(out) :: v(3)                !< velocity of the frame [rad/s, m/s]
 
     v(1) = parent(1) + step%turn*rate
     v(2) = parent(2) - parent(1)*y
@@ -53,17 +54,17 @@ contains
     v(3) = v(3) + rate*slide(2)
   end subroutine step_velocity
 
-  !> Acceleration of a step's frame from that of its parent.
+  !> Acceleration of a step's frame from the acceleration of its parent frame.
   pure subroutine step_acceleration(step, rate, acceleration, x, y, slide, w, parent, a)
-    type(planar_step_type), intent(in) :: step
-    real(wp), intent(in) :: rate                  !< of its coordinate [rad/s, m/s]
-    real(wp), intent(in) :: acceleration          !< of its coordinate [rad/s^2, m/s^2]
-    real(wp), intent(in) :: x                     !< from the parent's origin to the frame's [m]
-    real(wp), intent(in) :: y                     !< the same along the second axis [m]
-    real(wp), intent(in) :: slide(2)              !< velocity of the origin per unit rate
-    real(wp), intent(in) :: w                     !< angular velocity of the parent [rad/s]
-    real(wp), intent(in) :: parent(3)             !< acceleration of the parent [rad/s^2, m/s^2]
-    real(wp), intent(out) :: a(3)                 !< acceleration of the frame [rad/s^2, m/s^2]
+    type(planar_step_type), intent(in) :: step   !< the step
+    real(wp), intent(in) :: rate                 !< of the step's coordinate [rad/s, m/s]
+    real(wp), intent(in) :: acceleration         !< of the step's coordinate [rad/s^2, m/s^2]
+    real(wp), intent(in) :: x                    !< from the parent's origin to the frame's, along the plane's first axis [m]
+    real(wp), intent(in) :: y                    !< the same along the plane's second axis [m]
+    real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate
+    real(wp), intent(in) :: w                    !< angular velocity of the parent [rad/s]
+    real(wp), intent(in) :: parent(3)            !< acceleration of the parent [rad/s^2, m/s^2]
+    real(wp), intent(out) :: a(3)                !< acceleration of the frame [rad/s^2, m/s^2]
     real(wp) :: coriolis
 
     a(1) = parent(1) + step%turn*acceleration
@@ -75,14 +76,14 @@ contains
     a(3) = a(3) + acceleration*slide(2) + coriolis*slide(1)
   end subroutine step_acceleration
 
-  !> Add the motion at a place that the rate of a step's coordinate gives to a loop.
+  !> Add the contribution of a step's coordinate to the relative motion of the ends of a loop, at a place.
   pure subroutine add_rate(step, rate, pose, slide, place, opening)
-    type(planar_step_type), intent(in) :: step
-    real(wp), intent(in) :: rate                  !< rate or acceleration, with the sign of the step in the loop
-    real(wp), intent(in) :: pose(4)               !< of its frame [m]
-    real(wp), intent(in) :: slide(2)              !< velocity of its origin per unit rate
-    real(wp), intent(in) :: place(2)              !< [m]
-    real(wp), intent(inout) :: opening(3)         !< motion of the closing frame relative to the target
+    type(planar_step_type), intent(in) :: step   !< the step
+    real(wp), intent(in) :: rate                 !< rate or acceleration, with the sign of the step in the loop
+    real(wp), intent(in) :: pose(4)              !< pose of the step's frame [m]
+    real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate
+    real(wp), intent(in) :: place(2)             !< the place [m]
+    real(wp), intent(inout) :: opening(3)        !< motion of the closing frame relative to the target, at the place
     real(wp) :: w
 
     if (step%turns) then
@@ -96,36 +97,37 @@ contains
     end if
   end subroutine add_rate
 
-  !> Add the acceleration of a loop that the velocities of a step give it: centripetal and of Coriolis.
-  pure subroutine add_swing(step, sign, rate, x, y, slide, w, swing)
-    type(planar_step_type), intent(in) :: step
-    real(wp), intent(in) :: sign                  !< of the step in the loop
-    real(wp), intent(in) :: rate                  !< of its coordinate [rad/s, m/s]
-    real(wp), intent(in) :: x                     !< from the parent's origin to the frame's [m]
-    real(wp), intent(in) :: y                     !< the same along the second axis [m]
-    real(wp), intent(in) :: slide(2)              !< velocity of its origin per unit rate
-    real(wp), intent(in) :: w                     !< angular velocity of the parent [rad/s]
-    real(wp), intent(inout) :: swing(2)           !< [m/s^2]
+  !> Add the contribution of a step to the bias acceleration of a loop: the centripetal and Coriolis terms, which depend on
+  !> velocities only.
+  pure subroutine add_bias(step, sign, rate, x, y, slide, w, bias)
+    type(planar_step_type), intent(in) :: step   !< the step
+    real(wp), intent(in) :: sign                 !< of the step in the loop: 1 or -1; 0: not in it
+    real(wp), intent(in) :: rate                 !< of the step's coordinate [rad/s, m/s]
+    real(wp), intent(in) :: x                    !< from the parent's origin to the frame's, along the plane's first axis [m]
+    real(wp), intent(in) :: y                    !< the same along the plane's second axis [m]
+    real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate
+    real(wp), intent(in) :: w                    !< angular velocity of the parent [rad/s]
+    real(wp), intent(inout) :: bias(2)           !< acceleration of the closing frame relative to the target [m/s^2]
     real(wp) :: square, coriolis
 
     square = sign*w**2
-    swing(1) = swing(1) - square*x
-    swing(2) = swing(2) - square*y
+    bias(1) = bias(1) - square*x
+    bias(2) = bias(2) - square*y
     if (step%turns) return
     coriolis = 2.0_wp*sign*w*rate
-    swing(1) = swing(1) - coriolis*slide(2)
-    swing(2) = swing(2) + coriolis*slide(1)
-  end subroutine add_swing
+    bias(1) = bias(1) - coriolis*slide(2)
+    bias(2) = bias(2) + coriolis*slide(1)
+  end subroutine add_bias
 
-  !> Difference at a place between the motions that two frames carry along: of their velocities, or of accelerations without those
-  !> of turning on.
+  !> Difference at a place between the motions of two bodies on which two frames are fixed: of the velocities, or of the
+  !> accelerations without their centripetal terms.
   pure subroutine stem_difference(m, stems, place, f, v, difference)
-    integer, intent(in) :: m                      !< steps
-    integer, intent(in) :: stems(2)               !< the two frames
-    real(wp), intent(in) :: place(2)              !< [m]
-    real(wp), intent(in) :: f(4, 0:m)             !< poses of the frames [m]
-    real(wp), intent(in) :: v(3, 0:m)             !< their motions
-    real(wp), intent(out) :: difference(3)
+    integer, intent(in) :: m                 !< number of steps of the plan
+    integer, intent(in) :: stems(2)          !< numbers of the two frames
+    real(wp), intent(in) :: place(2)         !< the place [m]
+    real(wp), intent(in) :: f(4, 0:m)        !< poses of the frames [m]
+    real(wp), intent(in) :: v(3, 0:m)        !< velocities, or accelerations, of the frames
+    real(wp), intent(out) :: difference(3)   !< motion of the first frame less that of the second: angular, and at the place
     integer :: i, k
 
     difference = 0.0_wp
@@ -137,14 +139,14 @@ contains
     difference(3) = v(3, i) + v(1, i)*(place(1) - f(3, i)) - v(3, k) - v(1, k)*(place(1) - f(3, k))
   end subroutine stem_difference
 
-  !> The three equations' part in a motion that is given at the origin of a closure's closing frame.
+  !> The three equations of a closure, from a motion that is given at the origin of its closing frame.
   pure subroutine rows_at_base(closure, per_length, m, f, motion, rows)
-    type(planar_closure_type), intent(in) :: closure
-    real(wp), intent(in) :: per_length            !< one over the mechanism's size [1/m]
-    integer, intent(in) :: m                      !< steps
-    real(wp), intent(in) :: f(4, 0:m)             !< poses of the frames [m]
-    real(wp), intent(in) :: motion(3)             !< angle or angular motion; way or motion of the place [rad, m, ...]
-    real(wp), intent(out) :: rows(3)              !< the way in sizes of the mechanism
+    type(planar_closure_type), intent(in) :: closure   !< pose of the closing frame in the target frame
+    real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
+    integer, intent(in) :: m                           !< number of steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(in) :: motion(3)   !< angular and at that origin: displacement [rad, m], velocity or acceleration
+    real(wp), intent(out) :: rows(3)   !< the same at the origin of the base frame, translations in lengths of the mechanism
     integer :: b, i
 
     b = closure%base

@@ -1,4 +1,4 @@
-!> Frames in space: poses (10), velocities and accelerations along the steps of a plan, (14)-(16) by recursion.
+!> Arithmetic in space: poses (10), velocities and accelerations of frames along the steps of a plan, (14)-(16) by recursion.
 module mech9_spatial_arithmetic
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -12,7 +12,7 @@ module mech9_spatial_arithmetic
   private
   public :: spatial_arithmetic_type
 
-  !> Chosen for each block; it has no data of its own.
+  !> The arithmetic in space. It has no data of its own.
   type, extends(arithmetic_type) :: spatial_arithmetic_type
   contains
     procedure, nopass :: make_frames
@@ -29,8 +29,8 @@ contains
 
   !> Room in a state for frames 0 .. m, all in the place of frame 0 and at rest.
   pure subroutine make_frames(m, state)
-    integer, intent(in) :: m                      !< steps
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    integer, intent(in) :: m                   !< number of steps
+    type(state_type), intent(inout) :: state   !< gets room for the frames
     integer :: i
 
     allocate (state%r(3, 3, 0:m), state%p(3, 0:m), source=0.0_wp)
@@ -46,11 +46,11 @@ contains
 
   !> Poses of frames and the screws of their steps, from the coordinates in `state`.
   subroutine place(plan, first, last, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of these frames out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
     integer :: s
 
     do s = first, last
@@ -60,15 +60,16 @@ contains
     call compose_frames(plan, first, last, state, err)
   end subroutine place
 
-  !> The same after a small change of the coordinates of some steps.
+  !> Poses of frames after a small change of the coordinates of some steps. The cosines and sines of their angles are corrected
+  !> to second order and not computed anew.
   subroutine place_after_change(plan, first, last, changed, change, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    integer, intent(in) :: changed(:)             !< steps
-    real(wp), intent(in) :: change(:)             !< of their coordinates, in units of these
-    type(state_type), intent(inout) :: state      !< its coordinates are changed already
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    integer, intent(in) :: changed(:)                   !< steps whose coordinates have changed
+    real(wp), intent(in) :: change(:)                   !< changes of their coordinates, in units of these
+    type(state_type), intent(inout) :: state            !< changed coordinates in; poses and screws of these frames out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
     integer :: i
 
     do i = 1, size(changed)
@@ -82,11 +83,11 @@ contains
 
   !> Poses of frames from the cosines and sines of their steps.
   subroutine compose_frames(plan, first, last, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    type(state_type), intent(inout) :: state            !< coordinates, cosines and sines in; poses and screws of these frames out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
     integer :: s
 
     do s = first, last
@@ -101,18 +102,18 @@ contains
     end do
   end subroutine compose_frames
 
-  !> One step along a fixed axis: constant pose, then turn about and slide along z.
+  !> The frame of one step along a fixed axis: a constant pose, then a turn about z and a slide along z.
   pure subroutine place_screw(step, q, c, s, r_parent, p_parent, r, p, axis_w, axis_v)
-    type(step_type), intent(in) :: step
-    real(wp), intent(in) :: q                     !< its coordinate [rad, m]
-    real(wp), intent(in) :: c                     !< cosine of its turn
-    real(wp), intent(in) :: s                     !< sine of its turn
-    real(wp), intent(in) :: r_parent(3, 3)        !< rotation of the parent frame, in the axes of frame 0
-    real(wp), intent(in) :: p_parent(3)           !< origin of the parent frame, from that of frame 0 [m]
-    real(wp), intent(out) :: r(3, 3)              !< rotation of the new frame
-    real(wp), intent(out) :: p(3)                 !< its origin [m]
-    real(wp), intent(out) :: axis_w(3)            !< angular velocity per unit rate
-    real(wp), intent(out) :: axis_v(3)            !< velocity of the origin per unit rate
+    type(step_type), intent(in) :: step      !< the step
+    real(wp), intent(in) :: q                !< its coordinate [rad, m]
+    real(wp), intent(in) :: c                !< cosine of its angle
+    real(wp), intent(in) :: s                !< sine of its angle
+    real(wp), intent(in) :: r_parent(3, 3)   !< rotation of the parent frame, in the axes of frame 0
+    real(wp), intent(in) :: p_parent(3)      !< origin of the parent frame, from that of frame 0 [m]
+    real(wp), intent(out) :: r(3, 3)         !< rotation of the new frame, in the axes of frame 0
+    real(wp), intent(out) :: p(3)            !< origin of the new frame, from that of frame 0 [m]
+    real(wp), intent(out) :: axis_w(3)       !< angular velocity per unit rate, in the axes of frame 0
+    real(wp), intent(out) :: axis_v(3)       !< velocity of the new origin per unit rate, in the axes of frame 0
     real(wp) :: advance, ex(3), ey(3), ez(3)
     integer :: i
 
@@ -131,12 +132,12 @@ contains
     axis_v = step%slide*ez
   end subroutine place_screw
 
-  !> One step through a pair that has no fixed axis.
+  !> The frame of one step through a pair that has no fixed axis.
   subroutine place_user(plan, s, state, err)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: s                      !< step
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: s                            !< number of the step
+    type(state_type), intent(inout) :: state            !< coordinates in; pose and screw of the new frame out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the pair has no pose
     type(pair_motion_type) :: motion
     real(wp) :: r_departing(3, 3), p_departing(3)
 
@@ -157,10 +158,10 @@ contains
 
   !> Velocities of frames from the rates in `state`.
   pure subroutine spread_velocities(plan, first, last, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    integer, intent(in) :: first               !< frames from this one
+    integer, intent(in) :: last                !< to this one
+    type(state_type), intent(inout) :: state   !< rates in; velocities of these frames out
 
     call find_velocities(size(plan%steps), plan%steps, first, last, state%dq, state%p, state%axis_w, state%axis_v, &
                          state%omega, state%v)
@@ -168,29 +169,29 @@ contains
 
   !> Accelerations of frames from the rates and accelerations in `state`.
   pure subroutine spread_accelerations(plan, first, last, state)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    integer, intent(in) :: first               !< frames from this one
+    integer, intent(in) :: last                !< to this one
+    type(state_type), intent(inout) :: state   !< rates and accelerations in; accelerations of these frames out
 
     call find_accelerations(size(plan%steps), plan%steps, first, last, state%dq, state%ddq, state%p, state%axis_w, &
                             state%axis_v, state%axis_w_rate, state%axis_v_rate, state%omega, state%v, state%alpha, state%a)
   end subroutine spread_accelerations
 
-  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+  ! The next two procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
 
   !> Velocities of frames from plain arrays, indexed as in the state.
   pure subroutine find_velocities(m, steps, first, last, dq, p, axis_w, axis_v, omega, v)
-    integer, intent(in) :: m                      !< steps
-    type(step_type), intent(in) :: steps(m)
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    real(wp), intent(in) :: dq(m)                 !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: p(3, 0:m)             !< origins [m]
-    real(wp), intent(in) :: axis_w(3, m)          !< angular velocity per unit rate
-    real(wp), intent(in) :: axis_v(3, m)          !< velocity of the origin per unit rate
-    real(wp), intent(inout) :: omega(3, 0:m)      !< angular velocities [rad/s]
-    real(wp), intent(inout) :: v(3, 0:m)          !< velocities of the origins [m/s]
+    integer, intent(in) :: m                   !< steps
+    type(step_type), intent(in) :: steps(m)    !< steps of the plan
+    integer, intent(in) :: first               !< frames from this one
+    integer, intent(in) :: last                !< to this one
+    real(wp), intent(in) :: dq(m)              !< rates of the coordinates [rad/s, m/s]
+    real(wp), intent(in) :: p(3, 0:m)          !< origins [m]
+    real(wp), intent(in) :: axis_w(3, m)       !< angular velocity per unit rate
+    real(wp), intent(in) :: axis_v(3, m)       !< velocity of the origin per unit rate
+    real(wp), intent(inout) :: omega(3, 0:m)   !< angular velocities [rad/s]
+    real(wp), intent(inout) :: v(3, 0:m)       !< velocities of the origins [m/s]
     real(wp) :: rate, arm(3)
     integer :: s, i
 
@@ -206,21 +207,21 @@ contains
   !> Accelerations of frames from plain arrays, indexed as in the state.
   pure subroutine find_accelerations(m, steps, first, last, dq, ddq, p, axis_w, axis_v, axis_w_rate, axis_v_rate, omega, v, &
                                      alpha, a)
-    integer, intent(in) :: m                      !< steps
-    type(step_type), intent(in) :: steps(m)
-    integer, intent(in) :: first                  !< frames from this one
-    integer, intent(in) :: last                   !< to this one
-    real(wp), intent(in) :: dq(m)                 !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: ddq(m)                !< accelerations of the coordinates [rad/s^2, m/s^2]
-    real(wp), intent(in) :: p(3, 0:m)             !< origins [m]
-    real(wp), intent(in) :: axis_w(3, m)          !< angular velocity per unit rate
-    real(wp), intent(in) :: axis_v(3, m)          !< velocity of the origin per unit rate
-    real(wp), intent(in) :: axis_w_rate(3, m)     !< derivative of axis_w in q, of user pairs
-    real(wp), intent(in) :: axis_v_rate(3, m)     !< derivative of axis_v in q, of user pairs
-    real(wp), intent(in) :: omega(3, 0:m)         !< angular velocities [rad/s]
-    real(wp), intent(in) :: v(3, 0:m)             !< velocities of the origins [m/s]
-    real(wp), intent(inout) :: alpha(3, 0:m)      !< angular accelerations [rad/s^2]
-    real(wp), intent(inout) :: a(3, 0:m)          !< accelerations of the origins [m/s^2]
+    integer, intent(in) :: m                    !< steps
+    type(step_type), intent(in) :: steps(m)     !< steps of the plan
+    integer, intent(in) :: first                !< frames from this one
+    integer, intent(in) :: last                 !< to this one
+    real(wp), intent(in) :: dq(m)               !< rates of the coordinates [rad/s, m/s]
+    real(wp), intent(in) :: ddq(m)              !< accelerations of the coordinates [rad/s^2, m/s^2]
+    real(wp), intent(in) :: p(3, 0:m)           !< origins [m]
+    real(wp), intent(in) :: axis_w(3, m)        !< angular velocity per unit rate
+    real(wp), intent(in) :: axis_v(3, m)        !< velocity of the origin per unit rate
+    real(wp), intent(in) :: axis_w_rate(3, m)   !< derivative of axis_w in q, of user pairs
+    real(wp), intent(in) :: axis_v_rate(3, m)   !< derivative of axis_v in q, of user pairs
+    real(wp), intent(in) :: omega(3, 0:m)       !< angular velocities [rad/s]
+    real(wp), intent(in) :: v(3, 0:m)           !< velocities of the origins [m/s]
+    real(wp), intent(inout) :: alpha(3, 0:m)    !< angular accelerations [rad/s^2]
+    real(wp), intent(inout) :: a(3, 0:m)        !< accelerations of the origins [m/s^2]
     real(wp) :: rate, arm(3), slip(3), turning(3)
     integer :: s, i
 
@@ -240,13 +241,13 @@ contains
 
   !> A link's own system and its motion, in the system of link 1.
   pure subroutine link_motion(plan, state, link, r, p, omega, v)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link
-    real(wp), intent(out) :: r(3, 3)              !< rotation
-    real(wp), intent(out) :: p(3)                 !< origin [m]
-    real(wp), intent(out) :: omega(3)             !< [rad/s]
-    real(wp), intent(out) :: v(3)                 !< of the origin [m/s]
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the velocities of the frames
+    integer, intent(in) :: link             !< number of the link
+    real(wp), intent(out) :: r(3, 3)        !< rotation from the link's axes to those of link 1
+    real(wp), intent(out) :: p(3)           !< origin of the link [m]
+    real(wp), intent(out) :: omega(3)       !< angular velocity [rad/s]
+    real(wp), intent(out) :: v(3)           !< velocity of the origin [m/s]
     real(wp) :: arm(3)
     integer :: f
 
@@ -260,13 +261,13 @@ contains
 
   !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1.
   pure subroutine point_motion(plan, state, link, place, position, velocity, acceleration)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link
-    real(wp), intent(in) :: place(3)              !< of the point, in the link's own system [m]
-    real(wp), intent(out) :: position(3)          !< [m]
-    real(wp), intent(out), optional :: velocity(3)      !< [m/s]
-    real(wp), intent(out), optional :: acceleration(3)  !< [m/s^2]
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
+    type(state_type), intent(in) :: state                !< with the motion of the frames
+    integer, intent(in) :: link                          !< number of the link
+    real(wp), intent(in) :: place(3)                     !< position of the point in the link's own system [m]
+    real(wp), intent(out) :: position(3)                 !< in the system of link 1 [m]
+    real(wp), intent(out), optional :: velocity(3)       !< in the axes of link 1 [m/s]
+    real(wp), intent(out), optional :: acceleration(3)   !< in the axes of link 1 [m/s^2]
     real(wp) :: arm(3)
     integer :: f
 
@@ -280,12 +281,12 @@ contains
 
   !> The screw of a step at its new frame's origin, in the axes of frame 0.
   pure subroutine step_screw(plan, state, s, w, v, place)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: s                      !< step
-    real(wp), intent(out) :: w(3)                 !< [rad per unit of q]
-    real(wp), intent(out) :: v(3)                 !< [m per unit of q]
-    real(wp), intent(out) :: place(3)             !< [m]
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the poses of the frames
+    integer, intent(in) :: s                !< number of the step
+    real(wp), intent(out) :: w(3)           !< angular velocity per unit rate [rad per unit of q]
+    real(wp), intent(out) :: v(3)           !< velocity of the new frame's origin per unit rate [m per unit of q]
+    real(wp), intent(out) :: place(3)       !< origin of the new frame, from that of frame 0 [m]
 
     w = state%axis_w(:, s)
     v = state%axis_v(:, s)
