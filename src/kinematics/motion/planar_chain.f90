@@ -1,8 +1,8 @@
 !> A planar closed chain that determines three coordinates by itself, the commonest block: its Jacobian and its motion, with all
-!> places looked up beforehand.
+!> indices found beforehand.
 !>
-!> The numbers are those of closures and frames of any block; what is saved is the way to them. Rates, velocities of
-!> the frames, accelerations of the coordinates and of the frames take one loop each.
+!> The results are those of the general procedures for any block; only the search for indices and the calls are saved. The rates,
+!> the velocities of the frames, and the accelerations of the coordinates and of the frames take one loop each.
 module mech9_planar_chain
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type, block_type
@@ -14,24 +14,26 @@ module mech9_planar_chain
   private
   public :: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
 
+  !> A block of one planar closed chain with three unknowns.
   type :: planar_chain_type
-    logical :: used = .false.
-    integer :: first_step = 0, last_step = 0
-    integer :: last_moved = 0                  !< the last step of which accelerations are asked for
-    integer :: closure = 0
-    integer :: unknowns(3) = 0                 !< steps
-    integer :: coordinates(3) = 0              !< of these
-    real(wp) :: units(3) = 1.0_wp              !< of the coordinates
-    integer :: stems(2) = 0                    !< frames of other blocks from which it departs
-    real(wp), allocatable :: signs(:)          !< (first_step:last_step) of each step in the loop; 0: not in it
-    integer, allocatable :: given(:)           !< steps of the loop whose coordinates are given
+    logical :: used = .false.             !< the block is such a chain
+    integer :: first_step = 0             !< first step of the block
+    integer :: last_step = 0              !< last step of the block
+    integer :: last_moved = 0             !< last step of the block whose acceleration is used
+    integer :: closure = 0                !< number of its closure
+    integer :: unknowns(3) = 0            !< steps of the three unknown coordinates
+    integer :: coordinates(3) = 0         !< numbers of these coordinates
+    real(wp) :: units(3) = 1.0_wp         !< their units: 1 rad, or the length of the mechanism [m]
+    integer :: stems(2) = 0               !< frames of other blocks at which the two branches of the loop begin
+    real(wp), allocatable :: signs(:)     !< (first_step:last_step) of each step in the loop: 1 or -1; 0: not in it
+    integer, allocatable :: given(:)      !< steps of the loop whose coordinates are given
   end type planar_chain_type
 
 contains
 
-  !> A block as such a chain; not used where it is none.
+  !> A block as a planar chain; `used` is false where the block is not one.
   pure function new_planar_chain(plan, block) result(chain)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(planar_chain_type) :: chain
     integer :: i, s
@@ -59,57 +61,66 @@ contains
 
   !> Derivatives of the three equations with respect to the three coordinates, each in its unit.
   pure subroutine chain_jacobian(planar, chain, motion, jacobian)
-    type(planar_plan_type), intent(in) :: planar
-    type(planar_chain_type), intent(in) :: chain
-    type(planar_motion_type), intent(in) :: motion
-    real(wp), intent(out) :: jacobian(3, 3)
+    type(planar_plan_type), intent(in) :: planar     !< the plan in planar arithmetic
+    type(planar_chain_type), intent(in) :: chain     !< the chain
+    type(planar_motion_type), intent(in) :: motion   !< with the poses of the frames
+    real(wp), intent(out) :: jacobian(3, 3)          !< (equations, coordinates)
 
     call fill(chain%unknowns, chain%first_step, chain%last_step, chain%signs, planar%closures(chain%closure)%base, &
               1.0_wp/planar%length, size(planar%steps), planar%steps, motion%pose, motion%slide, jacobian)
   end subroutine chain_jacobian
 
-  !> Rates of the three coordinates and velocities of the frames up to that of step `last`, from those of the given
-  !> coordinates and of the blocks before.
+  !> Rates of the three coordinates and velocities of the frames up to frame `last`, from the rates of the given coordinates
+  !> and the velocities of the frames of earlier blocks.
   pure subroutine chain_rates(planar, chain, inverse, last, dq, motion)
-    type(planar_plan_type), intent(in) :: planar
-    type(planar_chain_type), intent(in) :: chain
-    real(wp), intent(in) :: inverse(3, 3)                  !< of the Jacobian
-    integer, intent(in) :: last
-    real(wp), intent(inout), contiguous :: dq(:)           !< (M)
-    type(planar_motion_type), intent(inout) :: motion
-    real(wp) :: swing(2)
+    type(planar_plan_type), intent(in) :: planar        !< the plan in planar arithmetic
+    type(planar_chain_type), intent(in) :: chain        !< the chain
+    real(wp), intent(in) :: inverse(3, 3)               !< inverse of the Jacobian
+    integer, intent(in) :: last                         !< last frame whose velocity is found
+    real(wp), intent(inout), contiguous :: dq(:)        !< (M) given rates in; rates of the three coordinates out [rad/s, m/s]
+    type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities of these frames out
+    real(wp) :: bias(2)
 
     call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
               chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-              last, dq, motion%velocity, swing)
+              last, dq, motion%velocity, bias)
   end subroutine chain_rates
 
-  !> Rates and accelerations of the three coordinates, velocities and accelerations of the frames, from those of the
-  !> given coordinates and of the blocks before.
+  !> Rates and accelerations of the three coordinates, velocities and accelerations of the frames, from the motion of the
+  !> given coordinates and of the frames of earlier blocks.
   pure subroutine chain_motion(planar, chain, inverse, dq, ddq, motion)
-    type(planar_plan_type), intent(in) :: planar
-    type(planar_chain_type), intent(in) :: chain
-    real(wp), intent(in) :: inverse(3, 3)                  !< of the Jacobian
-    real(wp), intent(inout), contiguous :: dq(:), ddq(:)   !< (M)
-    type(planar_motion_type), intent(inout) :: motion
-
-    real(wp) :: swing(2)
+    type(planar_plan_type), intent(in) :: planar        !< the plan in planar arithmetic
+    type(planar_chain_type), intent(in) :: chain        !< the chain
+    real(wp), intent(in) :: inverse(3, 3)               !< inverse of the Jacobian
+    real(wp), intent(inout), contiguous :: dq(:)        !< (M) given rates in; rates of the three coordinates out [rad/s, m/s]
+    real(wp), intent(inout), contiguous :: ddq(:)       !< (M) given accelerations in; all of the chain out [rad/s^2, m/s^2]
+    type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities and accelerations out
+    real(wp) :: bias(2)
 
     call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
               chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-              chain%last_step, dq, motion%velocity, swing)
+              chain%last_step, dq, motion%velocity, bias)
     call accelerate(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
                     chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-                    dq, swing, motion%velocity, ddq, motion%acceleration)
+                    dq, bias, motion%velocity, ddq, motion%acceleration)
   end subroutine chain_motion
 
-  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+  ! The following procedures take arrays of known shape beside their types, so that the compiler keeps their addresses in
+  ! registers.
 
+  !> Derivatives of the three equations with respect to the three coordinates, each in its unit.
   pure subroutine fill(unknowns, first, last, signs, base, per_length, m, steps, f, slide, jacobian)
-    integer, intent(in) :: unknowns(3), first, last, base, m
-    real(wp), intent(in) :: signs(first:last), per_length, f(4, 0:m), slide(2, m)
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(out) :: jacobian(3, 3)
+    integer, intent(in) :: unknowns(3)               !< steps of the three coordinates
+    integer, intent(in) :: first                     !< first step of the chain
+    integer, intent(in) :: last                      !< last step of the chain
+    integer, intent(in) :: base                      !< frame at which the closure is written
+    integer, intent(in) :: m                         !< number of steps of the plan
+    real(wp), intent(in) :: signs(first:last)        !< of each step in the loop: 1 or -1; 0: not in it
+    real(wp), intent(in) :: per_length               !< one over the mechanism's size [1/m]
+    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
+    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
+    real(wp), intent(out) :: jacobian(3, 3)          !< (equations, coordinates)
     integer :: j, s
 
     do j = 1, 3
@@ -118,49 +129,80 @@ contains
     end do
   end subroutine fill
 
+  !> Rates of the three coordinates and velocities of the frames.
   pure subroutine move(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
-                       last_moved, dq, v, swing)
-    type(planar_chain_type), intent(in) :: chain
-    type(planar_closure_type), intent(in) :: closure
-    integer, intent(in) :: first, last, n_given, given(n_given), m, last_moved
-    real(wp), intent(in) :: signs(first:last), per_length, inverse(3, 3), f(4, 0:m), slide(2, m)
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(inout) :: dq(m), v(3, 0:m)
-    real(wp), intent(out) :: swing(2)               !< as the loop would open if it only kept the velocities
+                       last_moved, dq, v, bias)
+    type(planar_chain_type), intent(in) :: chain       !< the chain
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
+    integer, intent(in) :: first                       !< first step of the chain
+    integer, intent(in) :: last                        !< last step of the chain
+    integer, intent(in) :: n_given                     !< number of given steps
+    integer, intent(in) :: given(n_given)              !< steps of the loop whose coordinates are given
+    integer, intent(in) :: m                           !< number of steps of the plan
+    integer, intent(in) :: last_moved                  !< last frame whose velocity is found
+    real(wp), intent(in) :: signs(first:last)          !< of each step in the loop: 1 or -1; 0: not in it
+    real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
+    real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
+    real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
+    type(planar_step_type), intent(in) :: steps(m)     !< steps of the plan
+    real(wp), intent(inout) :: dq(m)                   !< rates of all coordinates [rad/s, m/s]
+    real(wp), intent(inout) :: v(3, 0:m)               !< velocity of each frame [rad/s, m/s]
+    real(wp), intent(out) :: bias(2)                   !< bias acceleration of the loop, by the steps up to `last_moved` [m/s^2]
     real(wp) :: opening(3)
 
     call stem_difference(m, chain%stems, f(3:4, closure%closing), f, v, opening)
     call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, dq, opening)
     call close_rates(chain, closure, per_length, inverse, m, f, opening, dq)
-    call find_velocities(first, last_moved, signs, m, steps, f, slide, dq, v, swing)
+    call find_velocities(first, last_moved, signs, m, steps, f, slide, dq, v, bias)
   end subroutine move
 
+  !> Accelerations of the three coordinates and of the frames.
   pure subroutine accelerate(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
-                             dq, swing, v, ddq, a)
-    type(planar_chain_type), intent(in) :: chain
-    type(planar_closure_type), intent(in) :: closure
-    integer, intent(in) :: first, last, n_given, given(n_given), m
-    real(wp), intent(in) :: signs(first:last), per_length, inverse(3, 3), f(4, 0:m), slide(2, m)
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(in) :: dq(m), swing(2), v(3, 0:m)
-    real(wp), intent(inout) :: ddq(m), a(3, 0:m)
+                             dq, bias, v, ddq, a)
+    type(planar_chain_type), intent(in) :: chain       !< the chain
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
+    integer, intent(in) :: first                       !< first step of the chain
+    integer, intent(in) :: last                        !< last step of the chain
+    integer, intent(in) :: n_given                     !< number of given steps
+    integer, intent(in) :: given(n_given)              !< steps of the loop whose coordinates are given
+    integer, intent(in) :: m                           !< number of steps of the plan
+    real(wp), intent(in) :: signs(first:last)          !< of each step in the loop: 1 or -1; 0: not in it
+    real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
+    real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
+    real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
+    type(planar_step_type), intent(in) :: steps(m)     !< steps of the plan
+    real(wp), intent(in) :: dq(m)                      !< rates of all coordinates [rad/s, m/s]
+    real(wp), intent(in) :: bias(2)                    !< bias acceleration of the loop [m/s^2]
+    real(wp), intent(in) :: v(3, 0:m)                  !< velocity of each frame [rad/s, m/s]
+    real(wp), intent(inout) :: ddq(m)                  !< accelerations of all coordinates [rad/s^2, m/s^2]
+    real(wp), intent(inout) :: a(3, 0:m)               !< acceleration of each frame [rad/s^2, m/s^2]
     real(wp) :: opening(3)
 
     call stem_difference(m, chain%stems, f(3:4, closure%closing), f, a, opening)
     call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, ddq, opening)
-    ! what the target carries along swings about it
-    opening(2) = opening(2) + swing(1) + v(1, closure%target)**2*(f(3, closure%closing) - f(3, closure%target))
-    opening(3) = opening(3) + swing(2) + v(1, closure%target)**2*(f(4, closure%closing) - f(4, closure%target))
+    ! the target's point at the closing frame's origin has a centripetal acceleration about the target's origin
+    opening(2) = opening(2) + bias(1) + v(1, closure%target)**2*(f(3, closure%closing) - f(3, closure%target))
+    opening(3) = opening(3) + bias(2) + v(1, closure%target)**2*(f(4, closure%closing) - f(4, closure%target))
     call close_rates(chain, closure, per_length, inverse, m, f, opening, ddq)
     call find_accelerations(m, steps, first, chain%last_moved, dq, ddq, f, slide, v, a)
   end subroutine accelerate
 
-  !> Add by how much the given coordinates' rates open the chain at a place: an angle and a way.
+  !> Add the contributions of the given coordinates to the relative motion of the ends of the loop, at a place.
   pure subroutine add_given(n, given, first, last, signs, place, m, steps, f, slide, rates, opening)
-    integer, intent(in) :: n, given(n), first, last, m
-    real(wp), intent(in) :: signs(first:last), place(2), f(4, 0:m), slide(2, m), rates(m)
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(inout) :: opening(3)
+    integer, intent(in) :: n                         !< number of given steps
+    integer, intent(in) :: given(n)                  !< steps of the loop whose coordinates are given
+    integer, intent(in) :: first                     !< first step of the chain
+    integer, intent(in) :: last                      !< last step of the chain
+    integer, intent(in) :: m                         !< number of steps of the plan
+    real(wp), intent(in) :: signs(first:last)        !< of each step in the loop: 1 or -1; 0: not in it
+    real(wp), intent(in) :: place(2)                 !< the place [m]
+    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: rates(m)                 !< rates, or accelerations, of all coordinates
+    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
+    real(wp), intent(inout) :: opening(3)            !< motion of the closing frame relative to the target, at the place
     integer :: i, s
 
     do i = 1, n
@@ -169,13 +211,16 @@ contains
     end do
   end subroutine add_given
 
-  !> The rates of the three coordinates that make up for an opening.
+  !> The rates of the three coordinates that cancel a relative motion of the ends of the loop.
   pure subroutine close_rates(chain, closure, per_length, inverse, m, f, opening, rates)
-    type(planar_chain_type), intent(in) :: chain
-    type(planar_closure_type), intent(in) :: closure
-    integer, intent(in) :: m
-    real(wp), intent(in) :: per_length, inverse(3, 3), f(4, 0:m), opening(3)
-    real(wp), intent(inout) :: rates(m)
+    type(planar_chain_type), intent(in) :: chain       !< the chain
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
+    integer, intent(in) :: m                           !< number of steps of the plan
+    real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
+    real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
+    real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: opening(3)                 !< motion of the closing frame relative to the target, at the closing frame
+    real(wp), intent(inout) :: rates(m)                !< rates, or accelerations, of all coordinates; gets those of the three
     real(wp) :: rows(3)
     integer :: j
 
@@ -185,24 +230,29 @@ contains
     end do
   end subroutine close_rates
 
-  !> Velocities of the frames, and the way in which the loop would open if it only kept them.
-  pure subroutine find_velocities(first, last, signs, m, steps, f, slide, dq, v, swing)
-    integer, intent(in) :: first, last, m
-    real(wp), intent(in) :: signs(first:last), f(4, 0:m), slide(2, m), dq(m)
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(inout) :: v(3, 0:m)
-    real(wp), intent(out) :: swing(2)
+  !> Velocities of the frames, and the bias acceleration of the loop: its centripetal and Coriolis terms.
+  pure subroutine find_velocities(first, last, signs, m, steps, f, slide, dq, v, bias)
+    integer, intent(in) :: first                     !< frames from this one
+    integer, intent(in) :: last                      !< to this one
+    integer, intent(in) :: m                         !< number of steps of the plan
+    real(wp), intent(in) :: signs(first:last)        !< of each step in the loop: 1 or -1; 0: not in it
+    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: dq(m)                    !< rates of all coordinates [rad/s, m/s]
+    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
+    real(wp), intent(inout) :: v(3, 0:m)             !< velocity of each frame [rad/s, m/s]
+    real(wp), intent(out) :: bias(2)                 !< bias acceleration of the loop, by these steps [m/s^2]
     real(wp) :: x, y, rate
     integer :: i, p
 
-    swing = 0.0_wp
+    bias = 0.0_wp
     do i = first, last
       p = steps(i)%parent
       rate = dq(steps(i)%coordinate)
       x = f(3, i) - f(3, p)
       y = f(4, i) - f(4, p)
       call step_velocity(steps(i), rate, x, y, slide(:, i), v(:, p), v(:, i))
-      call add_bias(steps(i), signs(i), rate, x, y, slide(:, i), v(1, p), swing)
+      call add_bias(steps(i), signs(i), rate, x, y, slide(:, i), v(1, p), bias)
     end do
   end subroutine find_velocities
 end module mech9_planar_chain

@@ -1,5 +1,5 @@
-!> Closures in planar arithmetic: three equations each, an angle and two ways in lengths of the mechanism, written at the origin
-!> of the loop's base frame, as in space.
+!> Closures in planar arithmetic: three equations each, for an angle and for two displacements in lengths of the mechanism. They
+!> are written at the origin of the loop's base frame, as in space.
 module mech9_planar_closure
   use mech9_kinds, only: wp
   use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
@@ -23,12 +23,12 @@ module mech9_planar_closure
 
 contains
 
-  !> The angle and the way from the target to the closing frame.
+  !> The residual: the angle and the displacement from the target pose to the closing frame.
   pure subroutine residual(self, plan, state, values)
-    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out), contiguous :: values(:)      !< (3)
+    class(planar_closure_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                         !< the plan of the mechanism
+    type(state_type), intent(in) :: state                       !< with the poses of the frames
+    real(wp), intent(out), contiguous :: values(:)              !< (3) [rad, lengths of the mechanism]
     real(wp) :: error(3)
 
     associate (closure => plan%planar%closures(self%closure), m => size(plan%planar%steps))
@@ -39,14 +39,14 @@ contains
 
   !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
   pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
-    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(loop_type), intent(in) :: loop                 !< the steps
-    integer, intent(in) :: first                        !< earlier steps are left out
-    integer, intent(in), contiguous :: column_of(:)     !< column of step `first` and each later one; 0: none
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: row                          !< before the first row
-    real(wp), intent(inout), contiguous :: matrix(:, :)
+    class(planar_closure_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                         !< the plan of the mechanism
+    type(loop_type), intent(in) :: loop                         !< the steps of the loop
+    integer, intent(in) :: first                                !< earlier steps are left out
+    integer, intent(in), contiguous :: column_of(:)             !< column of step `first` and each later one; 0: none
+    type(state_type), intent(in) :: state                       !< with the poses of the frames
+    integer, intent(in) :: row                                  !< number of rows of `matrix` before those of this constraint
+    real(wp), intent(inout), contiguous :: matrix(:, :)         !< Jacobian of the block; gets three rows
 
     call fill_columns(size(plan%planar%steps), plan%planar%steps, plan%planar%closures(self%closure)%base, &
                       1.0_wp/plan%length, size(loop%steps), loop%steps, loop%signs, first, size(column_of), column_of, &
@@ -55,25 +55,25 @@ contains
 
   !> Derivatives with respect to the coordinate of one step, in its unit.
   pure subroutine column(self, plan, s, sign, state, values)
-    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: s                            !< step
-    real(wp), intent(in) :: sign                        !< of the step in the loop
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out), contiguous :: values(:)      !< (3)
+    class(planar_closure_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                         !< the plan of the mechanism
+    integer, intent(in) :: s                                    !< number of the step
+    real(wp), intent(in) :: sign                                !< of the step in the loop: 1 or -1
+    type(state_type), intent(in) :: state                       !< with the poses of the frames
+    real(wp), intent(out), contiguous :: values(:)              !< (3) [rad, lengths of the mechanism] per unit of the coordinate
 
     call step_column(plan%planar%steps(s), sign, state%planar%pose(:, s), state%planar%slide(:, s), &
                      state%planar%pose(3:4, plan%planar%closures(self%closure)%base), 1.0_wp/plan%length, values)
   end subroutine column
 
-  !> Time derivatives at the rates, or rates and accelerations, in `state`. For the second ones velocities must be known of all
-  !> frames of the loop.
+  !> First or second time derivatives at the rates, or rates and accelerations, in `state`. The second derivatives need the
+  !> velocities of all frames of the loop.
   pure subroutine rates(self, plan, order, state, values)
-    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: order                        !< 1 or 2
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out), contiguous :: values(:)      !< (3)
+    class(planar_closure_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                         !< the plan of the mechanism
+    integer, intent(in) :: order                                !< 1: first derivatives, 2: second derivatives
+    type(state_type), intent(in) :: state                       !< with the motion of the frames
+    real(wp), intent(out), contiguous :: values(:)              !< (3) [rad, lengths of the mechanism; per s or s^2]
     real(wp) :: opening(3)
 
     associate (closure => plan%planar%closures(self%closure), part => plan%closures(self%closure)%part, &
@@ -84,32 +84,33 @@ contains
       else
         call sum_rates(closure, size(steps), steps, size(part%steps), part%steps, part%signs, part%stems, state%ddq, &
                        motion%pose, motion%slide, motion%acceleration, opening)
-        call sum_swing(closure, size(steps), steps, size(part%steps), part%steps, part%signs, state%dq, motion%pose, &
+        call sum_bias(closure, size(steps), steps, size(part%steps), part%steps, part%signs, state%dq, motion%pose, &
                        motion%slide, motion%velocity, opening)
       end if
       call rows_at_base(closure, 1.0_wp/plan%length, size(steps), motion%pose, opening, values)
     end associate
   end subroutine rates
 
-  !> How far the closure is from closed: a length [m], its angle times the mechanism's size.
+  !> The gap of the closure, a length [m]: the larger of its distance and its angle times the mechanism's size.
   pure real(wp) function gap(self, plan, state)
-    class(planar_closure_constraint_type), intent(in) :: self   !< the planar closure constraint
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
+    class(planar_closure_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                         !< the plan of the mechanism
+    type(state_type), intent(in) :: state                       !< with the poses of the frames
     real(wp) :: error(3)
 
     call find_error(plan%planar%closures(self%closure), size(plan%planar%steps), state%planar%pose, error)
     gap = max(sqrt(error(2)**2 + error(3)**2), plan%length*abs(error(1)))
   end function gap
 
-  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+  ! The following procedures take arrays of known shape beside their types, so that the compiler keeps their addresses in
+  ! registers.
 
-  !> The angle and the way from the target to the closing frame.
+  !> The angle and the displacement from the target pose to the closing frame.
   pure subroutine find_error(closure, m, f, error)
-    type(planar_closure_type), intent(in) :: closure
-    integer, intent(in) :: m                            !< steps
-    real(wp), intent(in) :: f(4, 0:m)                   !< poses of the frames [m]
-    real(wp), intent(out) :: error(3)                   !< [rad, m, m]
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
+    integer, intent(in) :: m                           !< steps
+    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(out) :: error(3)                  !< from the target pose to the closing frame [rad, m, m]
     real(wp) :: c, s
     integer :: i, t
 
@@ -122,10 +123,10 @@ contains
     error(3) = f(4, i) - f(4, t) - (f(2, t)*closure%place(1) + f(1, t)*closure%place(2))
   end subroutine find_error
 
-  !> The angle with a given cosine and sine; small ones by the series of the arc sine.
+  !> The angle with a given cosine and sine; a small angle is found by the series of the arc sine.
   pure real(wp) function angle_of(c, s) result(angle)
-    real(wp), intent(in) :: c                           !< cosine
-    real(wp), intent(in) :: s                           !< sine
+    real(wp), intent(in) :: c   !< cosine
+    real(wp), intent(in) :: s   !< sine
 
     if (c > 0.0_wp .and. abs(s) < 1.0e-2_wp) then
       angle = s*(1.0_wp + s**2*(1.0_wp/6.0_wp + s**2*(3.0_wp/40.0_wp + s**2*(5.0_wp/112.0_wp))))
@@ -134,25 +135,25 @@ contains
     end if
   end function angle_of
 
-  !> Columns of the Jacobian, see `jacobian`.
+  !> Derivatives of a closure's equations with respect to the coordinates of steps of a loop, from plain arrays.
   pure subroutine fill_columns(k, flat, base, per_length, n_steps, steps, signs, first, n_columns, column_of, f, slide, &
                                m, n, row, matrix)
-    integer, intent(in) :: k                            !< steps of the plan
-    type(planar_step_type), intent(in) :: flat(k)
-    integer, intent(in) :: base                         !< frame at which the closure is written
-    real(wp), intent(in) :: per_length                  !< one over the mechanism's size [1/m]
-    integer, intent(in) :: n_steps                      !< of the loop
-    integer, intent(in) :: steps(n_steps)
-    real(wp), intent(in) :: signs(n_steps)              !< of the steps in the loop
-    integer, intent(in) :: first                        !< earlier steps are left out
-    integer, intent(in) :: n_columns                    !< steps from `first` on
-    integer, intent(in) :: column_of(n_columns)         !< column of each of these; 0: none
-    real(wp), intent(in) :: f(4, 0:k)                   !< poses of the frames [m]
-    real(wp), intent(in) :: slide(2, k)                 !< velocities of the origins per unit rate
-    integer, intent(in) :: m                            !< rows
-    integer, intent(in) :: n                            !< columns
-    integer, intent(in) :: row                          !< before the first row
-    real(wp), intent(inout) :: matrix(m, n)
+    integer, intent(in) :: k                        !< number of steps of the plan
+    type(planar_step_type), intent(in) :: flat(k)   !< steps of the plan
+    integer, intent(in) :: base                     !< frame at which the closure is written
+    real(wp), intent(in) :: per_length              !< one over the mechanism's size [1/m]
+    integer, intent(in) :: n_steps                  !< number of steps of the loop
+    integer, intent(in) :: steps(n_steps)           !< steps of the loop
+    real(wp), intent(in) :: signs(n_steps)          !< of the steps in the loop: 1 or -1
+    integer, intent(in) :: first                    !< earlier steps are left out
+    integer, intent(in) :: n_columns                !< number of steps from `first` on
+    integer, intent(in) :: column_of(n_columns)     !< column of each of these; 0: none
+    real(wp), intent(in) :: f(4, 0:k)               !< poses of the frames [m]
+    real(wp), intent(in) :: slide(2, k)             !< velocity of each frame's origin per unit rate
+    integer, intent(in) :: m                        !< number of rows of the matrix
+    integer, intent(in) :: n                        !< number of columns of the matrix
+    integer, intent(in) :: row                      !< number of rows before those of this closure
+    real(wp), intent(inout) :: matrix(m, n)         !< gets three rows
     integer :: i, j, s
 
     do i = 1, n_steps
@@ -164,21 +165,21 @@ contains
     end do
   end subroutine fill_columns
 
-  !> Motion of the closing frame relative to the target, at the closing frame's origin, that rates (or accelerations) of the
-  !> coordinates in the closure's part give, and the frames at which that begins.
+  !> Motion of the closing frame relative to the target, at the closing frame's origin. It results from the rates (or
+  !> accelerations) of the coordinates in the closure's part, and from the motion of the frames at which this part begins.
   pure subroutine sum_rates(closure, m, flat, n_steps, steps, signs, stems, rates, f, slide, v, opening)
-    type(planar_closure_type), intent(in) :: closure
-    integer, intent(in) :: m                            !< steps of the plan
-    type(planar_step_type), intent(in) :: flat(m)
-    integer, intent(in) :: n_steps                      !< of the part
-    integer, intent(in) :: steps(n_steps)
-    real(wp), intent(in) :: signs(n_steps)              !< of the steps in the loop
-    integer, intent(in) :: stems(2)                     !< frames at which the part begins
-    real(wp), intent(in) :: rates(m)                    !< of the coordinates
-    real(wp), intent(in) :: f(4, 0:m)                   !< poses of the frames [m]
-    real(wp), intent(in) :: slide(2, m)                 !< velocities of the origins per unit rate
-    real(wp), intent(in) :: v(3, 0:m)                   !< motions of the frames
-    real(wp), intent(out) :: opening(3)
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
+    integer, intent(in) :: m                           !< number of steps of the plan
+    type(planar_step_type), intent(in) :: flat(m)      !< steps of the plan
+    integer, intent(in) :: n_steps                     !< number of steps of the part
+    integer, intent(in) :: steps(n_steps)              !< steps of the part
+    real(wp), intent(in) :: signs(n_steps)             !< of these steps in the loop: 1 or -1
+    integer, intent(in) :: stems(2)                    !< frames at which the two branches of the part begin
+    real(wp), intent(in) :: rates(m)                   !< rates, or accelerations, of the coordinates
+    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: v(3, 0:m)                  !< velocities, or accelerations, of the frames
+    real(wp), intent(out) :: opening(3)                !< relative motion of the closing frame
     integer :: i, s
 
     call stem_difference(m, stems, f(3:4, closure%closing), f, v, opening)
@@ -188,19 +189,20 @@ contains
     end do
   end subroutine sum_rates
 
-  !> Add the accelerations that velocities give: of the steps in the closure's part, and of the target that turns.
-  pure subroutine sum_swing(closure, m, flat, n_steps, steps, signs, dq, f, slide, v, opening)
-    type(planar_closure_type), intent(in) :: closure
-    integer, intent(in) :: m                            !< steps of the plan
-    type(planar_step_type), intent(in) :: flat(m)
-    integer, intent(in) :: n_steps                      !< of the part
-    integer, intent(in) :: steps(n_steps)
-    real(wp), intent(in) :: signs(n_steps)              !< of the steps in the loop
-    real(wp), intent(in) :: dq(m)                       !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: f(4, 0:m)                   !< poses of the frames [m]
-    real(wp), intent(in) :: slide(2, m)                 !< velocities of the origins per unit rate
-    real(wp), intent(in) :: v(3, 0:m)                   !< velocities of the frames [rad/s, m/s]
-    real(wp), intent(inout) :: opening(3)               !< [rad/s^2, m/s^2]
+  !> Add the bias acceleration: the centripetal and Coriolis terms of the steps in the closure's part, and the centripetal term
+  !> of the target.
+  pure subroutine sum_bias(closure, m, flat, n_steps, steps, signs, dq, f, slide, v, opening)
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
+    integer, intent(in) :: m                           !< number of steps of the plan
+    type(planar_step_type), intent(in) :: flat(m)      !< steps of the plan
+    integer, intent(in) :: n_steps                     !< number of steps of the part
+    integer, intent(in) :: steps(n_steps)              !< steps of the part
+    real(wp), intent(in) :: signs(n_steps)             !< of these steps in the loop: 1 or -1
+    real(wp), intent(in) :: dq(m)                      !< rates of the coordinates [rad/s, m/s]
+    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: v(3, 0:m)                  !< velocities of the frames [rad/s, m/s]
+    real(wp), intent(inout) :: opening(3)              !< relative acceleration of the closing frame [rad/s^2, m/s^2]
     integer :: i, s, p
 
     do i = 1, n_steps
@@ -210,15 +212,15 @@ contains
                      opening(2:3))
     end do
     opening(2:3) = opening(2:3) + v(1, closure%target)**2*(f(3:4, closure%closing) - f(3:4, closure%target))
-  end subroutine sum_swing
+  end subroutine sum_bias
 
   !> Second time derivatives of the closures first .. last, from the accelerations of their frames.
   pure subroutine planar_bias_rates(planar, first, last, motion, rates)
-    type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: first                        !< closure
-    integer, intent(in) :: last                         !< closure
-    type(planar_motion_type), intent(in) :: motion
-    real(wp), intent(out) :: rates(3, first:last)
+    type(planar_plan_type), intent(in) :: planar     !< the plan in planar arithmetic
+    integer, intent(in) :: first                     !< first closure
+    integer, intent(in) :: last                      !< last closure
+    type(planar_motion_type), intent(in) :: motion   !< poses, velocities and accelerations of the frames
+    real(wp), intent(out) :: rates(3, first:last)    !< (equations, closures) [rad/s^2, lengths of the mechanism/s^2]
     integer :: c
 
     do c = first, last
@@ -229,29 +231,30 @@ contains
     end do
   end subroutine planar_bias_rates
 
-  !> Rows of the difference of two velocities: that of the closing frame less the one that the target carries along there.
+  !> The three equations of a closure for a given difference of velocities: that of the closing frame less that of the target's
+  !> point at the same place.
   pure subroutine planar_difference(planar, c, motion, closing, target, rows)
-    type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: c                            !< closure
-    type(planar_motion_type), intent(in) :: motion
-    real(wp), intent(in) :: closing(3)                  !< angular velocity, and velocity of the frame's own origin
-    real(wp), intent(in) :: target(3)                   !< the same of the target
-    real(wp), intent(out) :: rows(3)
+    type(planar_plan_type), intent(in) :: planar     !< the plan in planar arithmetic
+    integer, intent(in) :: c                         !< number of the closure
+    type(planar_motion_type), intent(in) :: motion   !< with the poses of the frames
+    real(wp), intent(in) :: closing(3)               !< angular velocity of the closing frame, and velocity of its origin
+    real(wp), intent(in) :: target(3)                !< angular velocity of the target, and velocity of its origin
+    real(wp), intent(out) :: rows(3)                 !< the difference, translations in lengths of the mechanism
 
     call find_difference(planar%closures(c), 1.0_wp/planar%length, size(planar%steps), motion%pose, closing, target, &
                          0.0_wp, rows)
   end subroutine planar_difference
 
-  !> Rows of the difference of two motions.
+  !> The three equations of a closure for the motion of the closing frame less that of the target's point at the same place.
   pure subroutine find_difference(closure, per_length, m, f, closing, target, square, rows)
-    type(planar_closure_type), intent(in) :: closure
-    real(wp), intent(in) :: per_length                  !< one over the mechanism's size [1/m]
-    integer, intent(in) :: m                            !< steps
-    real(wp), intent(in) :: f(4, 0:m)                   !< poses of the frames [m]
-    real(wp), intent(in) :: closing(3)                  !< motion of the closing frame
-    real(wp), intent(in) :: target(3)                   !< motion of the target
-    real(wp), intent(in) :: square                      !< of the target's angular velocity, between accelerations
-    real(wp), intent(out) :: rows(3)
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
+    real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
+    integer, intent(in) :: m                           !< number of steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(in) :: closing(3)                 !< motion of the closing frame: angular, and of its origin
+    real(wp), intent(in) :: target(3)                  !< motion of the target: angular, and of its origin
+    real(wp), intent(in) :: square                     !< squared angular velocity of the target if these are accelerations, else 0
+    real(wp), intent(out) :: rows(3)                   !< the difference, translations in lengths of the mechanism
     real(wp) :: x, y
 
     x = f(3, closure%closing) - f(3, closure%target)

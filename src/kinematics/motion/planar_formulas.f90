@@ -141,7 +141,7 @@ contains
 
   !> The three equations of a closure, from a motion that is given at the origin of its closing frame.
   pure subroutine rows_at_base(closure, per_length, m, f, motion, rows)
-    type(planar_closure_type), intent(in) :: closure   !< pose of the closing frame in the target frame
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
     real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
     integer, intent(in) :: m                           !< number of steps of the plan
     real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]

@@ -1,7 +1,7 @@
-!> Planar arithmetic: poses, velocities and accelerations of frames that keep one normal, and how these look in space.
+!> The motion of frames that keep one normal: poses, velocities and accelerations in the plane, and the conversion of vectors.
 !>
-!> A pose is (cosine, sine, x, y) in frame 0 of the plane; a velocity is the angular velocity about the
-!> normal and the velocity of the frame's origin, an acceleration likewise.
+!> A pose is (cosine, sine, x, y) in the plane's axes, from the origin of frame 0. A velocity is the angular velocity about the
+!> normal and the velocity of the frame's origin; an acceleration is the angular acceleration and that of the origin.
 module mech9_planar_motion
   use mech9_kinds, only: wp
   use mech9_sine_cosine, only: cosines_and_sines
@@ -16,9 +16,9 @@ module mech9_planar_motion
 
 contains
 
-  !> Room for frames 0 .. m, all at rest and in place of frame 0.
+  !> Room for frames 0 .. m, all at rest and in the place of frame 0.
   pure function new_planar_motion(m) result(motion)
-    integer, intent(in) :: m
+    integer, intent(in) :: m   !< number of steps
     type(planar_motion_type) :: motion
 
     allocate (motion%pose(4, 0:m), motion%angle(m), motion%turn(2, m), motion%slide(2, m), source=0.0_wp)
@@ -29,24 +29,27 @@ contains
 
   !> Poses of the frames first .. last.
   pure subroutine place_in_plane(planar, first, last, q, motion)
-    type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: first, last
-    real(wp), intent(in), contiguous :: q(:)      !< (M)
-    type(planar_motion_type), intent(inout) :: motion
+    type(planar_plan_type), intent(in) :: planar        !< the plan in planar arithmetic
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    real(wp), intent(in), contiguous :: q(:)            !< (M) coordinates [rad, m]
+    type(planar_motion_type), intent(inout) :: motion   !< gets the angles, poses and slides of these frames
 
     call find_angles(size(q), planar%steps, first, last, q, motion%angle)
     call cosines_and_sines(last - first + 1, motion%angle(first:last), motion%turn(:, first:last))
     call place(size(q), planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
   end subroutine place_in_plane
 
-  !> The same after a small change of some coordinates: their angles are turned on, not computed anew.
+  !> Poses of the frames first .. last after a small change of some coordinates. The cosines and sines of their angles are
+  !> corrected to second order and not computed anew.
   pure subroutine change_in_plane(planar, first, last, changed, change, q, motion)
-    type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: first, last
-    integer, intent(in) :: changed(:)             !< steps
-    real(wp), intent(in) :: change(:)             !< of their coordinates
-    real(wp), intent(in), contiguous :: q(:)      !< (M) all coordinates afterwards
-    type(planar_motion_type), intent(inout) :: motion
+    type(planar_plan_type), intent(in) :: planar        !< the plan in planar arithmetic
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    integer, intent(in) :: changed(:)                   !< steps whose coordinates have changed
+    real(wp), intent(in) :: change(:)                   !< changes of their coordinates; of turns [rad]
+    real(wp), intent(in), contiguous :: q(:)            !< (M) coordinates after the change [rad, m]
+    type(planar_motion_type), intent(inout) :: motion   !< gets the poses and slides of these frames
     integer :: i
 
     do i = 1, size(changed)
@@ -56,13 +59,16 @@ contains
     call place(size(q), planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
   end subroutine change_in_plane
 
-  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+  ! The next two procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
 
+  !> The angles by which the steps first .. last turn.
   pure subroutine find_angles(m, steps, first, last, q, angles)
-    integer, intent(in) :: m, first, last
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(in) :: q(m)
-    real(wp), intent(inout) :: angles(m)
+    integer, intent(in) :: m                         !< number of steps of the plan
+    integer, intent(in) :: first                     !< steps from this one
+    integer, intent(in) :: last                      !< to this one
+    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
+    real(wp), intent(in) :: q(m)                     !< (M) coordinates [rad, m]
+    real(wp), intent(inout) :: angles(m)             !< angle by which each step turns [rad]
     integer :: i
 
     do i = first, last
@@ -70,11 +76,16 @@ contains
     end do
   end subroutine find_angles
 
+  !> Poses of the frames first .. last from the cosines and sines of their steps, from plain arrays.
   pure subroutine place(m, steps, first, last, q, cs, f, slide)
-    integer, intent(in) :: m, first, last
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(in) :: q(m), cs(2, m)
-    real(wp), intent(inout) :: f(4, 0:m), slide(2, m)
+    integer, intent(in) :: m                         !< number of steps of the plan
+    integer, intent(in) :: first                     !< frames from this one
+    integer, intent(in) :: last                      !< to this one
+    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
+    real(wp), intent(in) :: q(m)                     !< (M) coordinates [rad, m]
+    real(wp), intent(in) :: cs(2, m)                 !< cosine and sine of the angle by which each step turns
+    real(wp), intent(inout) :: f(4, 0:m)             !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(inout) :: slide(2, m)           !< velocity of each frame's origin per unit rate
     real(wp) :: x, y, cp, sp
     integer :: i, p
 
@@ -102,19 +113,25 @@ contains
 
   !> Velocities of the frames first .. last.
   pure subroutine planar_velocities(planar, first, last, dq, motion)
-    type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: first, last
-    real(wp), intent(in), contiguous :: dq(:)     !< (M)
-    type(planar_motion_type), intent(inout) :: motion
+    type(planar_plan_type), intent(in) :: planar        !< the plan in planar arithmetic
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    real(wp), intent(in), contiguous :: dq(:)           !< (M) rates [rad/s, m/s]
+    type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities of these frames out
 
     call find_velocities(size(dq), planar%steps, first, last, dq, motion%pose, motion%slide, motion%velocity)
   end subroutine planar_velocities
 
+  !> Velocities of the frames first .. last, from plain arrays.
   pure subroutine find_velocities(m, steps, first, last, dq, f, slide, v)
-    integer, intent(in) :: m, first, last
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(in) :: dq(m), f(4, 0:m), slide(2, m)
-    real(wp), intent(inout) :: v(3, 0:m)
+    integer, intent(in) :: m                         !< number of steps of the plan
+    integer, intent(in) :: first                     !< frames from this one
+    integer, intent(in) :: last                      !< to this one
+    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
+    real(wp), intent(in) :: dq(m)                    !< (M) rates [rad/s, m/s]
+    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
+    real(wp), intent(inout) :: v(3, 0:m)             !< velocity of each frame [rad/s, m/s]
     integer :: i, p
 
     do i = first, last
@@ -125,21 +142,29 @@ contains
 
   !> Accelerations of the frames first .. last.
   pure subroutine planar_accelerations(planar, first, last, dq, ddq, motion)
-    type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: first, last
-    real(wp), intent(in), contiguous :: dq(:), ddq(:)   !< (M)
-    type(planar_motion_type), intent(inout) :: motion
+    type(planar_plan_type), intent(in) :: planar        !< the plan in planar arithmetic
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    real(wp), intent(in), contiguous :: dq(:)           !< (M) rates [rad/s, m/s]
+    real(wp), intent(in), contiguous :: ddq(:)          !< (M) accelerations [rad/s^2, m/s^2]
+    type(planar_motion_type), intent(inout) :: motion   !< poses and velocities in; accelerations of these frames out
 
     call find_accelerations(size(dq), planar%steps, first, last, dq, ddq, motion%pose, motion%slide, &
                             motion%velocity, motion%acceleration)
   end subroutine planar_accelerations
 
-  !> The same from plain arrays.
+  !> Accelerations of the frames first .. last, from plain arrays.
   pure subroutine find_accelerations(m, steps, first, last, dq, ddq, f, slide, v, a)
-    integer, intent(in) :: m, first, last
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(in) :: dq(m), ddq(m), f(4, 0:m), slide(2, m), v(3, 0:m)
-    real(wp), intent(inout) :: a(3, 0:m)
+    integer, intent(in) :: m                         !< number of steps of the plan
+    integer, intent(in) :: first                     !< frames from this one
+    integer, intent(in) :: last                      !< to this one
+    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
+    real(wp), intent(in) :: dq(m)                    !< (M) rates [rad/s, m/s]
+    real(wp), intent(in) :: ddq(m)                   !< (M) accelerations [rad/s^2, m/s^2]
+    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: v(3, 0:m)                !< velocity of each frame [rad/s, m/s]
+    real(wp), intent(inout) :: a(3, 0:m)             !< acceleration of each frame [rad/s^2, m/s^2]
     integer :: i, p
 
     do i = first, last
@@ -149,10 +174,12 @@ contains
     end do
   end subroutine find_accelerations
 
-  !> A vector in the plane's axes, given by its part in the plane and that along the normal, in the axes of frame 0.
+  !> A vector in the axes of frame 0, from its components in the plane's axes.
   pure function to_space(planar, x, y, z) result(vector)
-    type(planar_plan_type), intent(in) :: planar
-    real(wp), intent(in) :: x, y, z
+    type(planar_plan_type), intent(in) :: planar   !< the plan in planar arithmetic
+    real(wp), intent(in) :: x                      !< component along the plane's first axis
+    real(wp), intent(in) :: y                      !< component along the plane's second axis
+    real(wp), intent(in) :: z                      !< component along the normal
     real(wp) :: vector(3)
 
     if (planar%in_xy_plane) then
@@ -164,10 +191,10 @@ contains
     end if
   end function to_space
 
-  !> A vector in the axes of frame 0, in those of the plane.
+  !> A vector in the plane's axes, from its components in the axes of frame 0.
   pure function to_plane(planar, vector) result(seen)
-    type(planar_plan_type), intent(in) :: planar
-    real(wp), intent(in) :: vector(3)
+    type(planar_plan_type), intent(in) :: planar   !< the plan in planar arithmetic
+    real(wp), intent(in) :: vector(3)              !< components in the axes of frame 0
     real(wp) :: seen(3)
 
     seen = vector

@@ -1,9 +1,9 @@
 !> Closures in space, (12): the screw of the error pose, in independent equations.
 !>
-!> The twelve scalars of (12) hold at most six independent ones. They are replaced by the screw of the error pose: the rotation
-!> vector that turns the target onto the closing frame, and the distance between the two. The screw is written at the base
-!> frame of the loop, where the space of motions of the loop is constant, and the closure's constant rows pick its independent
-!> components.
+!> At most six of the twelve scalar equations of (12) are independent. They are replaced by the screw of the error pose: the
+!> rotation vector that turns the target pose onto the closing frame, and the displacement between the two. The screw is written
+!> at the base frame of the loop, where the space of motions of the loop is constant, and the closure's constant rows select its
+!> independent components.
 module mech9_spatial_closure
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back, combine, cross, rotation_vector
@@ -26,12 +26,12 @@ module mech9_spatial_closure
 
 contains
 
-  !> The independent components of the error pose's screw.
+  !> The residual: the independent components of the screw of the error pose.
   pure subroutine residual(self, plan, state, values)
-    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out), contiguous :: values(:)     !< (equations)
+    class(spatial_closure_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    type(state_type), intent(in) :: state             !< with the poses of the frames
+    real(wp), intent(out), contiguous :: values(:)    !< (equations) [rad, lengths of the mechanism]
     real(wp) :: w(3), v(3), place(3)
 
     call error_screw(plan%closures(self%closure), state, w, v, place)
@@ -40,14 +40,14 @@ contains
 
   !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
   pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
-    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(loop_type), intent(in) :: loop           !< the steps
-    integer, intent(in) :: first                  !< earlier steps are left out
-    integer, intent(in), contiguous :: column_of(:)     !< column of step `first` and each later one; 0: none
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: row                    !< before the first row
-    real(wp), intent(inout), contiguous :: matrix(:, :)
+    class(spatial_closure_type), intent(in) :: self       !< the constraint
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(loop_type), intent(in) :: loop                   !< the steps of the loop
+    integer, intent(in) :: first                          !< earlier steps are left out
+    integer, intent(in), contiguous :: column_of(:)       !< column of step `first` and each later one; 0: none
+    type(state_type), intent(in) :: state                 !< with the poses of the frames and the screws of the steps
+    integer, intent(in) :: row                            !< number of rows of `matrix` before those of this constraint
+    real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of the block; gets the rows of this closure
     integer :: i, s
 
     do i = 1, size(loop%steps)
@@ -60,12 +60,12 @@ contains
 
   !> Derivatives with respect to the coordinate of one step, in its unit.
   pure subroutine column(self, plan, s, sign, state, values)
-    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: s                      !< step
-    real(wp), intent(in) :: sign                  !< of the step in the loop
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out), contiguous :: values(:)     !< (equations)
+    class(spatial_closure_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    integer, intent(in) :: s                          !< number of the step
+    real(wp), intent(in) :: sign                      !< of the step in the loop: 1 or -1
+    type(state_type), intent(in) :: state             !< with the poses of the frames and the screws of the steps
+    real(wp), intent(out), contiguous :: values(:)    !< (equations) [rad, lengths of the mechanism] per unit of the coordinate
     real(wp) :: arm(3), w(3), v(3), unit
 
     associate (place => state%p(:, plan%closures(self%closure)%closing))
@@ -77,14 +77,15 @@ contains
     end associate
   end subroutine column
 
-  !> Time derivatives at the rates, or rates and accelerations, in `state`. The frames of earlier blocks must move as these say;
-  !> of its own frames no accelerations are needed, and no velocities for the first derivatives.
+  !> First or second time derivatives at the rates, or rates and accelerations, in `state`. The motion of the frames of earlier
+  !> blocks must agree with these rates. Accelerations of the block's own frames are not used, nor are their velocities for the
+  !> first derivatives.
   pure subroutine rates(self, plan, order, state, values)
-    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: order                  !< 1 or 2
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out), contiguous :: values(:)     !< (equations)
+    class(spatial_closure_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    integer, intent(in) :: order                      !< 1: first derivatives, 2: second derivatives
+    type(state_type), intent(in) :: state             !< with the motion of the frames
+    real(wp), intent(out), contiguous :: values(:)    !< (equations) [rad, lengths of the mechanism; per s or s^2]
     real(wp) :: w(3), v(3)
 
     associate (closure => plan%closures(self%closure))
@@ -97,11 +98,12 @@ contains
     end associate
   end subroutine rates
 
-  !> How far the closure is from closed, all six components: a length [m], rotations times the mechanism's size.
+  !> The gap of the closure, a length [m]: the larger of its distance and its angle times the mechanism's size. Redundant
+  !> components are included.
   pure real(wp) function gap(self, plan, state)
-    class(spatial_closure_type), intent(in) :: self   !< the spatial closure
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
+    class(spatial_closure_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    type(state_type), intent(in) :: state             !< with the poses of the frames
     real(wp) :: w(3), v(3), place(3)
 
     call error_screw(plan%closures(self%closure), state, w, v, place)
@@ -110,11 +112,11 @@ contains
 
   !> Velocity of the closing frame relative to the target, from the rates of the coordinates in the closure's part.
   pure subroutine opening_velocity(plan, closure, state, w, v)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out) :: w(3)                 !< relative angular motion, axes of frame 0
-    real(wp), intent(out) :: v(3)                 !< relative motion at the closing frame's origin, axes of frame 0
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    type(closure_type), intent(in) :: closure   !< the closure
+    type(state_type), intent(in) :: state       !< with the rates, and the velocities of the frames of earlier blocks
+    real(wp), intent(out) :: w(3)               !< relative angular velocity, in the axes of frame 0 [rad/s]
+    real(wp), intent(out) :: v(3)               !< relative velocity at the closing frame's origin, in the axes of frame 0 [m/s]
     real(wp) :: place(3), arm(3), spin(3), rate
     integer :: i, s
 
@@ -131,16 +133,16 @@ contains
     end do
   end subroutine opening_velocity
 
-  !> Difference at a place between the motions that the two frames carry along at which the part of a loop begins: of their
-  !> velocities, or of accelerations without those of turning on.
+  !> Difference at a place between the motions of the two bodies on whose frames the part of a loop begins: of the velocities, or
+  !> of the accelerations without their centripetal terms.
   pure subroutine stem_difference(closure, place, p, omega, v_frame, w, v)
-    type(closure_type), intent(in) :: closure
-    real(wp), intent(in) :: place(3)              !< [m]
-    real(wp), intent(in) :: p(:, 0:)              !< origins of the frames [m]
-    real(wp), intent(in) :: omega(:, 0:)          !< their angular velocities or accelerations
-    real(wp), intent(in) :: v_frame(:, 0:)        !< velocities or accelerations of their origins
-    real(wp), intent(out) :: w(3)                 !< difference of the angular ones
-    real(wp), intent(out) :: v(3)                 !< difference at the place
+    type(closure_type), intent(in) :: closure   !< the closure
+    real(wp), intent(in) :: place(3)            !< from the origin of frame 0, in its axes [m]
+    real(wp), intent(in) :: p(:, 0:)            !< origins of the frames [m]
+    real(wp), intent(in) :: omega(:, 0:)        !< angular velocities, or accelerations, of the frames
+    real(wp), intent(in) :: v_frame(:, 0:)      !< velocities or accelerations of their origins
+    real(wp), intent(out) :: w(3)               !< difference of the angular velocities, or accelerations
+    real(wp), intent(out) :: v(3)               !< difference of the velocities, or accelerations, at the place
     real(wp) :: arm(3)
     integer :: f, g
 
@@ -156,13 +158,14 @@ contains
     w = omega(:, f) - omega(:, g)
   end subroutine stem_difference
 
-  !> Acceleration of the closing frame relative to the target, from the rates and accelerations in the closure's part.
+  !> Acceleration of the closing frame relative to the target, from the rates and accelerations of the coordinates in the
+  !> closure's part.
   pure subroutine opening_acceleration(plan, closure, state, w, v)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out) :: w(3)                 !< relative angular motion, axes of frame 0
-    real(wp), intent(out) :: v(3)                 !< relative motion at the closing frame's origin, axes of frame 0
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    type(closure_type), intent(in) :: closure   !< the closure
+    type(state_type), intent(in) :: state       !< with rates, accelerations and velocities of frames
+    real(wp), intent(out) :: w(3)               !< relative angular acceleration, in the axes of frame 0 [rad/s^2]
+    real(wp), intent(out) :: v(3)   !< relative acceleration at the closing frame's origin, in the axes of frame 0 [m/s^2]
     real(wp) :: place(3), arm(3), spin(3), slip(3), rate, acceleration
     integer :: i, s, f
 
@@ -192,13 +195,13 @@ contains
     v = v - cross(state%omega(:, f), slip)
   end subroutine opening_acceleration
 
-  !> Error pose of a closure as a screw at the closing frame's origin, in the axes of frame 0.
+  !> The error pose of a closure as a screw at the closing frame's origin, in the axes of frame 0.
   pure subroutine error_screw(closure, state, w, v, place)
-    type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(out) :: w(3)                 !< rotation vector from the target to the closing frame [rad]
-    real(wp), intent(out) :: v(3)                 !< from the target's place to the closing frame [m]
-    real(wp), intent(out) :: place(3)             !< the closing frame's origin [m]
+    type(closure_type), intent(in) :: closure   !< the closure
+    type(state_type), intent(in) :: state       !< with the poses of the frames
+    real(wp), intent(out) :: w(3)   !< rotation vector from the target pose to the closing frame, in the axes of frame 0 [rad]
+    real(wp), intent(out) :: v(3)   !< from the target pose's origin to that of the closing frame, in the axes of frame 0 [m]
+    real(wp), intent(out) :: place(3)           !< the closing frame's origin, from that of frame 0 [m]
     real(wp) :: r_target(3, 3), r_error(3, 3)
     integer :: i
 
@@ -215,13 +218,13 @@ contains
 
   !> The independent components of a screw that is given at `place` in the axes of frame 0.
   pure subroutine reduced_screw(plan, closure, state, w, v, place, components)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(in) :: w(3)                  !< angular part [rad]
-    real(wp), intent(in) :: v(3)                  !< part of the place [m]
-    real(wp), intent(in) :: place(3)              !< [m]
-    real(wp), intent(out) :: components(:)        !< (rank), rotations in rad, translations in lengths of the mechanism
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    type(closure_type), intent(in) :: closure   !< the closure
+    type(state_type), intent(in) :: state       !< with the poses of the frames
+    real(wp), intent(in) :: w(3)                !< angular part [rad], or its derivative
+    real(wp), intent(in) :: v(3)                !< translation of the place [m], or its derivative
+    real(wp), intent(in) :: place(3)            !< from the origin of frame 0 [m]
+    real(wp), intent(out) :: components(:)      !< (rank) [rad, lengths of the mechanism], or derivatives of these
     real(wp) :: screw(6)
     integer :: i
 
@@ -236,14 +239,15 @@ contains
     end do
   end subroutine reduced_screw
 
-  !> A screw given at `place` in the axes of frame 0, moved to the base frame of a loop, lengths scaled.
+  !> A screw given at `place` in the axes of frame 0, moved to the base frame of a loop; lengths are divided by the mechanism's
+  !> length.
   pure function loop_screw(plan, closure, state, w, v, place) result(screw)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(closure_type), intent(in) :: closure
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(in) :: w(3)                  !< angular part [rad]
-    real(wp), intent(in) :: v(3)                  !< part of the place [m]
-    real(wp), intent(in) :: place(3)              !< [m]
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    type(closure_type), intent(in) :: closure   !< the closure
+    type(state_type), intent(in) :: state       !< with the poses of the frames
+    real(wp), intent(in) :: w(3)                !< angular part [rad], or its derivative
+    real(wp), intent(in) :: v(3)                !< translation of the place [m], or its derivative
+    real(wp), intent(in) :: place(3)            !< from the origin of frame 0 [m]
     real(wp) :: screw(6), v_base(3), arm(3)
 
     arm = state%p(:, closure%base) - place
