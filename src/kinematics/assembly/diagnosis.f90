@@ -1,4 +1,4 @@
-!> Why a choice of independent coordinates cannot serve, and which choices would.
+!> The diagnosis of a choice of independent coordinates that cannot serve, with choices that can.
 module mech9_diagnosis
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
@@ -15,32 +15,31 @@ module mech9_diagnosis
   private
   public :: judge_choice, refuse_open, refuse_undetermined, refuse_locked
 
-  !> Coordinates that are this near the start again, in their units, after a change of all of them have
-  !> come back. Round-off of a closure moves coordinates of a singular position by its root.
-  real(wp), parameter :: comes_back = 1.0e-4_wp
-  !> Part in the motions of length one from which a coordinate would not come back by chance.
-  real(wp), parameter :: seems_to_move = 1.0e-2_wp
+  !> A coordinate that differs from the start by less than this, in its unit, after a change of all coordinates has returned to
+  !> it: at a singular position the round-off of a closure changes coordinates by its square root.
+  real(wp), parameter :: returned = 1.0e-4_wp
+  !> A coordinate whose rates in motions of norm one exceed this would not return to the start by chance.
+  real(wp), parameter :: moves_clearly = 1.0e-2_wp
 
   !> Gaps below this part of the mechanism's size come from dimensions with too few digits.
   real(wp), parameter :: nearly_closed = 1.0e-5_wp
-  !> Dimensions that are this near to those of a mechanism that moves were meant to be these.
+  !> Dimensions that differ by less than this from those of a mechanism that moves are taken for inexact ones of it.
   real(wp), parameter :: overconstrained_nearby = 1.0e-3_wp
 
 contains
 
-  !> Judge the independent coordinates at closed positions in which all coordinates may give way. `err`
-  !> tells what is wrong with them (exit_structure), or that the chains close nowhere (exit_assembly);
-  !> not allocated: they can serve, or the mechanism is too large to be judged in one piece. `state` is
-  !> then a closed position near the coordinates it came with, if `closed`.
+  !> Judge the independent coordinates at closed positions in which all coordinates are free. Fails if they cannot serve
+  !> (exit_structure), or if the chains close nowhere (exit_assembly). A mechanism that is too large to be judged as one block
+  !> passes. `state` is afterwards a closed position near the given coordinates, if `closed`.
   subroutine judge_choice(plan, state, closed, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    logical, intent(out) :: closed
+    logical, intent(out) :: closed   !< `state` is a closed position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(assembly_outcome_type) :: outcome
     type(state_type) :: trial
     real(wp), allocatable :: motions(:, :), best(:, :), positions(:, :)
-    logical, dimension(plan%n_coordinates) :: wanted, chosen, back, held
+    logical, dimension(plan%n_coordinates) :: wanted, chosen, returns, held
     integer :: i, k
 
     closed = .false.
@@ -54,34 +53,33 @@ contains
       return
     end if
     closed = .true.
-    call find_positions(plan, state, positions, back)
+    call find_positions(plan, state, positions, returns)
     trial = state
     do i = 1, size(positions, 2)
       trial%q = positions(:, i)
-      ! closed already: this puts the frames in place
+      ! the position is closed: this only places the frames
       call close_free(plan, trial, .false., outcome, err)
       if (allocated(err)) return
       held = .false.
       call find_motions(plan, trial, held, motions)
-      held = back .and. [(norm2(motions(k, :)) > seems_to_move, k=1, size(held))]
+      held = returns .and. [(norm2(motions(k, :)) > moves_clearly, k=1, size(held))]
       if (any(held)) call find_motions(plan, trial, held, motions)
       call choose_coordinates(motions, wanted, chosen)
       if (all(chosen .eqv. wanted)) return
-      ! where branches of different mobility meet, a general position of the least mobile one
+      ! where branches of different mobility meet, the least mobile one counts
       if (.not. allocated(best)) best = motions
       if (size(motions, 2) < size(best, 2)) best = motions
     end do
     call refuse_choice(best, wanted, err)
   end subroutine judge_choice
 
-  !> General closed positions near one that may be special, and the coordinates that come back to it
-  !> each time. Where the rates say that such a one moves, they are wrong: it is locked, and the position
-  !> singular.
-  subroutine find_positions(plan, state, positions, back)
+  !> Generic closed positions near one that may be singular, and the coordinates that return to their values there each time.
+  !> If the rates tell that such a coordinate moves, they mislead: it is locked, and the position is singular.
+  subroutine find_positions(plan, state, positions, returns)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), allocatable, intent(out) :: positions(:, :)   !< (M,n): the given one where no other closes
-    logical, intent(out) :: back(:)
+    real(wp), allocatable, intent(out) :: positions(:, :)   !< (M,n) coordinates; those in `state` where no other closes
+    logical, intent(out) :: returns(:)   !< (M) the coordinate returned to its value in all positions
     real(wp), parameter :: amounts(6) = [0.3_wp, 0.1_wp, 0.03_wp, 0.3_wp, 0.1_wp, 0.03_wp]
     type(assembly_outcome_type) :: outcome
     type(error_type), allocatable :: err
@@ -91,7 +89,7 @@ contains
     integer :: i, k, n
 
     n = 0
-    back = plan%steps(plan%step_of)%is_screw
+    returns = plan%steps(plan%step_of)%is_screw
     trial = state
     do i = 1, size(amounts)
       trial%q = state%q
@@ -104,9 +102,9 @@ contains
       if (.not. outcome%closed) cycle
       n = n + 1
       found(:, n) = trial%q
-      back = back .and. abs(trial%q - state%q) < comes_back*plan%unit_of
+      returns = returns .and. abs(trial%q - state%q) < returned*plan%unit_of
     end do
-    if (n < 2) back = .false.
+    if (n < 2) returns = .false.
     if (n == 0) then
       n = 1
       found(:, 1) = state%q
@@ -134,19 +132,19 @@ contains
     err%failure%replaces = abs(shares) > moves_least
   end subroutine refuse_choice
 
-  !> Coordinates that no chain determines, of a mechanism too large to be judged in one piece.
+  !> Fail because of coordinates that no chain determines, in a mechanism that is too large to be judged as one block.
   subroutine refuse_undetermined(undetermined, err)
-    integer, intent(in) :: undetermined(:)
+    integer, intent(in) :: undetermined(:)   !< numbers of the coordinates that no chain determines
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call raise(err, exit_structure, failure_undetermined_coordinates)
     err%failure%coordinates = undetermined
   end subroutine refuse_undetermined
 
-  !> Chains that do not close.
+  !> Fail because of chains that do not close.
   subroutine refuse_open(plan, outcome, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(assembly_outcome_type), intent(in) :: outcome
+    type(assembly_outcome_type), intent(in) :: outcome   !< result of the assembly that failed
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call raise(err, exit_assembly, merge(failure_nearly_closed_chain, failure_open_chain, &
@@ -160,10 +158,10 @@ contains
     err%failure%size = plan%length
   end subroutine refuse_open
 
-  !> A chain whose equations are redundant at the start only.
+  !> Fail because of a chain whose equations are redundant at the start only.
   subroutine refuse_locked(plan, locked, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(locked_chain_type), intent(in) :: locked
+    type(locked_chain_type), intent(in) :: locked   !< the chain that does not move
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call raise(err, exit_structure, merge(failure_nearly_moving_chain, failure_locked_chain, &

@@ -12,7 +12,7 @@ module mech9_release
   use mech9_generic_position, only: free_block
   implicit none
   private
-  public :: close_free, carry_inputs, most_free_coordinates
+  public :: close_free, move_inputs, most_free_coordinates
 
   !> Mechanisms with more coordinates are not closed as one block.
   integer, parameter :: most_free_coordinates = 500
@@ -38,7 +38,7 @@ contains
 
   !> Move the independent coordinates from a closed position to given values and keep the chains closed; `arrived` tells
   !> whether that was possible. Angles change by at most half a turn.
-  subroutine carry_inputs(plan, target, state, arrived)
+  subroutine move_inputs(plan, target, state, arrived)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: target(:)   !< (M) coordinates; only those of the independent ones count [rad, m]
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
@@ -81,5 +81,5 @@ contains
     end do
     arrived = done >= 1.0_wp
     state%q = before
-  end subroutine carry_inputs
+  end subroutine move_inputs
 end module mech9_release

@@ -1,8 +1,8 @@
-!> Making the plan: frames, spaces of motion, blocks, and the assembled start.
+!> The making of the plan: frames, spaces of motion, blocks, and the assembled start.
 !>
-!> Structure and ranks of the loops propose the blocks. Whether a block determines its coordinates is
-!> then judged by the rank of its Jacobian at a closed position: at the start, and where that is
-!> singular, also away from it. A block that does not is joined with the next ones until it does.
+!> Structure and ranks of the loops propose the blocks. The rank of a block's Jacobian at a closed position then tells whether
+!> the block determines its coordinates: at the start and, if that is singular, at a generic position. A block that does not
+!> determine them is joined with the next ones until it does.
 module mech9_planning
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure
@@ -23,7 +23,7 @@ module mech9_planning
   use mech9_assembly, only: assemble_block, assembly_outcome_type
   use mech9_assemblies, only: close_from_random_starts
   use mech9_generic_position, only: generic_position_type, find_generic_position
-  use mech9_release, only: carry_inputs
+  use mech9_release, only: move_inputs
   use mech9_diagnosis, only: judge_choice, refuse_open, refuse_undetermined, refuse_locked
   use mech9_finite_motion, only: locked_chain_type, find_locked_chain
   implicit none
@@ -32,26 +32,26 @@ module mech9_planning
 
   !> Pivots below this fraction of the largest count as zero when ranks are found.
   real(wp), parameter :: rank_tolerance = 1.0e-9_wp
-  !> Pivots, and rates that chains cannot follow, that inexact dimensions make, against their error.
+  !> Factor from the error of inexact dimensions to the pivots, and to the contradictions of rates, that it causes.
   real(wp), parameter :: inexact = 10.0_wp
-  !> Unknowns of one block for which there is memory and time: its equations are a full matrix.
+  !> Largest number of unknowns of one block, whose equations are a full matrix: more would need too much memory and time.
   integer, parameter :: most_unknowns = 3000
-  !> Rates that the chains cannot follow, against rates of one, where the inputs contradict each other.
+  !> Least residual of the rate equations, for independent rates of about one, that shows that these contradict each other.
   real(wp), parameter :: contradiction = 1.0e-7_wp
 
 contains
 
-  !> The plan of a mechanism and its assembled start: positions of all coordinates for the given
-  !> independent ones. Fails with exit_structure where the dependent coordinates are not determined
-  !> by the independent ones, with exit_assembly where the chains do not close.
+  !> Make the plan of a mechanism and its assembled start, the positions of all coordinates for the given independent ones.
+  !> Fails with exit_structure if the independent coordinates do not determine the dependent ones, and with exit_assembly if
+  !> the chains do not close.
   subroutine make_plan(mechanism, start, plan, state, err, in_space, requested)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    real(wp), intent(in) :: start(:)        !< (M): independent coordinates as given, guesses of the others
+    real(wp), intent(in) :: start(:)        !< (M) values of the independent coordinates, guesses of the others [rad, m]
     type(plan_type), intent(out) :: plan   !< the plan of the mechanism
-    type(state_type), intent(out) :: state  !< assembled
+    type(state_type), intent(out) :: state  !< the assembled start
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    logical, intent(in), optional :: in_space   !< no planar arithmetic, even where it could be used
-    type(requested_type), intent(in), optional :: requested   !< what does not serve them is left out and not assembled
+    logical, intent(in), optional :: in_space   !< use spatial arithmetic even where planar arithmetic is possible
+    type(requested_type), intent(in), optional :: requested   !< requested quantities; blocks that do not serve them are left out
     type(generic_position_type) :: generic
     logical :: spatial
 
@@ -74,19 +74,18 @@ contains
     end if
     state = new_state(plan)
     state%q = start
-    call settle_blocks(plan, state, generic, err)
+    call assemble_blocks(plan, state, generic, err)
     if (allocated(err)) return
     call check_inputs(plan, state, generic, err)
     if (allocated(err)) return
-    ! a plan for other independent coordinates, made with `requested`, is one of a mechanism that moves
+    ! a plan with `requested` is made for other independent coordinates of a mechanism that is known to move
     if (.not. present(requested)) call check_motion(plan, state, err)
     if (allocated(err)) return
     if (present(requested)) call leave_out_unrequested(plan, requested)
     call find_constants(plan)
   end subroutine make_plan
 
-  !> Blocks by structure and ranks of the loops. An error says that they cannot determine all
-  !> coordinates.
+  !> Propose blocks by the structure and the ranks of the loops. Fails if they cannot determine all coordinates.
   subroutine propose_blocks(plan, state, err)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
@@ -96,7 +95,7 @@ contains
 
     call make_blocks(plan, undetermined)
     if (size(undetermined) > 0) then
-      ! ranks found with a loop alone do not bind it in company: the dimensions of its motions do
+      ! a loop may offer more equations together with others than alone: at most the dimension of its motions
       plan%closures%independent_equations = plan%closures%rank
       call make_blocks(plan, undetermined)
     end if
@@ -111,10 +110,10 @@ contains
   end subroutine propose_blocks
 
   !> Assemble the proposed blocks one after the other and join those that prove too small.
-  subroutine settle_blocks(plan, state, generic, err)
+  subroutine assemble_blocks(plan, state, generic, err)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(generic_position_type), intent(inout) :: generic
+    type(generic_position_type), intent(inout) :: generic   !< a generic position, as far as it was made
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_type), allocatable :: blocks(:)
     type(state_type) :: trial
@@ -134,7 +133,7 @@ contains
         call count_block(plan, blocks(n))
         call split_loops(blocks(n), plan)
       end if
-      call settle_block(plan, blocks(:n), state, generic, complete, err)
+      call assemble_next(plan, blocks(:n), state, generic, complete, err)
       if (allocated(err)) return
     end do
     plan%blocks = blocks(:n)
@@ -142,15 +141,15 @@ contains
     trial = state
     call judge_choice(plan, trial, closed, err)
     if (.not. allocated(err)) call refuse_block(failure_undetermined_block, blocks(n), err)
-  end subroutine settle_blocks
+  end subroutine assemble_blocks
 
-  !> Assemble the last block, the others being closed, and say whether its coordinates are all determined.
-  subroutine settle_block(plan, blocks, state, generic, complete, err)
+  !> Assemble the last block on the closed blocks before it, and find whether all its coordinates are determined.
+  subroutine assemble_next(plan, blocks, state, generic, complete, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: blocks(:)
+    type(block_type), intent(in) :: blocks(:)   !< the blocks so far; the last one is to be assembled
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(generic_position_type), intent(inout) :: generic
-    logical, intent(out) :: complete
+    type(generic_position_type), intent(inout) :: generic   !< a generic position, as far as it was made
+    logical, intent(out) :: complete   !< the block determines all its coordinates
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
@@ -162,28 +161,27 @@ contains
       call assemble_block(plan, block, state, work, .true., outcome, err)
       if (allocated(err)) return
       if (.not. outcome%closed) then
-        call assemble_otherwise(plan, blocks, outcome, state, err)
+        call assemble_by_other_starts(plan, blocks, outcome, state, err)
         if (allocated(err)) return
         generic%exists = .false.
       end if
       call factorize_block(plan, block, state, work)
       complete = work%equations%rank(max(rank_tolerance, inexact*plan%data_tolerance)) == size(block%unknowns)
       if (complete .and. .not. generic%exists) return
-      ! a singular start, or a rank that is small everywhere?
+      ! a generic position tells whether the start is singular or the rank is small everywhere
       call find_generic_position(plan, blocks, state, generic, closed)
       if (complete .or. .not. closed) return
       call factorize_block(plan, block, generic%state, work)
       complete = work%equations%rank(max(rank_tolerance, inexact*plan%data_tolerance)) == size(block%unknowns)
     end associate
-  end subroutine settle_block
+  end subroutine assemble_next
 
-  !> The last block does not close on the blocks before it as they are: try other assemblies of these,
-  !> then the way through a position in which the independent coordinates give way. An error tells why
-  !> neither helps.
-  subroutine assemble_otherwise(plan, blocks, outcome, state, err)
+  !> Assemble the last block where it does not close with the present assembly of the blocks before it: with other assemblies
+  !> of these, then by a motion from a position that is closed with free independent coordinates. Fails if neither closes it.
+  subroutine assemble_by_other_starts(plan, blocks, outcome, state, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(block_type), intent(in) :: blocks(:)
-    type(assembly_outcome_type), intent(in) :: outcome   !< how it failed
+    type(block_type), intent(in) :: blocks(:)   !< the blocks so far; the last one is to be assembled
+    type(assembly_outcome_type), intent(in) :: outcome   !< result of the assembly that failed
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: trial
@@ -197,20 +195,20 @@ contains
     call judge_choice(plan, trial, closed, err)
     if (allocated(err)) return
     if (closed) then
-      call carry_inputs(plan, state%q, trial, closed)
+      call move_inputs(plan, state%q, trial, closed)
       if (closed) then
         state = trial
         return
       end if
     end if
     call refuse_open(plan, outcome, err)
-  end subroutine assemble_otherwise
+  end subroutine assemble_by_other_starts
 
-  !> The independent coordinates must be free to move at any rates, and by more than nothing.
+  !> Check that the independent coordinates can move at any rates, over a finite motion.
   subroutine check_inputs(plan, state, generic, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(generic_position_type), intent(inout) :: generic
+    type(generic_position_type), intent(inout) :: generic   !< a generic position, as far as it was made
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: trial
     type(block_work_type) :: work
@@ -221,7 +219,7 @@ contains
 
     free = .true.
     trial = state
-    ! more equations than unknowns: they must agree not only at the start
+    ! redundant equations must agree not only at the start
     if (generic%exists .or. any(plan%blocks%equations > unknowns_of(plan%blocks))) then
       call find_generic_position(plan, plan%blocks, state, generic, closed)
       if (closed) then
@@ -248,10 +246,10 @@ contains
     if (.not. allocated(err)) call refuse_block(failure_contradictory_inputs, plan%blocks(b), err)
   end subroutine check_inputs
 
-  !> Chains with redundant equations must stay closed when they move.
+  !> Check that chains with redundant equations stay closed when they move.
   subroutine check_motion(plan, state, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state      !< assembled
+    type(state_type), intent(in) :: state      !< the assembled start
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(locked_chain_type) :: locked
 
@@ -275,7 +273,7 @@ contains
     err%failure%chains = block%chains
   end subroutine refuse_block
 
-  !> Blocks whose Jacobian never changes, since all steps of their loops slide.
+  !> Mark blocks whose Jacobian never changes because all steps of their loops slide.
   pure subroutine find_constants(plan)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer :: b, c

@@ -1,4 +1,4 @@
-!> Following a driven motion from output to output, through special positions or up to where it ends.
+!> A driven motion from output to output, through singular positions or up to its end.
 module mech9_driven_motion
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_singular
@@ -23,40 +23,40 @@ module mech9_driven_motion
   private
   public :: driven_motion_type, start_driven_motion, advance, set_inputs
 
-  !> Blocks whose least against largest pivot is below this start at a singular position: at a dead point
-  !> round-off of the position leaves its square root, some 1e-8.
+  !> A block whose least pivot is below this part of its largest one starts in a singular position: at a dead point round-off
+  !> of the position gives its square root, about 1e-8.
   real(wp), parameter :: singular = 1.0e-7_wp
-  !> A motion that ends is followed up to this part of the way from where the end was seen.
+  !> A motion that ends goes up to this part of the time between the position where the end was found and the end.
   real(wp), parameter :: just_short = 1.0e-9_wp
 
-  !> What is followed, and counts for the report.
+  !> A driven motion: the branch stepper, the special position ahead, and counts for the report.
   type, extends(branch_stepper_type) :: driven_motion_type
-    type(finding_type) :: ahead                   !< the special position that was seen
-    type(branch_crossing_type) :: crossing                 !< the way through it
-    real(wp), allocatable :: clear_until(:)       !< for each block: until when nothing special was seen [s]
-    integer(long) :: positions = 0                !< that were asked for
-    integer(long) :: crossings = 0                 !< special positions that were passed
-    type(conditioning_type) :: conditioning       !< the worst of the positions asked for
-    real(wp) :: closure = 0.0_wp                  !< largest closure error of the position asked for last [m]
-    real(wp) :: worst_closure = 0.0_wp            !< and of any position asked for
-    real(wp), allocatable :: limit(:)             !< (M): independent coordinates where the motion ends
+    type(finding_type) :: ahead                   !< the special position ahead, if one was found
+    type(branch_crossing_type) :: crossing        !< the motion through a crossing ahead
+    real(wp), allocatable :: clear_until(:)       !< (blocks) time up to which no special position was found [s]
+    integer(long) :: positions = 0                !< number of outputs
+    integer(long) :: crossings = 0                !< number of crossings that were passed
+    type(conditioning_type) :: conditioning       !< worst conditioning of all outputs
+    real(wp) :: closure = 0.0_wp                  !< largest closure error at the last output [m]
+    real(wp) :: worst_closure = 0.0_wp            !< largest closure error at any output [m]
+    real(wp), allocatable :: limit(:)             !< (M) independent coordinates where the motion ends [rad, m]
   end type driven_motion_type
 
 contains
 
-  !> Begin at an assembled position: velocities and accelerations there. Later positions may do without accelerations.
+  !> Begin at an assembled position, with rates and accelerations there. Later outputs need no accelerations.
   subroutine start_driven_motion(mechanism, plan, assembled, t, driven, err, with_accelerations)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: assembled
-    real(wp), intent(in) :: t
-    type(driven_motion_type), intent(out) :: driven
+    type(state_type), intent(in) :: assembled   !< an assembled position
+    real(wp), intent(in) :: t   !< time of the start [s]
+    type(driven_motion_type), intent(out) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    logical, intent(in), optional :: with_accelerations
+    logical, intent(in), optional :: with_accelerations   !< find accelerations at every position; true unless given
     integer :: b
-    logical :: special
+    logical :: starts_singular
 
-    special = .false.
+    starts_singular = .false.
     driven%branch_stepper_type = new_branch_stepper(mechanism, plan, assembled)
     if (present(with_accelerations)) driven%with_accelerations = with_accelerations
     driven%state%t = t
@@ -66,32 +66,32 @@ contains
       associate (block => plan%blocks(b), work => driven%work(b))
         call factorize_trial(plan, block, driven%state, work, driven%monitors(b))
         if (work%equations%conditioning() < singular) then
-          call leave_special(mechanism, plan, block, special, driven, err)
+          call find_rates_off_start(mechanism, plan, block, starts_singular, driven, err)
           if (allocated(err)) return
-          special = .true.
+          starts_singular = .true.
         else
           call solve_rates(plan, block, driven%state, work)
           call solve_accelerations(plan, block, driven%state, work)
         end if
       end associate
     end do
-    if (special) then
+    if (starts_singular) then
       call begin_crossing(mechanism, plan, driven, err)
       if (allocated(err)) return
     else
       call accept_start(driven%branch_stepper_type)
     end if
     allocate (driven%clear_until(size(plan%blocks)), source=t)
-    call record(plan, driven)
+    call count_output(plan, driven)
   end subroutine start_driven_motion
 
-  !> Rates of a block that starts in a singular position, if it can leave it in one way only.
-  subroutine leave_special(mechanism, plan, block, already, driven, err)
+  !> Find the rates of a block that starts in a singular position. Fails unless exactly one branch leads through it.
+  subroutine find_rates_off_start(mechanism, plan, block, another_is_singular, driven, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
-    logical, intent(in) :: already                 !< a block before it does so too
-    type(driven_motion_type), intent(inout) :: driven
+    logical, intent(in) :: another_is_singular   !< an earlier block starts in a singular position too
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(starting_rates_type) :: starting
     integer :: b, kind
@@ -104,7 +104,7 @@ contains
       kind = failure_start_at_dead_point
     else if (starting%count == 2) then
       kind = failure_start_on_branches
-    else if (starting%undetermined .or. already) then
+    else if (starting%undetermined .or. another_is_singular) then
       kind = failure_start_unclear
     else if (starting%count == 0) then
       kind = failure_start_locked
@@ -117,7 +117,7 @@ contains
     err%failure%chains = block%chains
     err%failure%coordinates = block%coordinates
     if (kind == failure_start_on_branches) call add_rates(mechanism, starting, err)
-  end subroutine leave_special
+  end subroutine find_rates_off_start
 
   !> Add the rates by which a block could go on to a failure that has its coordinates.
   pure subroutine add_rates(mechanism, starting, err)
@@ -133,11 +133,11 @@ contains
     err%failure%angle_unit = mechanism%angle_unit
   end subroutine add_rates
 
-  !> The way on from a special start.
+  !> Find the motion off a singular start.
   subroutine begin_crossing(mechanism, plan, driven, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(driven_motion_type), intent(inout) :: driven
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     driven%predictor%t = driven%state%t
@@ -154,13 +154,13 @@ contains
                          driven%monitors, err)
   end subroutine begin_crossing
 
-  !> Go on to a time: position, velocity and acceleration there, on the same branch. Fails with
-  !> exit_singular where the motion cannot go on; the state is then the last one reached.
+  !> Go on to a time on the same branch; the state then has position, rates and accelerations there. Fails with exit_singular
+  !> where the motion cannot go on; the state is then the last one that was reached.
   subroutine advance(mechanism, plan, driven, t, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(driven_motion_type), intent(inout) :: driven
-    real(wp), intent(in) :: t
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
+    real(wp), intent(in) :: t   !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: direction
     integer :: refused_by
@@ -184,10 +184,10 @@ contains
       call step_towards(mechanism, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
       if (allocated(err)) exit
       if (stuck) then
-        ! but for a coordinate that was seen to escape
+        ! an escape that was found before explains why no step is accepted
         if (driven%ahead%kind /= escape .or. driven%ahead%block /= refused_by) &
           driven%ahead = finding_type(uncertain, refused_by, driven%predictor%t)
-        call refuse(mechanism, plan, driven, err)
+        call fail_at_end(mechanism, plan, driven, err)
         exit
       end if
       call look_ahead_if_near(mechanism, plan, driven, direction, err)
@@ -196,16 +196,16 @@ contains
     if (allocated(err)) then
       call restore_last_position(driven%branch_stepper_type)
     else
-      call record(plan, driven)
+      call count_output(plan, driven)
     end if
   end subroutine advance
 
-  !> After a step: where a block came near a singular position, see what lies ahead.
+  !> Look ahead after a step if a block has come near a singular position.
   subroutine look_ahead_if_near(mechanism, plan, driven, direction, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(driven_motion_type), intent(inout) :: driven
-    real(wp), intent(in) :: direction
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
+    real(wp), intent(in) :: direction   !< +1, or -1 backwards in time
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(finding_type) :: ahead
     integer :: b
@@ -216,11 +216,11 @@ contains
       call find_escape(plan, driven%branch_stepper_type, b, .false., ahead)
       if (ahead%kind == escape) then
         driven%ahead = ahead
-        call refuse(mechanism, plan, driven, err)
+        call fail_at_end(mechanism, plan, driven, err)
         return
       end if
       if (.not. is_near(driven%monitors(b))) cycle
-      ! already seen, or seen to be nothing
+      ! a special position ahead is known already, or none was found up to a later time
       if (driven%ahead%kind /= nothing_special) exit
       if ((driven%clear_until(b) - driven%predictor%t)*direction > 0.0_wp) cycle
       call add_accelerations(plan, driven%branch_stepper_type)
@@ -232,15 +232,15 @@ contains
         if (allocated(err)) return
         if (.not. driven%crossing%exists) driven%ahead%kind = uncertain
       end if
-      ! up to a dead point, or to where a coordinate that escapes is far away, it goes on
-      if (driven%ahead%kind == uncertain) call refuse(mechanism, plan, driven, err)
+      ! the motion goes on up to a dead point, or until a coordinate that escapes is far away
+      if (driven%ahead%kind == uncertain) call fail_at_end(mechanism, plan, driven, err)
       if (allocated(err)) return
     end do
   end subroutine look_ahead_if_near
 
-  !> Go on from the far end of a passage.
+  !> Go on from the end of a crossing.
   pure subroutine leave_crossing(driven)
-    type(driven_motion_type), intent(inout) :: driven
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     real(wp) :: largest
     integer :: b
     logical :: with_accelerations
@@ -255,16 +255,16 @@ contains
     driven%with_accelerations = with_accelerations
     driven%crossing%exists = .false.
     driven%crossings = driven%crossings + 1
-    ! still near: but that is behind
+    ! the crossing is still near, but it is behind
     driven%ahead%kind = nothing_special
     driven%clear_until = driven%crossing%to + (driven%crossing%to - driven%crossing%from)
   end subroutine leave_crossing
 
-  !> The motion ends before the next output: go as near as it can be regular, and say why.
+  !> Go as near to the end of the motion as regular steps lead, and fail with the reason.
   subroutine end_motion(mechanism, plan, driven, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(driven_motion_type), intent(inout) :: driven
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: t
     integer :: refused_by
@@ -275,25 +275,25 @@ contains
     do while (abs(t - driven%predictor%t) > 0.0_wp .and. .not. stuck .and. .not. allocated(err))
       call step_towards(mechanism, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
     end do
-    call refuse(mechanism, plan, driven, err)
+    call fail_at_end(mechanism, plan, driven, err)
   end subroutine end_motion
 
-  !> Count a position that was asked for.
-  subroutine record(plan, driven)
+  !> Count an output, and keep its closure error and conditioning.
+  subroutine count_output(plan, driven)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(driven_motion_type), intent(inout) :: driven
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
 
     driven%positions = driven%positions + 1
     driven%closure = largest_gap(plan, driven%state)
     driven%worst_closure = max(driven%worst_closure, driven%closure)
     call driven%conditioning%glance(driven%state%t, driven%work)
-  end subroutine record
+  end subroutine count_output
 
   !> Fail where and why the motion cannot go on, and keep the independent coordinates there.
-  subroutine refuse(mechanism, plan, driven, err)
+  subroutine fail_at_end(mechanism, plan, driven, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(driven_motion_type), intent(inout) :: driven
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: no_value
     real(wp), dimension(plan%n_coordinates) :: q, dq, ddq
@@ -324,5 +324,5 @@ contains
         failure%values(i, 1) = q(k)/unit_of(mechanism, k)
       end do
     end associate
-  end subroutine refuse
+  end subroutine fail_at_end
 end module mech9_driven_motion
