@@ -1,6 +1,7 @@
 !> Articulated bodies in planar arithmetic: accelerations of open chains whose motion keeps to one plane.
 !>
-!> As in space (articulated_bodies), with wrenches (torque about the normal, force) and motions (dw, dv):
+!> The method is that of mech9_articulated_bodies, with wrenches (torque about the normal, force) and motions (dw, dv) in the
+!> plane's axes:
 !>   torque = J dw + H . dv + torque_0,   force = H dw + M dv + force_0.
 module mech9_planar_articulated
   use mech9_kinds, only: wp
@@ -10,42 +11,44 @@ module mech9_planar_articulated
   private
   public :: planar_work_type, new_planar_work, solve_in_plane
 
-  !> Scratch of the passes, sized once. J, H, M as (J, Hx, Hy, Mxx, Mxy, Myy).
+  !> Scratch of the passes, sized once, in the plane's axes. An inertia is (J, Hx, Hy, Mxx, Mxy, Myy) [kg m^2, kg m, kg].
   type :: planar_work_type
-    real(wp), allocatable :: applied(:, :)       !< (3,M) wrench of the loads on each frame: to be set before
-    real(wp), allocatable :: inertia(:, :)       !< (6,0:M)
-    real(wp), allocatable :: wrench(:, :)        !< (3,0:M)
+    real(wp), allocatable :: applied(:, :)       !< (3,M) wrench of the loads on each frame: to be set before [N m, N]
+    real(wp), allocatable :: inertia(:, :)       !< (6,0:M) inertia of all links that hang on a step
+    real(wp), allocatable :: wrench(:, :)        !< (3,0:M) torque_0 and force_0 [N m, N]
     real(wp), allocatable :: column(:, :)        !< (3,M) U
     real(wp), allocatable :: pivot(:)            !< (M) D
     real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
-    real(wp), allocatable :: amount(:, :)        !< (4,0:M) all that hangs on a step, as if rigid: mass, moment, inertia
-    real(wp), allocatable :: motion(:, :)        !< (3,0:M)
+    real(wp), allocatable :: amount(:, :)        !< (4,0:M) links that hang on a step, as if rigid: mass, moment, inertia
+    real(wp), allocatable :: motion(:, :)        !< (3,0:M) accelerations less those that rates alone give
   end type planar_work_type
 
 contains
 
-  !> Room for the passes over so many steps; no loads yet.
+  !> Room for the passes over a number of steps, without loads.
   pure function new_planar_work(m) result(work)
-    integer, intent(in) :: m
+    integer, intent(in) :: m   !< number of steps
     type(planar_work_type) :: work
 
     allocate (work%applied(3, m), work%column(3, m), work%pivot(m), work%rest(m), source=0.0_wp)
     allocate (work%inertia(6, 0:m), work%wrench(3, 0:m), work%amount(4, 0:m), work%motion(3, 0:m), source=0.0_wp)
   end function new_planar_work
 
-  !> Accelerations of all coordinates under gravity, the wrenches work%applied and generalized forces; see
-  !> solve_open_chains of articulated_bodies.
+  !> Accelerations of all coordinates under gravity, the wrenches work%applied and generalized forces. `found` is false where
+  !> a coordinate has no inertia beyond round-off. Poses and motions are in the plane's axes.
   pure subroutine solve_in_plane(m, steps, bodies, gravity, f, slide, v, a, forces, work, ddq, found)
-    integer, intent(in) :: m                                    !< steps
-    type(planar_step_type), intent(in) :: steps(m)
-    type(planar_body_type), intent(in) :: bodies(:)
-    real(wp), intent(in) :: gravity(2)
-    real(wp), intent(in) :: f(4, 0:m), slide(2, m)              !< poses of the frames; ways of the steps
-    real(wp), intent(in) :: v(3, 0:m), a(3, 0:m)                !< velocities; accelerations that rates alone give
-    real(wp), intent(in) :: forces(m)                           !< of each coordinate [N m or N]
-    type(planar_work_type), intent(inout) :: work
-    real(wp), intent(out) :: ddq(m)
-    logical, intent(out) :: found
+    integer, intent(in) :: m                          !< number of steps
+    type(planar_step_type), intent(in) :: steps(m)    !< the steps of the plan
+    type(planar_body_type), intent(in) :: bodies(:)   !< links with mass or inertia
+    real(wp), intent(in) :: gravity(2)                !< acceleration of free fall [m/s^2]
+    real(wp), intent(in) :: f(4, 0:m)                 !< pose of each frame: cosine, sine, origin [m]
+    real(wp), intent(in) :: slide(2, m)               !< velocity of each new origin per unit rate
+    real(wp), intent(in) :: v(3, 0:m)                 !< velocity of each frame [rad/s, m/s]
+    real(wp), intent(in) :: a(3, 0:m)                 !< acceleration of each frame that rates alone give [rad/s^2, m/s^2]
+    real(wp), intent(in) :: forces(m)                 !< generalized force on each coordinate [N m or N]
+    type(planar_work_type), intent(inout) :: work     !< scratch, with the loads' wrenches in `applied`
+    real(wp), intent(out) :: ddq(m)                   !< acceleration of each coordinate [rad/s^2, m/s^2]
+    logical, intent(out) :: found                     !< whether all coordinates have inertia; otherwise `ddq` is not set
     integer :: i
 
     work%inertia = 0.0_wp
@@ -61,11 +64,17 @@ contains
     call go_outward(m, steps, f, slide, work%column, work%pivot, work%rest, work%motion, ddq)
   end subroutine solve_in_plane
 
-  !> A body's inertia about the origin of its frame, and the wrench that it needs for the motion by rates alone.
+  !> Add a body's inertia about the origin of its frame, and the wrench that the body requires for the motion by rates alone,
+  !> less its weight. Vectors are in the plane's axes.
   pure subroutine add_body(body, gravity, f, v, a, inertia, wrench, amount)
-    type(planar_body_type), intent(in) :: body
-    real(wp), intent(in) :: gravity(2), f(4), v(3), a(3)
-    real(wp), intent(inout) :: inertia(6), wrench(3), amount(4)
+    type(planar_body_type), intent(in) :: body   !< the body
+    real(wp), intent(in) :: gravity(2)           !< acceleration of free fall [m/s^2]
+    real(wp), intent(in) :: f(4)                 !< pose of its frame: cosine, sine, origin [m]
+    real(wp), intent(in) :: v(3)                 !< velocity of its frame [rad/s, m/s]
+    real(wp), intent(in) :: a(3)                 !< acceleration of its frame that rates alone give [rad/s^2, m/s^2]
+    real(wp), intent(inout) :: inertia(6)        !< J, Hx, Hy, Mxx, Mxy, Myy of the frame
+    real(wp), intent(inout) :: wrench(3)         !< torque about the frame's origin and force on the frame [N m, N]
+    real(wp), intent(inout) :: amount(4)         !< mass, moment and inertia of the frame [kg, kg m, kg m^2]
     real(wp) :: x, y, j, force(2)
 
     x = f(1)*body%centre(1) - f(2)*body%centre(2)
@@ -86,14 +95,20 @@ contains
     amount(4) = amount(4) + j
   end subroutine add_body
 
-  !> The accelerations of the steps eliminated, the last one first.
+  !> Eliminate the accelerations of the steps, the last one first. Vectors are in the plane's axes.
   pure subroutine go_inward(m, steps, f, slide, forces, inertia, wrench, amount, column, pivot, rest, found)
-    integer, intent(in) :: m
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(in) :: f(4, 0:m), slide(2, m), forces(m)
-    real(wp), intent(inout) :: inertia(6, 0:m), wrench(3, 0:m), amount(4, 0:m)
-    real(wp), intent(out) :: column(3, m), pivot(m), rest(m)
-    logical, intent(out) :: found
+    integer, intent(in) :: m                         !< number of steps
+    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate
+    real(wp), intent(in) :: forces(m)                !< generalized force on each coordinate [N m or N]
+    real(wp), intent(inout) :: inertia(6, 0:m)       !< J, H, M of each frame's own bodies; then of all that hang on it
+    real(wp), intent(inout) :: wrench(3, 0:m)        !< torque_0 and force_0 in the same way [N m, N]
+    real(wp), intent(inout) :: amount(4, 0:m)        !< mass, moment and inertia in the same way, as if rigid
+    real(wp), intent(out) :: column(3, m)            !< U of each step
+    real(wp), intent(out) :: pivot(m)                !< D of each step
+    real(wp), intent(out) :: rest(m)                 !< Q - S . wrench_0 of each step
+    logical, intent(out) :: found                    !< whether all coordinates have inertia
     real(wp) :: u(3), part(3), rigid, s(2)
     integer :: i, p
 
@@ -116,7 +131,7 @@ contains
         rigid = amount(1, i)*(s(1)**2 + s(2)**2)
       end if
       column(:, i) = u
-      ! what is left by round-off is nothing, as in the Cholesky factors
+      ! a pivot within round-off counts as zero, as in the Cholesky factors
       found = pivot(i) > 8.0_wp*m*epsilon(1.0_wp)*rigid
       if (.not. found) return
       if (p == 0) cycle
@@ -131,11 +146,17 @@ contains
     end do
   end subroutine go_inward
 
-  !> What a frame feels, about the origin of its parent: with the velocity (-y, x) of the frame's origin per dw.
+  !> Add the inertia and wrench of a frame to those of its parent, about the parent's origin: per unit of dw, the frame's origin
+  !> moves by (-y, x). Vectors are in the plane's axes.
   pure subroutine add_to_parent(x, y, inertia, wrench, amount, parent_inertia, parent_wrench, parent_amount)
-    real(wp), intent(in) :: x, y                 !< from the parent's origin to the frame's
-    real(wp), intent(in) :: inertia(6), wrench(3), amount(4)
-    real(wp), intent(inout) :: parent_inertia(6), parent_wrench(3), parent_amount(4)
+    real(wp), intent(in) :: x                      !< from the parent's origin to the frame's, along the first axis [m]
+    real(wp), intent(in) :: y                      !< the same along the second axis [m]
+    real(wp), intent(in) :: inertia(6)             !< J, Hx, Hy, Mxx, Mxy, Myy of the frame
+    real(wp), intent(in) :: wrench(3)              !< torque and force on the frame [N m, N]
+    real(wp), intent(in) :: amount(4)              !< mass, moment and inertia of the frame
+    real(wp), intent(inout) :: parent_inertia(6)   !< J, Hx, Hy, Mxx, Mxy, Myy of the parent
+    real(wp), intent(inout) :: parent_wrench(3)    !< torque and force on the parent [N m, N]
+    real(wp), intent(inout) :: parent_amount(4)    !< mass, moment and inertia of the parent
     real(wp) :: h(2)
 
     h(1) = inertia(2) - inertia(4)*y + inertia(5)*x
@@ -151,13 +172,17 @@ contains
     parent_amount(4) = parent_amount(4) + amount(4) + 2.0_wp*(x*amount(2) + y*amount(3)) + amount(1)*(x**2 + y**2)
   end subroutine add_to_parent
 
-  !> The accelerations, the first step first.
+  !> Find the accelerations, the first step first. Vectors are in the plane's axes.
   pure subroutine go_outward(m, steps, f, slide, column, pivot, rest, motion, ddq)
-    integer, intent(in) :: m
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(in) :: f(4, 0:m), slide(2, m), column(3, m), pivot(m), rest(m)
-    real(wp), intent(inout) :: motion(3, 0:m)    !< none of frame 0
-    real(wp), intent(out) :: ddq(m)
+    integer, intent(in) :: m                         !< number of steps
+    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate
+    real(wp), intent(in) :: column(3, m)             !< U of each step
+    real(wp), intent(in) :: pivot(m)                 !< D of each step
+    real(wp), intent(in) :: rest(m)                  !< Q - S . wrench_0 of each step
+    real(wp), intent(inout) :: motion(3, 0:m)        !< gets accelerations less those that rates alone give; zero for frame 0
+    real(wp), intent(out) :: ddq(m)                  !< acceleration of each coordinate [rad/s^2, m/s^2]
     real(wp) :: x, d(3)
     integer :: i, p
 

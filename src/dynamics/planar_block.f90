@@ -1,9 +1,9 @@
-!> A block of closed chains in planar arithmetic: which steps its closures hold, listed once, and the loops over these lists
-!> that an evaluation of the motion runs through.
+!> A block of closed chains in planar arithmetic: the lists of the steps in its closures, made once, and the loops over these
+!> lists in each evaluation of the motion.
 !>
-!> What a closure lacks is the sum of what the steps of its loop give to it, each seen from the loop's base. Those
-!> of the block's unknowns make up the Jacobian. The independent ones and the frames of earlier blocks, from
-!> which the loop sets out, give the right-hand sides for B = dq/dq_i: no frame of the block is moved for that.
+!> The rate of a closure's residual is the sum of the contributions of the steps in its loop, each taken at the origin of the
+!> loop's base. The steps of the block's unknowns make up the Jacobian. The steps of independent coordinates, and the frames of
+!> earlier blocks from which the loop starts, give the right-hand sides for B = dq/dq_i, for which no frame of the block is moved.
 module mech9_planar_block
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type
@@ -14,33 +14,35 @@ module mech9_planar_block
   private
   public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, move_frames
 
-  !> A step in a loop, or a frame of an earlier block from which it sets out.
+  !> A step in a loop, or a frame of an earlier block from which the loop starts.
   type :: loop_part_type
-    integer :: frame = 0           !< also the number of the step
-    integer :: row = 0             !< equations of the block before those of the closure
-    integer :: base = 0            !< frame at whose origin the closure is written
-    integer :: column = 0          !< unknown among those of the block, or right-hand side
-    integer :: entry = 0           !< of a frame of an earlier block: that of its column
-    real(wp) :: weight = 1.0_wp    !< +1 towards the closing frame, -1 towards the target; of a column times its unit
+    integer :: frame = 0           !< number of the frame, which is that of the step
+    integer :: row = 0             !< number of equations of the block before those of the closure
+    integer :: base = 0            !< frame at whose origin the closure's equations are taken
+    integer :: column = 0          !< number of the unknown among those of the block, or of the right-hand side
+    integer :: entry = 0           !< for a frame of an earlier block, the entry of one of its columns
+    !> +1 towards the closing frame, -1 towards the target; for a frame of an earlier block, times the coordinate's unit.
+    real(wp) :: weight = 1.0_wp
   end type loop_part_type
 
   !> The loops of a block.
   type :: planar_block_type
-    integer :: columns = 0                               !< independent coordinates that the block depends on
-    type(loop_part_type), allocatable :: unknowns(:)
-    type(loop_part_type), allocatable :: independent(:)
-    type(loop_part_type), allocatable :: earlier(:)
+    integer :: columns = 0                               !< number of independent coordinates on which the block depends
+    type(loop_part_type), allocatable :: unknowns(:)     !< steps with the unknowns of the block
+    type(loop_part_type), allocatable :: independent(:)  !< steps with independent coordinates
+    type(loop_part_type), allocatable :: earlier(:)      !< columns of frames of earlier blocks
   end type planar_block_type
 
 contains
 
-  !> What the loops of block b hold. The columns of its frames and of those before must be known.
+  !> List the parts of the loops of block b. The columns of its frames and of those of earlier blocks must be known.
   pure subroutine list_loops(plan, b, first, column, place_of, flat)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: b
-    integer, intent(in) :: first(0:)                      !< as in the dynamics plan, likewise the next
-    integer, intent(in) :: column(:), place_of(:)
-    type(planar_block_type), intent(out) :: flat
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    integer, intent(in) :: b                       !< number of the block
+    integer, intent(in) :: first(0:)               !< (0:M+1) first entry of each frame
+    integer, intent(in) :: column(:)               !< (entries) place of the coordinate among the independent ones
+    integer, intent(in) :: place_of(:)             !< (M) place of a coordinate among the independent ones, or 0
+    type(planar_block_type), intent(out) :: flat   !< the loops of the block
     type(loop_part_type) :: part
     integer :: c, i
 
@@ -63,7 +65,7 @@ contains
             end if
           end do
           associate (stems => plan%closures(c)%part%stems)
-            ! a motion that both ends share opens nothing
+            ! a motion that both ends share has no part in the relative motion of the ends
             if (stems(1) == stems(2)) cycle
             call list_columns(plan, stems(1), 1.0_wp, first, column, columns, part, flat%earlier)
             call list_columns(plan, stems(2), -1.0_wp, first, column, columns, part, flat%earlier)
@@ -73,15 +75,16 @@ contains
     end associate
   end subroutine list_loops
 
-  !> A part for each column of a frame of an earlier block.
+  !> Append a part for each column of a frame of an earlier block.
   pure subroutine list_columns(plan, frame, sign, first, column, columns, part, parts)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, intent(in) :: frame
-    real(wp), intent(in) :: sign
-    integer, intent(in) :: first(0:), column(:)
-    integer, intent(in) :: columns(:)                     !< of the block
-    type(loop_part_type), intent(inout) :: part
-    type(loop_part_type), allocatable, intent(inout) :: parts(:)
+    type(plan_type), intent(in) :: plan                            !< the plan of the mechanism
+    integer, intent(in) :: frame                                   !< number of the frame
+    real(wp), intent(in) :: sign                                   !< +1 towards the closing frame, -1 towards the target
+    integer, intent(in) :: first(0:)                               !< (0:M+1) first entry of each frame
+    integer, intent(in) :: column(:)                               !< (entries) place of the coordinate among the independent ones
+    integer, intent(in) :: columns(:)   !< places of the independent coordinates on which the block depends
+    type(loop_part_type), intent(inout) :: part                    !< with row and base of the closure; its other components change
+    type(loop_part_type), allocatable, intent(inout) :: parts(:)   !< the list that grows
     integer :: e
 
     part%frame = frame
@@ -93,36 +96,39 @@ contains
     end do
   end subroutine list_columns
 
-  !> Where a number stands in a list; 0 when it is not there.
+  !> The place of a number in a list, 0 when it is not there.
   pure integer function place_among(list, number) result(place)
-    integer, intent(in) :: list(:)
-    integer, intent(in) :: number
+    integer, intent(in) :: list(:)   !< numbers, each once
+    integer, intent(in) :: number    !< one of them, or another
 
     do place = size(list), 1, -1
       if (list(place) == number) return
     end do
   end function place_among
 
-  !> One more part.
+  !> Append one part to a list.
   pure subroutine append(parts, part)
-    type(loop_part_type), allocatable, intent(inout) :: parts(:)
-    type(loop_part_type), intent(in) :: part
+    type(loop_part_type), allocatable, intent(inout) :: parts(:)   !< the list that grows
+    type(loop_part_type), intent(in) :: part                       !< its new last part
 
     parts = [parts, part]
   end subroutine append
 
-  ! Arrays of known shape, apart from their types: the compiler then keeps their addresses in registers.
+  ! Arrays are passed with explicit shapes, apart from their types: the compiler then keeps their addresses in registers.
 
-  !> Derivatives of the closures with respect to the coordinates of steps, those of lengths in the mechanism's: into
-  !> the columns of a matrix, which is zero elsewhere.
+  !> Derivatives of the closures' equations with respect to the coordinates of steps, where translations are divided by the
+  !> mechanism's length: they fill the columns of a matrix, which is zero elsewhere.
   pure subroutine fill_columns(n, parts, m, steps, f, slide, length, rows, columns, matrix)
-    integer, intent(in) :: n, m                   !< parts, steps
-    type(loop_part_type), intent(in) :: parts(n)
-    type(planar_step_type), intent(in) :: steps(m)
-    real(wp), intent(in) :: f(4, 0:m), slide(2, m)
-    real(wp), intent(in) :: length                !< of the mechanism [m]
-    integer, intent(in) :: rows, columns
-    real(wp), intent(out) :: matrix(rows, columns)
+    integer, intent(in) :: n                         !< number of parts
+    type(loop_part_type), intent(in) :: parts(n)     !< steps of the loops
+    integer, intent(in) :: m                         !< number of steps
+    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame, in the plane's axes [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate, in the plane's axes
+    real(wp), intent(in) :: length                   !< the mechanism's size [m]
+    integer, intent(in) :: rows                      !< number of rows of the matrix
+    integer, intent(in) :: columns                   !< number of its columns
+    real(wp), intent(out) :: matrix(rows, columns)   !< rows in rad or parts of length, columns per rad or per length
     real(wp) :: per_length
     integer :: i, s, row
 
@@ -136,15 +142,18 @@ contains
     end do
   end subroutine fill_columns
 
-  !> Add what frames of earlier blocks give to the closures, from their columns.
+  !> Add the contributions of frames of earlier blocks to the closures, from their columns.
   pure subroutine add_earlier(n, parts, m, f, n_entries, entries, length, rows, columns, matrix)
-    integer, intent(in) :: n, m, n_entries        !< parts, steps, entries
-    type(loop_part_type), intent(in) :: parts(n)
-    real(wp), intent(in) :: f(4, 0:m)
-    real(wp), intent(in) :: entries(3, n_entries) !< the columns of all frames
-    real(wp), intent(in) :: length                !< of the mechanism [m]
-    integer, intent(in) :: rows, columns
-    real(wp), intent(inout) :: matrix(rows, columns)
+    integer, intent(in) :: n                           !< number of parts
+    type(loop_part_type), intent(in) :: parts(n)       !< columns of frames of earlier blocks
+    integer, intent(in) :: m                           !< number of steps
+    real(wp), intent(in) :: f(4, 0:m)                  !< pose of each frame, in the plane's axes [m]
+    integer, intent(in) :: n_entries                   !< number of entries of all frames
+    real(wp), intent(in) :: entries(3, n_entries)      !< angular velocity and velocity of the origin per unit rate, plane's axes
+    real(wp), intent(in) :: length                     !< the mechanism's size [m]
+    integer, intent(in) :: rows                        !< number of rows of the matrix
+    integer, intent(in) :: columns                     !< number of its columns
+    real(wp), intent(inout) :: matrix(rows, columns)   !< rows in rad or parts of length, columns per rad or per length
     real(wp) :: per_length, w, x, y
     integer :: i, row, j
 
@@ -161,16 +170,23 @@ contains
     end do
   end subroutine add_earlier
 
-  !> Columns, velocities, and accelerations without accelerations of any coordinate, of frames first .. last.
+  !> Columns and velocities of frames first .. last, and their accelerations with no accelerations of any coordinate.
   pure subroutine move_frames(m, n_b, steps, first, last, entries, parent_entry, carries, b, dq, f, slide, columns, v, a)
-    integer, intent(in) :: m, n_b                 !< steps, entries of B
-    type(planar_step_type), intent(in) :: steps(m)
-    integer, intent(in) :: first, last
-    integer, intent(in) :: entries(0:m + 1), parent_entry(n_b)   !< as in the dynamics plan
-    logical, intent(in) :: carries(0:m)           !< frames whose columns are asked for
-    real(wp), intent(in) :: b(n_b), dq(m)
-    real(wp), intent(in) :: f(4, 0:m), slide(2, m)
-    real(wp), intent(inout) :: columns(3, n_b), v(3, 0:m), a(3, 0:m)
+    integer, intent(in) :: m                         !< number of steps
+    integer, intent(in) :: n_b                       !< number of entries of all frames
+    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
+    integer, intent(in) :: first                     !< frames from this one
+    integer, intent(in) :: last                      !< to this one
+    integer, intent(in) :: entries(0:m + 1)          !< first entry of each frame
+    integer, intent(in) :: parent_entry(n_b)         !< the same column in the parent frame, 0 for none
+    logical, intent(in) :: carries(0:m)              !< frames whose columns are requested
+    real(wp), intent(in) :: b(n_b)                   !< B, rate of the step's coordinate per unit rate of an independent one
+    real(wp), intent(in) :: dq(m)                    !< rates of all coordinates [rad/s, m/s]
+    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame, in the plane's axes [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate, in the plane's axes
+    real(wp), intent(inout) :: columns(3, n_b)       !< angular velocity and velocity of the origin per unit rate, plane's axes
+    real(wp), intent(inout) :: v(3, 0:m)             !< velocities of the frames, in the plane's axes [rad/s, m/s]
+    real(wp), intent(inout) :: a(3, 0:m)             !< accelerations of the frames, in the plane's axes [rad/s^2, m/s^2]
     real(wp) :: x, y, rate
     integer :: s, p
 
