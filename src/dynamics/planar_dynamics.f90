@@ -37,11 +37,11 @@ module mech9_planar_dynamics
 
 contains
 
-  !> The arithmetic for a plan of dynamics, whose bodies and columns are known.
+  !> The planar arithmetic for a plan of dynamics, whose bodies and columns are known.
   pure function new_planar_dynamics(mechanism, plan, dynamics) result(self)
-    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism, planar
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism, planar
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(planar_dynamics_type) :: self
     real(wp) :: gravity(3)
     integer :: b, i, n
@@ -49,7 +49,7 @@ contains
     gravity = to_plane(plan%planar, dynamics%gravity)
     self%gravity = gravity(1:2)
     allocate (self%bodies(size(dynamics%bodies)), self%blocks(size(plan%blocks)))
-    ! in the order of the plan of dynamics
+    ! bodies have the order of those in the plan of dynamics
     n = 0
     do i = 1, size(mechanism%bodies)
       if (mechanism%bodies(i)%link == 1 .or. .not. mechanism%bodies(i)%has_inertia()) cycle
@@ -63,10 +63,10 @@ contains
 
   !> Room for the columns of frames and for the passes over open chains.
   pure subroutine make_work(self, plan, dynamics, work)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(lagrange_work_type), intent(inout) :: work       !< gets the room
+    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(lagrange_work_type), intent(inout) :: work    !< gets the room
 
     allocate (work%jacobian%flat(3, size(dynamics%column)), source=0.0_wp)
     if (dynamics%open_chains) work%planar = new_planar_work(plan%n_coordinates)
@@ -74,55 +74,55 @@ contains
 
   !> Factorize the Jacobian of a block.
   subroutine factorize_block(self, plan, b, state, work)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    integer, intent(in) :: b                              !< number of the block
-    type(state_type), intent(in) :: state                 !< with the frames in place
-    type(lagrange_work_type), intent(inout) :: work       !< gets the factors
+    class(planar_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    integer, intent(in) :: b                          !< number of the block
+    type(state_type), intent(in) :: state             !< with the poses of the frames
+    type(lagrange_work_type), intent(inout) :: work   !< gets the factors
 
     call factorize_in_plane(plan, self%blocks(b), state%planar, work%blocks(b)%equations)
     work%blocks(b)%count%factorizations = work%blocks(b)%count%factorizations + 1
   end subroutine factorize_block
 
-  !> Rates, entries and accelerations from rates in two passes, where nothing is lost in round-off.
+  !> Rates, entries and accelerations from rates in two passes, if the block is conditioned so well that round-off does no harm.
   subroutine move_regular_block(self, plan, dynamics, b, conditioning, state, work, moved)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    integer, intent(in) :: b                              !< number of the block
-    real(wp), intent(in) :: conditioning                  !< of its Jacobian
-    type(state_type), intent(inout) :: state              !< gets the motion of the block
-    type(lagrange_work_type), intent(inout) :: work       !< with the block factorized; gets the entries
-    logical, intent(out) :: moved                         !< whether the block is conditioned well enough
+    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    integer, intent(in) :: b                           !< number of the block
+    real(wp), intent(in) :: conditioning               !< least pivot of the block's Jacobian over the largest
+    type(state_type), intent(inout) :: state           !< gets the motion of the block
+    type(lagrange_work_type), intent(inout) :: work    !< with the block factorized; gets the entries
+    logical, intent(out) :: moved                      !< whether the block is conditioned well enough
 
     moved = conditioning >= nearly_dependent
     if (moved) call move_in_plane(plan, dynamics, plan%blocks(b), self%blocks(b), state, work%jacobian, work%sides, &
                                   work%blocks(b))
   end subroutine move_regular_block
 
-  !> The Jacobian of a block in planar arithmetic, factorized.
+  !> Form the Jacobian of a block in planar arithmetic and factorize it.
   subroutine factorize_in_plane(plan, flat, motion, equations)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(planar_block_type), intent(in) :: flat
-    type(planar_motion_type), intent(in) :: motion
-    type(least_squares_type), intent(inout) :: equations
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
+    type(planar_block_type), intent(in) :: flat            !< the loops of the block
+    type(planar_motion_type), intent(in) :: motion         !< with the poses of the frames
+    type(least_squares_type), intent(inout) :: equations   !< gets the Jacobian and its factors
 
     call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, motion%pose, &
                       motion%slide, plan%length, equations%m, equations%n, equations%a)
     call equations%factorize()
   end subroutine factorize_in_plane
 
-  !> In planar arithmetic, where nothing is lost in noise: each frame is moved once, then once more with the
+  !> Move a well conditioned block in planar arithmetic: each frame is moved once, then once more with the
   !> accelerations of the dependent coordinates.
   subroutine move_in_plane(plan, dynamics, block, flat, state, jacobian, sides, work)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics
-    type(block_type), intent(in) :: block   !< the block
-    type(planar_block_type), intent(in) :: flat
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(jacobian_type), intent(inout) :: jacobian
-    real(wp), intent(inout), contiguous :: sides(:, :)   !< scratch
-    type(block_work_type), intent(inout) :: work
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics     !< the plan of dynamics
+    type(block_type), intent(in) :: block                !< the block
+    type(planar_block_type), intent(in) :: flat          !< the loops of the block
+    type(state_type), intent(inout) :: state             !< with poses and independent rates; gets the motion of the block
+    type(jacobian_type), intent(inout) :: jacobian       !< with the entries of earlier blocks; gets those of this one
+    real(wp), intent(inout), contiguous :: sides(:, :)   !< scratch: room for the right-hand sides of any block
+    type(block_work_type), intent(inout) :: work         !< with the block's Jacobian factorized; scratch
     real(wp) :: unit
     integer :: e, i, j, k, m, n_b
 
@@ -159,29 +159,30 @@ contains
 
   !> Outward recursion of the Jacobian's entries over the frames of a block.
   pure subroutine spread_jacobian(self, plan, dynamics, block, state, all_frames, jacobian)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(block_type), intent(in) :: block                 !< the block
-    type(state_type), intent(in) :: state                 !< with the frames in place
-    logical, intent(in) :: all_frames                     !< also frames that carry nothing
-    type(jacobian_type), intent(inout) :: jacobian        !< with `b` of the block's steps
+    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(block_type), intent(in) :: block              !< the block
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    logical, intent(in) :: all_frames                  !< also frames that carry nothing
+    type(jacobian_type), intent(inout) :: jacobian     !< with `b` of the block's steps
 
     call spread_columns(plan%n_coordinates, size(jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
                         dynamics%first, dynamics%parent_entry, dynamics%carries, all_frames, jacobian%b, &
                         state%planar%pose, state%planar%slide, jacobian%flat)
   end subroutine spread_jacobian
 
-  !> The opening of a closure per unit rate of one independent coordinate.
+  !> Velocity of the closing frame relative to the target, as rows of the closure's equations, per unit rate of one
+  !> independent coordinate.
   pure subroutine closing_column(self, plan, c, state, jacobian, e, t, column)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    integer, intent(in) :: c                              !< number of the closure
-    type(state_type), intent(in) :: state                 !< with the frames in place
-    type(jacobian_type), intent(in) :: jacobian           !< entries of all frames
-    integer, intent(in) :: e                              !< entry of the closing frame
-    integer, intent(in) :: t                              !< entry of the target frame; 0: it does not move
-    real(wp), intent(out), contiguous :: column(:)        !< (3) in the equations of the closure
+    class(planar_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    integer, intent(in) :: c                          !< number of the closure
+    type(state_type), intent(in) :: state             !< with the poses of the frames
+    type(jacobian_type), intent(in) :: jacobian       !< entries of all frames
+    integer, intent(in) :: e                          !< entry of the closing frame
+    integer, intent(in) :: t                          !< entry of the target frame, 0 where it does not move
+    real(wp), intent(out), contiguous :: column(:)    !< (3) in the equations of the closure
     real(wp) :: of_target(3)
 
     of_target = 0.0_wp
@@ -189,12 +190,12 @@ contains
     call planar_difference(plan%planar, c, state%planar, jacobian%flat(:, e), of_target, column)
   end subroutine closing_column
 
-  !> a_pr (21), the velocity terms of (19) and weights.
+  !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies.
   pure subroutine add_inertia(self, dynamics, state, work)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
-    type(lagrange_work_type), intent(inout) :: work       !< with the entries of the Jacobian; gets the sums
+    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work    !< with the entries of the Jacobian; gets the sums
 
     call add_bodies(size(self%bodies), self%bodies, size(state%q), size(dynamics%column), dynamics%first, dynamics%column, &
                     work%jacobian%flat, state%planar%pose, state%planar%velocity, state%planar%acceleration, self%gravity, &
@@ -203,12 +204,12 @@ contains
 
   !> Add the generalized forces (25) of the loads on one link.
   pure subroutine add_link_force(self, plan, dynamics, state, link, work)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(state_type), intent(in) :: state                 !< with the frames in place
-    integer, intent(in) :: link                           !< that loads act on
-    type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the generalized ones
+    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    integer, intent(in) :: link                        !< number of the link
+    type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the generalized ones
     integer :: f, first, last
 
     f = plan%frame_of(link)
@@ -220,12 +221,12 @@ contains
 
   !> Accelerations of open chains by articulated bodies.
   pure subroutine solve_open_chains(self, plan, dynamics, state, work, found)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
-    type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the accelerations
-    logical, intent(out) :: found                         !< whether all coordinates have inertia
+    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the accelerations
+    logical, intent(out) :: found                      !< whether all coordinates have inertia
     integer :: i, k, f
 
     do i = 1, size(dynamics%loaded)
@@ -239,11 +240,11 @@ contains
                         work%planar, work%accelerations, found)
   end subroutine solve_open_chains
 
-  !> Sum over the bodies of half m v^2 of the centre and half I w^2 [J].
+  !> Kinetic energy: the sum over the bodies of half m v^2 of the centre and half I w^2 [J].
   pure real(wp) function kinetic_energy(self, dynamics, state)
-    class(planar_dynamics_type), intent(in) :: self       !< the arithmetic
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(state_type), intent(in) :: state                 !< with its velocities
+    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with its velocities
 
     kinetic_energy = planar_kinetic_energy(self%bodies, state%planar)
   end function kinetic_energy

@@ -1,6 +1,7 @@
 !> Lagrange's equations in planar arithmetic: columns of frames, inertia of links and forces on them, in the plane.
 !>
-!> A column is (angular velocity, velocity of the frame's origin) per unit rate of an independent coordinate.
+!> A column is (angular velocity about the normal, velocity of the frame's origin in the plane's axes) per unit rate of an
+!> independent coordinate. Poses, velocities and accelerations of frames are in the plane's axes, from the origin of frame 0.
 module mech9_planar_lagrange
   use mech9_kinds, only: wp
   use mech9_pose, only: transformed
@@ -15,20 +16,20 @@ module mech9_planar_lagrange
   public :: planar_body_type, planar_body, spread_columns, carry_columns, add_inertia, planar_wrench, add_link_force, &
     planar_kinetic_energy
 
-  !> A link with mass, in its frame in the plane.
+  !> A link with mass or inertia, in its frame in the plane.
   type :: planar_body_type
-    integer :: frame = 0
+    integer :: frame = 0                  !< number of the link's first frame
     real(wp) :: mass = 0.0_wp             !< [kg]
-    real(wp) :: centre(2) = 0.0_wp        !< [m]
+    real(wp) :: centre(2) = 0.0_wp        !< mass centre, from the frame's origin, in the frame's axes [m]
     real(wp) :: inertia = 0.0_wp          !< about the normal through the centre [kg m^2]
   end type planar_body_type
 
 contains
 
-  !> The part of a body that counts in the plane.
+  !> The data of a body that matter in the plane.
   pure function planar_body(plan, body) result(flat)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(body_type), intent(in) :: body
+    type(body_type), intent(in) :: body   !< the body in its link's own system
     type(planar_body_type) :: flat
     real(wp) :: centre(3), inertia(3, 3)
 
@@ -41,15 +42,19 @@ contains
 
   !> Outward recursion of the columns of frames first .. last.
   pure subroutine spread_columns(m, n, steps, first, last, entries, parent_entry, carries, all_frames, b, f, slide, columns)
-    integer, intent(in) :: m, n                   !< steps, entries
-    type(planar_step_type), intent(in) :: steps(m)
-    integer, intent(in) :: first, last
-    integer, intent(in) :: entries(0:m + 1), parent_entry(n)   !< as in the dynamics plan
-    logical, intent(in) :: carries(0:m)
-    logical, intent(in) :: all_frames             !< also those that carry nothing
-    real(wp), intent(in) :: b(n)                  !< rate of each step's coordinate
-    real(wp), intent(in) :: f(4, 0:m), slide(2, m)
-    real(wp), intent(inout) :: columns(3, n)
+    integer, intent(in) :: m                         !< number of steps
+    integer, intent(in) :: n                         !< number of entries
+    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
+    integer, intent(in) :: first                     !< frames from this one
+    integer, intent(in) :: last                      !< to this one
+    integer, intent(in) :: entries(0:m + 1)          !< first entry of each frame
+    integer, intent(in) :: parent_entry(n)           !< the same column in the parent frame, 0 for none
+    logical, intent(in) :: carries(0:m)              !< a mass, a load or a later chain depends on the frame
+    logical, intent(in) :: all_frames                !< whether frames that carry nothing are included
+    real(wp), intent(in) :: b(n)                     !< B, rate of the step's coordinate per unit rate of an independent one
+    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
+    real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate
+    real(wp), intent(inout) :: columns(3, n)         !< gets the columns of these frames
     real(wp) :: x, y
     integer :: s
 
@@ -61,15 +66,18 @@ contains
     end do
   end subroutine spread_columns
 
-  !> The columns of one frame: those of the frame it departs from, carried along, and what its own step brings.
+  !> The columns of one frame: those of its parent frame, carried to its origin, and the contribution of its own step.
   pure subroutine carry_columns(n, first, last, parent_entry, step, slide, x, y, b, columns)
-    integer, intent(in) :: n, first, last         !< entries, those of the frame
-    integer, intent(in) :: parent_entry(n)
-    type(planar_step_type), intent(in) :: step
-    real(wp), intent(in) :: slide(2)
-    real(wp), intent(in) :: x, y                  !< from the frame it departs from to this one
-    real(wp), intent(in) :: b(n)
-    real(wp), intent(inout) :: columns(3, n)
+    integer, intent(in) :: n                     !< number of entries of all frames
+    integer, intent(in) :: first                 !< first entry of the frame
+    integer, intent(in) :: last                  !< last entry of the frame
+    integer, intent(in) :: parent_entry(n)       !< the same column in the parent frame, 0 for none
+    type(planar_step_type), intent(in) :: step   !< the frame's step
+    real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate of its step
+    real(wp), intent(in) :: x                    !< from the parent's origin to the frame's, along the first axis [m]
+    real(wp), intent(in) :: y                    !< the same along the second axis [m]
+    real(wp), intent(in) :: b(n)                 !< B, rate of the step's coordinate per unit rate of an independent one
+    real(wp), intent(inout) :: columns(3, n)     !< with those of the parent; gets those of the frame
     real(wp) :: w
     integer :: e, p
 
@@ -90,14 +98,21 @@ contains
   !> Add the bodies' coefficients of motion, velocity terms, and weights.
   pure subroutine add_inertia(n_bodies, bodies, m, n_entries, entries, numbers, columns, f, v, a, gravity, n, &
                               coefficients, velocity_terms, forces)
-    integer, intent(in) :: n_bodies, m, n_entries, n          !< bodies, steps, entries, independent coordinates
-    type(planar_body_type), intent(in) :: bodies(n_bodies)
-    integer, intent(in) :: entries(0:m + 1)                   !< as in the dynamics plan
-    integer, intent(in) :: numbers(n_entries)                 !< of the entries' coordinates among the independent ones
-    real(wp), intent(in) :: columns(3, n_entries)
-    real(wp), intent(in) :: f(4, 0:m), v(3, 0:m), a(3, 0:m)   !< poses, velocities and accelerations of the frames
-    real(wp), intent(in) :: gravity(2)
-    real(wp), intent(inout) :: coefficients(n, n), velocity_terms(n), forces(n)
+    integer, intent(in) :: n_bodies                          !< number of bodies
+    type(planar_body_type), intent(in) :: bodies(n_bodies)   !< links with mass or inertia
+    integer, intent(in) :: m                                 !< number of steps
+    integer, intent(in) :: n_entries                         !< number of entries of all frames
+    integer, intent(in) :: entries(0:m + 1)                  !< first entry of each frame
+    integer, intent(in) :: numbers(n_entries)                !< place of each entry's coordinate among the independent ones
+    real(wp), intent(in) :: columns(3, n_entries)            !< columns of all frames
+    real(wp), intent(in) :: f(4, 0:m)                        !< pose of each frame: cosine, sine, origin [m]
+    real(wp), intent(in) :: v(3, 0:m)                        !< velocity of each frame [rad/s, m/s]
+    real(wp), intent(in) :: a(3, 0:m)                        !< acceleration of each frame that rates alone give [rad/s^2, m/s^2]
+    real(wp), intent(in) :: gravity(2)                       !< acceleration of free fall, in the plane's axes [m/s^2]
+    integer, intent(in) :: n                                 !< number of independent coordinates
+    real(wp), intent(inout) :: coefficients(n, n)            !< a_pr, lower triangle
+    real(wp), intent(inout) :: velocity_terms(n)             !< h_p
+    real(wp), intent(inout) :: forces(n)                     !< Q_p [N m or N]
     real(wp) :: x, y, force_x, force_y, torque, c_x, c_y, spin
     integer :: i, s, e, d, p, r
 
@@ -125,16 +140,17 @@ contains
     end do
   end subroutine add_inertia
 
-  !> Add the generalized forces of a force and a torque about the origin of a link.
+  !> Add the generalized forces of a force and a torque about the origin of a link's own system.
   pure subroutine add_link_force(planar, link, k, numbers, columns, f, force, torque, forces)
-    type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: link
-    integer, intent(in) :: k
-    integer, intent(in) :: numbers(k)
-    real(wp), intent(in) :: columns(3, k)
-    real(wp), intent(in) :: f(4)                  !< pose of the link's frame
-    real(wp), intent(in) :: force(3), torque(3)   !< fixed axes [N, N m]
-    real(wp), intent(inout) :: forces(:)
+    type(planar_plan_type), intent(in) :: planar   !< the plan in the plane
+    integer, intent(in) :: link                    !< number of the link
+    integer, intent(in) :: k                       !< number of columns of its frame
+    integer, intent(in) :: numbers(k)              !< place of each column's coordinate among the independent ones
+    real(wp), intent(in) :: columns(3, k)          !< columns of the link's frame
+    real(wp), intent(in) :: f(4)                   !< pose of the link's frame: cosine, sine, origin [m]
+    real(wp), intent(in) :: force(3)               !< in the axes of frame 0 [N]
+    real(wp), intent(in) :: torque(3)              !< in the axes of frame 0 [N m]
+    real(wp), intent(inout) :: forces(:)           !< Q_p [N m or N]
     real(wp) :: wrench(3)
     integer :: p
 
@@ -144,13 +160,16 @@ contains
     end do
   end subroutine add_link_force
 
-  !> A force and a torque about the origin of a link, as a torque about the origin of its frame and a force in the plane.
+  !> A force and a torque about the origin of a link's own system, as a torque about the origin of its frame and a force in the
+  !> plane.
   pure function planar_wrench(planar, link, f, force, torque) result(wrench)
-    type(planar_plan_type), intent(in) :: planar
-    integer, intent(in) :: link
-    real(wp), intent(in) :: f(4)                  !< pose of the link's frame
-    real(wp), intent(in) :: force(3), torque(3)   !< fixed axes [N, N m]
-    real(wp) :: wrench(3), pull(3), spin(3), x, y
+    type(planar_plan_type), intent(in) :: planar   !< the plan in the plane
+    integer, intent(in) :: link                    !< number of the link
+    real(wp), intent(in) :: f(4)                   !< pose of the link's frame: cosine, sine, origin [m]
+    real(wp), intent(in) :: force(3)               !< in the axes of frame 0 [N]
+    real(wp), intent(in) :: torque(3)              !< in the axes of frame 0 [N m]
+    real(wp) :: wrench(3)                         !< in the plane's axes [N m, N]
+    real(wp) :: pull(3), spin(3), x, y
 
     pull = to_plane(planar, force)
     spin = to_plane(planar, torque)
@@ -162,10 +181,10 @@ contains
     wrench(2:3) = pull(1:2)
   end function planar_wrench
 
-  !> Of all bodies [J].
+  !> Kinetic energy of all bodies [J].
   pure real(wp) function planar_kinetic_energy(bodies, motion) result(energy)
-    type(planar_body_type), intent(in) :: bodies(:)
-    type(planar_motion_type), intent(in) :: motion
+    type(planar_body_type), intent(in) :: bodies(:)   !< links with mass or inertia
+    type(planar_motion_type), intent(in) :: motion    !< with poses and velocities of the frames
     real(wp) :: x, y
     integer :: i
 

@@ -16,7 +16,7 @@ module mech9_spatial_dynamics
 
   !> The arithmetic of space.
   type, extends(dynamics_arithmetic_type) :: spatial_dynamics_type
-    type(articulated_type) :: articulated        !< of open chains
+    type(articulated_type) :: articulated        !< of open chains; not set where a chain is closed
   contains
     procedure :: make_work
     procedure :: factorize_block
@@ -31,10 +31,10 @@ module mech9_spatial_dynamics
 
 contains
 
-  !> The arithmetic for a plan of dynamics, whose bodies are known.
+  !> The spatial arithmetic for a plan of dynamics, whose bodies are known.
   pure function new_spatial_dynamics(plan, dynamics) result(self)
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(spatial_dynamics_type) :: self
     integer :: i
 
@@ -50,10 +50,10 @@ contains
 
   !> Room for the columns of frames and for the passes over open chains.
   pure subroutine make_work(self, plan, dynamics, work)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(lagrange_work_type), intent(inout) :: work       !< gets the room
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(lagrange_work_type), intent(inout) :: work    !< gets the room
 
     allocate (work%jacobian%w(3, size(dynamics%column)), work%jacobian%v(3, size(dynamics%column)), source=0.0_wp)
     if (dynamics%open_chains) work%articulated = new_articulated_work(plan%n_coordinates)
@@ -61,38 +61,38 @@ contains
 
   !> Factorize the Jacobian of a block.
   subroutine factorize_block(self, plan, b, state, work)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    integer, intent(in) :: b                              !< number of the block
-    type(state_type), intent(in) :: state                 !< with the frames in place
-    type(lagrange_work_type), intent(inout) :: work       !< gets the factors
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    integer, intent(in) :: b                           !< number of the block
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    type(lagrange_work_type), intent(inout) :: work    !< gets the factors
 
     call solver_factorize(plan, plan%blocks(b), state, work%blocks(b))
   end subroutine factorize_block
 
-  !> In space there is no other way than the general one.
+  !> Space has no shorter way than the general one.
   subroutine move_regular_block(self, plan, dynamics, b, conditioning, state, work, moved)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    integer, intent(in) :: b                              !< number of the block
-    real(wp), intent(in) :: conditioning                  !< of its Jacobian
-    type(state_type), intent(inout) :: state              !< not changed
-    type(lagrange_work_type), intent(inout) :: work       !< not changed
-    logical, intent(out) :: moved                         !< false
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    integer, intent(in) :: b                           !< number of the block
+    real(wp), intent(in) :: conditioning               !< least pivot of the block's Jacobian over the largest
+    type(state_type), intent(inout) :: state           !< not changed
+    type(lagrange_work_type), intent(inout) :: work    !< not changed
+    logical, intent(out) :: moved                      !< false
 
     moved = .false.
   end subroutine move_regular_block
 
   !> Outward recursion of the Jacobian's entries over the frames of a block.
   pure subroutine spread_jacobian(self, plan, dynamics, block, state, all_frames, jacobian)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(block_type), intent(in) :: block                 !< the block
-    type(state_type), intent(in) :: state                 !< with the frames in place
-    logical, intent(in) :: all_frames                     !< also frames that carry nothing
-    type(jacobian_type), intent(inout) :: jacobian        !< with `b` of the block's steps
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(block_type), intent(in) :: block              !< the block
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    logical, intent(in) :: all_frames                  !< also frames that carry nothing
+    type(jacobian_type), intent(inout) :: jacobian     !< with `b` of the block's steps
     real(wp) :: arm(3)
     integer :: s, e, p
 
@@ -110,16 +110,17 @@ contains
     end do
   end subroutine spread_jacobian
 
-  !> The opening of a closure per unit rate of one independent coordinate.
+  !> Velocity of the closing frame relative to the target, as rows of the closure's equations, per unit rate of one
+  !> independent coordinate.
   pure subroutine closing_column(self, plan, c, state, jacobian, e, t, column)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    integer, intent(in) :: c                              !< number of the closure
-    type(state_type), intent(in) :: state                 !< with the frames in place
-    type(jacobian_type), intent(in) :: jacobian           !< entries of all frames
-    integer, intent(in) :: e                              !< entry of the closing frame
-    integer, intent(in) :: t                              !< entry of the target frame; 0: it does not move
-    real(wp), intent(out), contiguous :: column(:)        !< (rank) in the equations of the closure
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    integer, intent(in) :: c                           !< number of the closure
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    type(jacobian_type), intent(in) :: jacobian        !< entries of all frames
+    integer, intent(in) :: e                           !< entry of the closing frame
+    integer, intent(in) :: t                           !< entry of the target frame, 0 where it does not move
+    real(wp), intent(out), contiguous :: column(:)     !< (rank) in the equations of the closure
     real(wp) :: w(3), v(3), arm(3)
 
     associate (closure => plan%closures(c))
@@ -134,12 +135,12 @@ contains
     end associate
   end subroutine closing_column
 
-  !> a_pr (21), the velocity terms of (19) and weights.
+  !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies.
   pure subroutine add_inertia(self, dynamics, state, work)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
-    type(lagrange_work_type), intent(inout) :: work       !< with the entries of the Jacobian; gets the sums
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work    !< with the entries of the Jacobian; gets the sums
     integer :: i
 
     do i = 1, size(dynamics%bodies)
@@ -147,12 +148,12 @@ contains
     end do
   end subroutine add_inertia
 
-  !> The terms of one body.
+  !> Add the terms of one body.
   pure subroutine add_body(dynamics, body, state, work)
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(frame_body_type), intent(in) :: body             !< the body
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    type(lagrange_work_type), intent(inout) :: work       !< gets the sums
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(frame_body_type), intent(in) :: body          !< the body
+    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work    !< with the entries of the Jacobian; gets the sums
     real(wp) :: arm(3), force(3), torque(3), j_c(3), momentum(3), spin(3)
     integer :: f, e, d, p, r
 
@@ -183,24 +184,24 @@ contains
     end do
   end subroutine add_body
 
-  !> The body's inertia tensor, in fixed axes, times a vector.
+  !> The product of a body's inertia tensor about its centre, in fixed axes, and a vector.
   pure function inertia_times(body, r, vector) result(product)
-    type(frame_body_type), intent(in) :: body             !< the body
-    real(wp), intent(in) :: r(3, 3)          !< rotation of its frame
-    real(wp), intent(in) :: vector(3)        !< fixed axes
-    real(wp) :: product(3)
+    type(frame_body_type), intent(in) :: body   !< the body
+    real(wp), intent(in) :: r(3, 3)             !< rotation of its frame
+    real(wp), intent(in) :: vector(3)           !< in fixed axes
+    real(wp) :: product(3)                   !< in fixed axes
 
     product = turn(r, turn(body%inertia, turn_back(r, vector)))
   end function inertia_times
 
   !> Add the generalized forces (25) of the loads on one link.
   pure subroutine add_link_force(self, plan, dynamics, state, link, work)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(state_type), intent(in) :: state                 !< with the frames in place
-    integer, intent(in) :: link                           !< that loads act on
-    type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the generalized ones
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    integer, intent(in) :: link                        !< number of the link
+    type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the generalized ones
     real(wp) :: torque(3)
     integer :: f, e, p
 
@@ -215,11 +216,11 @@ contains
 
   !> Torque of the loads on a link about the origin of its frame.
   pure function torque_on_frame(plan, state, link, work) result(torque)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: link             !< that loads act on
-    type(lagrange_work_type), intent(in) :: work   !< with the loads' forces
-    real(wp) :: torque(3)   !< fixed axes [N m]
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(state_type), intent(in) :: state          !< with the poses of the frames
+    integer, intent(in) :: link                    !< number of the link
+    type(lagrange_work_type), intent(in) :: work   !< with the loads' forces and the motion that they read
+    real(wp) :: torque(3)   !< in fixed axes [N m]
     real(wp) :: arm(3)
 
     arm = work%view%links(link)%p - plan%origin - state%p(:, plan%frame_of(link))
@@ -228,12 +229,12 @@ contains
 
   !> Accelerations of open chains by articulated bodies.
   pure subroutine solve_open_chains(self, plan, dynamics, state, work, found)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
-    type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the accelerations
-    logical, intent(out) :: found                         !< whether all coordinates have inertia
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the accelerations
+    logical, intent(out) :: found                      !< whether all coordinates have inertia
     integer :: i, k, f
 
     do i = 1, size(dynamics%loaded)
@@ -247,11 +248,11 @@ contains
                           work%accelerations, found)
   end subroutine solve_open_chains
 
-  !> Sum over the bodies of half m v^2 of the centre and half omega . I omega [J].
+  !> Kinetic energy: the sum over the bodies of half m v^2 of the centre and half omega . I omega [J].
   pure real(wp) function kinetic_energy(self, dynamics, state)
-    class(spatial_dynamics_type), intent(in) :: self      !< the arithmetic
-    type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-    type(state_type), intent(in) :: state                 !< with its velocities
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with its velocities
     real(wp) :: arm(3), v(3), omega(3)
     integer :: i
 
