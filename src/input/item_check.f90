@@ -71,7 +71,7 @@ contains
       if (value%kind /= value_integer .and. value%kind /= value_real) then
         call diagnostics%add(value%span, ''''//name//''' takes numbers, and '//written//' is none')
       else if (.not. is_sensible(value%number)) then
-        call diagnostics%add(value%span, written//' is beyond any mechanism; numbers are 0 or between 1e-100 and 1e100')
+        call diagnostics%add(value%span, written//' is too large or too small; numbers are 0 or between 1e-100 and 1e100')
       end if
     case ('text')
       if (value%kind == value_word .or. value%kind == value_logical) then

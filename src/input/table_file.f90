@@ -52,7 +52,7 @@ contains
     q = q(:n)
     if (diagnostics%count == found .and. n < fewest_points) &
       call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
-                           ' points, and here are '//to_text(n))
+                           ' points, and the table has '//to_text(n))
     ok = diagnostics%count == found
   end subroutine read_table_file
 
@@ -78,7 +78,7 @@ contains
       if (are_names(source%text(first:last))) return
     end if
     if (count /= 2) then
-      call diagnostics%add(span_type(number, first, max(first, last)), 'each line holds two numbers, t and q; here are '// &
+      call diagnostics%add(span_type(number, first, max(first, last)), 'each line holds two numbers, t and q; this one has '// &
                            to_text(count))
       return
     end if
@@ -86,7 +86,7 @@ contains
       call read_numeral(source%text(fields(i)%first:fields(i)%last), numerals(i))
       if (.not. allocated(numerals(i)%problem)) then
         if (is_sensible(numerals(i)%number)) cycle
-        numerals(i)%problem = 'is beyond any mechanism; numbers are 0 or between 1e-100 and 1e100'
+        numerals(i)%problem = 'is too large or too small; numbers are 0 or between 1e-100 and 1e100'
       end if
       call diagnostics%add(fields(i), ''''//diagnostics%text_of(fields(i))//''' '//numerals(i)%problem)
       return

@@ -159,7 +159,7 @@ def other_links(s):
     s.checks.equal(table[1, 1, 2], [None, 0.0, None], 'two slides have an angle and no distance')
     s.checks.equal(table[1, 4, 5], [1.0, 0.0, 1.0], 'each pair of a star and the next one')
     s.checks.true((1, 4, 6) not in table and table[1, 1, 60] == [59.0, 0.0, None], 'and the last one and the first')
-    s.checks.true(len(table) == 40 and 'and 20 lines more' in printed, 'forty lines at most', printed)
+    s.checks.true(len(table) == 40 and 'and 20 more lines' in printed, 'forty lines at most', printed)
 
 
 def mistakes(s):

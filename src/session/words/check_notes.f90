@@ -98,6 +98,6 @@ contains
     end do
     if (any(massless)) write (unit, '(a)') 'note: '//trim(merge('links', 'link ', count(massless) > 1))//' '// &
       some_of(pack([(i, i=1, size(massless))], massless), longest_list)//trim(merge(' have', ' has ', count(massless) > 1))// &
-      ' no mass, while others have; give a &body where that is not meant'
+      ' no mass, while others have; give a &body where this is a mistake'
   end subroutine note_bodies
 end module mech9_check_notes

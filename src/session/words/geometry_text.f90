@@ -46,7 +46,7 @@ contains
           right(shown(1), given(1)), right(shown(2), given(2)), right(shown(3), given(3))
       end associate
     end do
-    if (size(dimensions) > most_lines) write (unit, '(a)') '  and '//to_text(size(dimensions) - most_lines)//' lines more'
+    if (size(dimensions) > most_lines) write (unit, '(a)') '  and '//to_text(size(dimensions) - most_lines)//' more lines'
   end subroutine print_dimensions
 
   !> A text at the left of a column.

@@ -100,7 +100,7 @@ contains
       if (i <= most_lines) call print_alternatives(unit, plan, report, i)
     end do
     call print_marked(unit, .not. report%moves, 'cannot move, hence not be independent: ', &
-                      '; the links that these pairs join are as one')
+                      '; the links that these pairs join move as one body')
     call print_marked(unit, report%dimensions == 0, 'on no closed chain: ')
     do i = 1, size(report%idle)
       write (unit, '(a)') 'idle: coordinates '//some_of(report%idle(i)%coordinates, longest_list)//' can move while links '// &
@@ -128,7 +128,7 @@ contains
         '; at the start only '//to_text(report%at_start(b))//': a singular position'
       write (unit, '(a)') ''
     end do
-    if (left_out > 0) write (unit, '(a)') 'and '//to_text(left_out)//' blocks more'
+    if (left_out > 0) write (unit, '(a)') 'and '//to_text(left_out)//' more blocks'
   end subroutine print_ranks
 
   !> Write which coordinates could be independent instead of one that is.
@@ -143,7 +143,7 @@ contains
     others = pack([(k, k=1, plan%n_coordinates)], abs(report%shares(:, i)) > least_share)
     others = pack(others, others /= plan%independent(i))
     if (size(others) > 0) then
-      write (unit, '(a)') 'instead of '//to_text(plan%independent(i))//' could be independent: '//some_of(others, longest_list)
+      write (unit, '(a)') 'could be independent instead of '//to_text(plan%independent(i))//': '//some_of(others, longest_list)
     else
       write (unit, '(a)') 'independent in any case: '//to_text(plan%independent(i))
     end if
