@@ -1,7 +1,7 @@
 !> Accelerations of open chains by articulated bodies (Featherstone in docs/bibliography.md), without a matrix, in O(links).
 !>
-!> Lagrange's equations of a mechanism without closed chains are those of Newton and Euler link by link. The links that
-!> hang on a step resist a motion (dw, dv) of its frame with a wrench that is linear in it,
+!> Lagrange's equations of a mechanism without closed chains are those of Newton and Euler link by link. The links
+!> beyond a step, towards the tips, resist a motion (dw, dv) of its frame with a wrench that is linear in it,
 !>   torque = J dw + H dv + torque_0,   force = H^T dw + M dv + force_0,
 !> about the frame's origin, in fixed axes. A first pass inward eliminates the steps' accelerations from the tips to
 !> link 1: with the screw S of a step, U = (J H; H^T M) S and D = S . U,
@@ -35,7 +35,7 @@ module mech9_articulated_bodies
     real(wp), allocatable :: column(:, :)        !< (6,M) U
     real(wp), allocatable :: pivot(:)            !< (M) D
     real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
-    real(wp), allocatable :: amount(:, :)        !< (5,0:M) links that hang on a step, as if rigid: mass, moment, sum of m r^2
+    real(wp), allocatable :: amount(:, :)        !< (5,0:M) links beyond a step, as if rigid: mass, moment, sum of m r^2
     real(wp), allocatable :: motion(:, :)        !< (6,0:M) accelerations less those that rates alone give
   end type articulated_work_type
 
@@ -184,7 +184,7 @@ contains
     real(wp), intent(in) :: axis_w(3, m)            !< angular velocity that each step gives per unit rate
     real(wp), intent(in) :: axis_v(3, m)            !< velocity of the new origin per unit rate
     real(wp), intent(in) :: forces(m)               !< generalized force on each coordinate [N m or N]
-    real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< J, H, M of each frame's own bodies; then of all that hang on it
+    real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< J, H, M of each frame's own bodies; then of all links beyond it too
     real(wp), intent(inout) :: wrench(6, 0:m)       !< torque_0 and force_0 in the same way [N m, N]
     real(wp), intent(inout) :: amount(5, 0:m)       !< mass, moment and sum of m r^2 in the same way, as if rigid
     real(wp), intent(out) :: column(6, m)           !< U of each step
@@ -224,7 +224,7 @@ contains
     end do
   end subroutine go_inward
 
-  !> An upper bound of the inertia about a screw of all that hangs on it, as if rigid: the measure of round-off in a pivot.
+  !> An upper bound of the inertia about a screw of all links that it moves, as if rigid: the measure of round-off in a pivot.
   pure real(wp) function rigid_inertia(amount, w, v)
     real(wp), intent(in) :: amount(5)   !< mass, moment and sum of m r^2 about the frame's origin, fixed axes [kg, kg m, kg m^2]
     real(wp), intent(in) :: w(3)        !< angular velocity of the screw per unit rate, fixed axes

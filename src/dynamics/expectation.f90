@@ -1,4 +1,4 @@
-!> Extrapolation of rates and of the accelerations that rates alone give, from the two last evaluations.
+!> Extrapolation of rates and of the accelerations that rates alone give, from the last two evaluations.
 module mech9_expectation
   use mech9_kinds, only: wp
   implicit none

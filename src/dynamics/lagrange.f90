@@ -26,10 +26,10 @@ module mech9_lagrange
 
 contains
 
-  !> Rates of the dependent coordinates and accelerations of the independent ones, for closed positions
-  !> (frames with their poses) and the rates of the independent coordinates in `state`. Dependent accelerations
-  !> in `state` are then those that rates alone give. Fails in a singular position of a block, where a coordinate has no
-  !> inertia, and where a load fails.
+  !> Rates of the dependent coordinates and accelerations of the independent ones, for the poses of the frames, which must
+  !> satisfy all closures, and the rates of the independent coordinates in `state`. Dependent accelerations in `state` are
+  !> then those that rates alone give. Fails in a singular position of a block, where a coordinate has no inertia, and where
+  !> a load fails.
   subroutine find_motion(mechanism, plan, dynamics, state, work, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism

@@ -14,12 +14,12 @@ module mech9_planar_articulated
   !> Scratch of the passes, sized once, in the plane's axes. An inertia is (J, Hx, Hy, Mxx, Mxy, Myy) [kg m^2, kg m, kg].
   type :: planar_work_type
     real(wp), allocatable :: applied(:, :)       !< (3,M) wrench of the loads on each frame: to be set before [N m, N]
-    real(wp), allocatable :: inertia(:, :)       !< (6,0:M) inertia of all links that hang on a step
+    real(wp), allocatable :: inertia(:, :)       !< (6,0:M) inertia of all links beyond a step
     real(wp), allocatable :: wrench(:, :)        !< (3,0:M) torque_0 and force_0 [N m, N]
     real(wp), allocatable :: column(:, :)        !< (3,M) U
     real(wp), allocatable :: pivot(:)            !< (M) D
     real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
-    real(wp), allocatable :: amount(:, :)        !< (4,0:M) links that hang on a step, as if rigid: mass, moment, inertia
+    real(wp), allocatable :: amount(:, :)        !< (4,0:M) links beyond a step, as if rigid: mass, moment, inertia
     real(wp), allocatable :: motion(:, :)        !< (3,0:M) accelerations less those that rates alone give
   end type planar_work_type
 
@@ -102,7 +102,7 @@ contains
     real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
     real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate
     real(wp), intent(in) :: forces(m)                !< generalized force on each coordinate [N m or N]
-    real(wp), intent(inout) :: inertia(6, 0:m)       !< J, H, M of each frame's own bodies; then of all that hang on it
+    real(wp), intent(inout) :: inertia(6, 0:m)       !< J, H, M of each frame's own bodies; then of all links beyond it too
     real(wp), intent(inout) :: wrench(3, 0:m)        !< torque_0 and force_0 in the same way [N m, N]
     real(wp), intent(inout) :: amount(4, 0:m)        !< mass, moment and inertia in the same way, as if rigid
     real(wp), intent(out) :: column(3, m)            !< U of each step

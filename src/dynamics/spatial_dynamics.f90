@@ -148,7 +148,7 @@ contains
     end do
   end subroutine add_inertia
 
-  !> Add the terms of one body.
+  !> Add the coefficients, velocity terms and weight of one body.
   pure subroutine add_body(dynamics, body, state, work)
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(frame_body_type), intent(in) :: body          !< the body
