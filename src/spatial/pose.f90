@@ -17,7 +17,7 @@ module mech9_pose
 
 contains
 
-  !> Pose of C in A from those of B in A and of C in B; (10) with its factors mended.
+  !> Pose of C in A from those of B in A and of C in B; (10) with its factors corrected.
   pure function compose(x_ab, x_bc) result(x_ac)
     type(pose_type), intent(in) :: x_ab   !< pose of B in A, lengths in m
     type(pose_type), intent(in) :: x_bc   !< pose of C in B
