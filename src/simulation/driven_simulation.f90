@@ -112,7 +112,7 @@ contains
     class(driven_simulation_type), intent(inout) :: self   !< the simulation
     logical, intent(in) :: always                          !< work it out in any case
 
-    if (always) call self%driven%conditioning%look(self%t, self%driven%work, self%least_conditioning)
+    if (always) call self%driven%conditioning%update(self%t, self%driven%work, self%least_conditioning)
   end subroutine watch_conditioning
 
   !> Energies of the present position.

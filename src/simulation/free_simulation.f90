@@ -261,9 +261,9 @@ contains
     logical, intent(in) :: always                        !< work it out in any case
 
     if (always) then
-      call self%conditioning%look(self%t, self%motion%system%work%blocks, self%least_conditioning)
+      call self%conditioning%update(self%t, self%motion%system%work%blocks, self%least_conditioning)
     else
-      call self%conditioning%glance(self%t, self%motion%system%work%blocks)
+      call self%conditioning%update_by_pivots(self%t, self%motion%system%work%blocks)
     end if
   end subroutine watch_conditioning
 

@@ -99,7 +99,7 @@ contains
       residual_norm = maxval(abs(work%right))
       outcome%converged = residual_norm <= closed_enough .and. outcome%iterations >= least
       if (outcome%converged) return
-      ! the iteration has diverged, or takes too many steps
+      ! the iteration has diverged, or is too slow
       if (outcome%iterations == most_iterations .or. .not. residual_norm < huge(residual_norm)) return
       call factorize_block(plan, block, state, work)
       work%right = -work%right
@@ -176,19 +176,19 @@ contains
 
   !> Rates of the block's dependent coordinates, J_d dq_d = -J_i dq_i, and velocities of its frames.
   !> The Jacobian must be factorized at this position.
-  subroutine solve_rates(plan, block, state, work, remainder, no_more)
+  subroutine solve_rates(plan, block, state, work, remainder, without_accelerations)
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(block_type), intent(in) :: block          !< the block
     type(state_type), intent(inout) :: state       !< given rates in; rates of the block and velocities of its frames out
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its factors
     real(wp), intent(out), optional :: remainder   !< norm of the residual that no rates of the unknowns remove
-    logical, intent(in), optional :: no_more   !< true: no accelerations follow; only velocities that other blocks use are needed
+    logical, intent(in), optional :: without_accelerations   !< a planar chain finds only velocities that other blocks use
     integer :: last
 
     work%count%rates = work%count%rates + 1
     if (work%chain%used .and. work%equations%by_cofactors .and. .not. present(remainder)) then
       last = block%last_step
-      if (present(no_more)) last = merge(work%chain%last_moved, last, no_more)
+      if (present(without_accelerations)) last = merge(work%chain%last_moved, last, without_accelerations)
       call chain_rates(plan%planar, work%chain, work%equations%inverse, last, state%dq, state%planar)
       work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
       return

@@ -20,15 +20,15 @@ module mech9_conditioning
     integer :: block = 0                  !< number of that block; 0: none yet
     real(wp) :: pivot = huge(1.0_wp)      !< least pivot when singular values were computed last
   contains
-    procedure :: glance
-    procedure :: look
+    procedure :: update_by_pivots
+    procedure :: update
   end type conditioning_type
 
 contains
 
   !> Take a position into account whose factorized Jacobians are in `work`. Singular values are computed only when the
   !> least pivot has become smaller than it was at their last computation.
-  subroutine glance(self, t, work)
+  subroutine update_by_pivots(self, t, work)
     class(conditioning_type), intent(inout) :: self   !< the worst of the positions so far
     real(wp), intent(in) :: t                         !< time of the position [s]
     type(block_work_type), intent(inout) :: work(:)   !< scratch of all blocks, with the factors of their Jacobians
@@ -41,11 +41,11 @@ contains
     end do
     if (pivot >= worth_a_look*self%pivot) return
     self%pivot = pivot
-    call self%look(t, work, least)
-  end subroutine glance
+    call self%update(t, work, least)
+  end subroutine update_by_pivots
 
   !> Take a position into account whose factorized Jacobians are in `work`, and compute its singular values always.
-  subroutine look(self, t, work, least)
+  subroutine update(self, t, work, least)
     class(conditioning_type), intent(inout) :: self   !< the worst of the positions so far
     real(wp), intent(in) :: t                         !< time of the position [s]
     type(block_work_type), intent(inout) :: work(:)   !< scratch of all blocks, with the factors of their Jacobians
@@ -57,7 +57,7 @@ contains
     self%least = least
     self%t = t
     self%block = block
-  end subroutine look
+  end subroutine update
 
   !> The least singular value of any block and the number of this block; 1 and 0 where there is no closed chain.
   subroutine find_conditioning(work, least, block)

@@ -108,7 +108,7 @@ contains
   !> The angle and the displacement from the target pose to the closing frame.
   pure subroutine find_error(closure, m, f, error)
     type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
-    integer, intent(in) :: m                           !< steps
+    integer, intent(in) :: m                           !< number of steps of the plan
     real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
     real(wp), intent(out) :: error(3)                  !< from the target pose to the closing frame [rad, m, m]
     real(wp) :: c, s

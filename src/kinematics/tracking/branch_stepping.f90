@@ -263,7 +263,7 @@ contains
         if (complete) then
           call solve_motion(plan, block, stepper%state, work)
         else
-          call solve_rates(plan, block, stepper%state, work, no_more=.true.)
+          call solve_rates(plan, block, stepper%state, work, without_accelerations=.true.)
         end if
         call judge_step(block, stepper%per_unit, stepper%predictor, stepper%state, newton, stepper%monitors(b)%trial_pivot, &
                         worst)

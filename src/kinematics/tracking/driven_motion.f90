@@ -286,7 +286,7 @@ contains
     driven%positions = driven%positions + 1
     driven%closure = largest_gap(plan, driven%state)
     driven%worst_closure = max(driven%worst_closure, driven%closure)
-    call driven%conditioning%glance(driven%state%t, driven%work)
+    call driven%conditioning%update_by_pivots(driven%state%t, driven%work)
   end subroutine count_output
 
   !> Fail where and why the motion cannot go on, and keep the independent coordinates there.
