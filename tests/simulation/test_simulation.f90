@@ -1,0 +1,231 @@
+!> The interface of simulations: a motion is the same in one go and in pieces, stops where it is interrupted, counts its work, and
+!> refuses times behind it and open chains.
+program test_simulation
+  use mech9_kinds, only: wp, long
+  use mech9_error, only: error_type, exit_usage, exit_singular, exit_interrupted
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_source, only: source_from_text
+  use mech9_document, only: document_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_parser, only: parse_document
+  use mech9_reader, only: read_mechanism
+  use mech9_simulation, only: simulation_type, simulation_statistics_type
+  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
+  use mech9_testing, only: tester_type
+  use simulation_doubles, only: countdown_type, open_chains_type
+  implicit none
+  type(tester_type) :: test
+  !> A parallelogram would be special; this four-bar's crank turns fully.
+  character(len=*), parameter :: pairs = &
+    '&pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
+    '&pair coordinate=2, links=2,3, kind=''revolute'', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 / '// &
+    '&pair coordinate=3, links=3,4, kind=''revolute'', axis=0,0,1, point=0.8,0,0, moving_point=0,0,0 / '// &
+    '&pair coordinate=4, links=1,4, kind=''revolute'', axis=0,0,1, point=0.9,0,0, moving_point=0.7,0,0 / '
+  character(len=*), parameter :: four_bar = '&structure cq=1 / '//pairs// &
+    '&initial coordinate=2, position=0.5 / &initial coordinate=3, position=-2 / '
+  character(len=*), parameter :: driven = four_bar//'&drive coordinate=1, kind=''polynomial'', coefficients=0.6,5 / '
+  character(len=*), parameter :: masses = '&body link=3, mass=2, centre=0.4,0,0, inertia=0,0,0.1,0,0,0 / '// &
+    '&gravity acceleration=0,-9.81,0 / &solver relative_tolerance=1e-10, absolute_tolerance=1e-12 / &time end=2 / '
+  character(len=*), parameter :: free = four_bar//masses//'&initial coordinate=1, position=0.6, velocity=5 / '
+  !> The same, described by the rocker, which swings: its angle is singular at the ends of its range.
+  character(len=*), parameter :: by_rocker = '&structure cq=4 / '//pairs//masses//'&initial coordinate=1, position=2.1 / '// &
+    '&initial coordinate=2, position=-1.64 / &initial coordinate=3, position=-1.53 / '// &
+    '&initial coordinate=4, position=-1.07, velocity=2 / '
+
+  call check_pieces(driven, .true., 1e-12_wp)
+  ! 2 s are some 200 steps; each errs by 1e-10, and errors grow as the motion's own differences do
+  call check_pieces(free, .false., 1e-7_wp)
+  call check_pieces(by_rocker, .false., 1e-7_wp)
+  call check_interruption(driven, .true., 1)
+  call check_interruption(free, .false., 1)
+  call check_interruption(free, .false., 7)
+  call check_statistics()
+  call check_order_of_times(driven, .true.)
+  call check_order_of_times(free, .false.)
+  call check_open_chains()
+  call test%finish()
+
+contains
+
+  !> A simulation of a text in the form of a data file, not started.
+  subroutine new_simulation(text, is_driven, simulation)
+    character(len=*), intent(in) :: text                               !< groups of the data file
+    logical, intent(in) :: is_driven                                   !< all independent coordinates are driven
+    class(simulation_type), allocatable, intent(out) :: simulation
+    type(driven_simulation_type), allocatable :: of_drives
+    type(free_simulation_type), allocatable :: of_forces
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: assembled
+    type(error_type), allocatable :: err
+
+    call read(text, is_driven, mechanism)
+    if (is_driven) then
+      allocate (of_drives)
+      call assemble_driven(mechanism, plan, assembled, err)
+      call new_driven_simulation(mechanism, plan, assembled, of_drives)
+      call move_alloc(of_drives, simulation)
+    else
+      allocate (of_forces)
+      call assemble_free(mechanism, plan, assembled, err)
+      if (.not. allocated(err)) call new_free_simulation(mechanism, plan, assembled, of_forces, err)
+      call move_alloc(of_forces, simulation)
+    end if
+    call test%no_error(err, 'a four-bar')
+  end subroutine new_simulation
+
+  subroutine read(text, is_driven, mechanism)
+    character(len=*), intent(in) :: text
+    logical, intent(in) :: is_driven
+    type(mechanism_type), intent(out) :: mechanism
+    type(document_type) :: document
+    type(diagnostics_type) :: diagnostics
+
+    call parse_document(source_from_text('text', text), document, diagnostics)
+    call read_mechanism(document, is_driven, mechanism, diagnostics)
+    call test%is_true(.not. diagnostics%failed(), 'the text is sound')
+  end subroutine read
+
+  !> Coordinates and rates of the present state.
+  function numbers(simulation)
+    class(simulation_type), intent(in), target :: simulation
+    real(wp), allocatable :: numbers(:)
+    type(mechanism_type), pointer :: mechanism
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    call simulation%present(mechanism, plan, state)
+    numbers = [state%q, state%dq]
+  end function numbers
+
+  !> The motion at its end by one call, and by many.
+  subroutine check_pieces(text, is_driven, tolerance)
+    character(len=*), intent(in) :: text
+    logical, intent(in) :: is_driven
+    real(wp), intent(in) :: tolerance          !< of coordinates [rad] and rates [rad/s]
+    class(simulation_type), allocatable :: whole, pieces
+    type(error_type), allocatable :: err
+    integer :: i
+
+    call new_simulation(text, is_driven, whole)
+    call new_simulation(text, is_driven, pieces)
+    call whole%start(err)
+    call whole%advance(2.0_wp, err)
+    call test%no_error(err, 'in one go')
+    call pieces%start(err)
+    do i = 1, 64
+      if (.not. allocated(err)) call pieces%advance(2.0_wp*i/64, err)
+    end do
+    call test%no_error(err, 'in pieces')
+    call test%is_true(maxval(abs(numbers(whole) - numbers(pieces))) <= tolerance, 'both are the same motion')
+    call pieces%advance(2.0_wp, err)
+    call test%no_error(err, 'the present time can be asked for again')
+    call test%is_true(maxval(abs(numbers(whole) - numbers(pieces))) <= tolerance, 'and is where it was')
+    call whole%close()
+    call pieces%close()
+  end subroutine check_pieces
+
+  !> A motion that is interrupted at the given question stops there with its code; asked again it goes on to the same end.
+  subroutine check_interruption(text, is_driven, question)
+    character(len=*), intent(in) :: text
+    logical, intent(in) :: is_driven
+    integer, intent(in) :: question            !< after the one of the start
+    class(simulation_type), allocatable :: whole, interrupted
+    type(error_type), allocatable :: err
+    integer, target :: left
+
+    call new_simulation(text, is_driven, whole)
+    call whole%start(err)
+    call whole%advance(1.0_wp, err)
+    call new_simulation(text, is_driven, interrupted)
+    left = 1 + question
+    call interrupted%start(err, countdown_type(left))
+    call test%no_error(err, 'the start goes well')
+    call interrupted%advance(1.0_wp, err)
+    call test%has_error(err, exit_interrupted, 'an interruption stops a motion')
+    call test%is_true(index(err%message, 'before t = 1 s') > 0, 'and the message says before which time')
+    call test%is_true(interrupted%t < 1.0_wp, 'the motion stands before it')
+    call interrupted%advance(1.0_wp, err)
+    call test%no_error(err, 'it goes on when it is asked again')
+    call test%is_true(maxval(abs(numbers(whole) - numbers(interrupted))) <= 1e-12_wp, 'to the same position')
+    call interrupted%close()
+    call new_simulation(text, is_driven, interrupted)
+    left = 1
+    call interrupted%start(err, countdown_type(left))
+    call test%has_error(err, exit_interrupted, 'the start can be interrupted')
+    call interrupted%close()
+    call whole%close()
+  end subroutine check_interruption
+
+  !> Counts grow with every advance, across changes of coordinates too, and begin at nothing.
+  subroutine check_statistics()
+    class(simulation_type), allocatable :: simulation
+    type(simulation_statistics_type) :: now, before
+    type(error_type), allocatable :: err
+    logical :: grow
+    integer :: i
+
+    call new_simulation(by_rocker, .false., simulation)
+    now = simulation%statistics()
+    call test%is_true(now%positions == 0 .and. now%steps == 0 .and. now%evaluations == 0, 'nothing was done')
+    call simulation%start(err)
+    grow = .true.
+    do i = 1, 20
+      before = simulation%statistics()
+      call simulation%advance(0.1_wp*i, err)
+      now = simulation%statistics()
+      grow = grow .and. now%positions == before%positions + 1 .and. now%steps >= before%steps &
+             .and. now%evaluations >= before%evaluations .and. now%newton_iterations >= before%newton_iterations
+    end do
+    call test%no_error(err, 'a four-bar described by its rocker')
+    call test%is_true(grow, 'no count falls')
+    call test%is_true(size(simulation%events) > 0, 'the rocker is left as independent coordinate')
+    call test%is_true(all(simulation%events%t > 0.0_wp) .and. all(simulation%events%t < 2.0_wp), 'within the motion')
+    ! each accepted step of the method takes several evaluations, and 2 s at this tolerance are more than 20 steps
+    call test%is_true(now%evaluations > now%steps .and. now%newton_iterations > 0 .and. now%steps > 20_long, &
+                      'evaluations and iterations against steps')
+    call simulation%close()
+  end subroutine check_statistics
+
+  !> No motion without a start, and none back.
+  subroutine check_order_of_times(text, is_driven)
+    character(len=*), intent(in) :: text
+    logical, intent(in) :: is_driven
+    class(simulation_type), allocatable :: simulation
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: there(:)
+
+    call new_simulation(text, is_driven, simulation)
+    call simulation%advance(0.5_wp, err)
+    call test%has_error(err, exit_usage, 'a motion that was not started')
+    call simulation%start(err)
+    call simulation%advance(0.5_wp, err)
+    there = numbers(simulation)
+    call simulation%advance(0.25_wp, err)
+    call test%has_error(err, exit_usage, 'a time before the present one')
+    call test%is_true(all(abs(numbers(simulation) - there) <= 0.0_wp), 'which changes nothing')
+    call simulation%close()
+  end subroutine check_order_of_times
+
+  !> No position with open chains is handed out, whoever asks for it.
+  subroutine check_open_chains()
+    type(open_chains_type) :: simulation
+    type(mechanism_type) :: mechanism
+    type(plan_type) :: plan
+    type(state_type) :: assembled
+    type(error_type), allocatable :: err
+
+    call read(driven, .true., mechanism)
+    call assemble_driven(mechanism, plan, assembled, err)
+    call new_driven_simulation(mechanism, plan, assembled, simulation%driven_simulation_type)
+    simulation%gap = 0.9e-9_wp*plan%length
+    call simulation%start(err)
+    call test%no_error(err, 'chains that are open by less than 1e-9 of the size')
+    simulation%gap = 1.1e-9_wp*plan%length
+    call simulation%advance(0.1_wp, err)
+    call test%has_error(err, exit_singular, 'chains that are open by more')
+  end subroutine check_open_chains
+end program test_simulation
