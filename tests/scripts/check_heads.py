@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from check_floors import sources
 from mech9_cases import TREE, Checks
 
-MODULE = re.compile(r'\A((?:!>[^\n]*\n)+)module (mech9_\w+)\n(.*?)^end module \2\n?\Z', re.S | re.M)
+MODULE = re.compile(r'\A((?:!>[^\n]*\n)+)module (mech9\w*)\n(.*?)^end module \2\n?\Z', re.S | re.M)
 DEFINITION = re.compile(
     r'^\s*(?:(?:pure|impure|elemental|recursive|module|integer|logical|real\(\w+\)|character\([^)]*\)|type\(\w+\))\s+)*'
     r'(?:(?:subroutine|function)\s+(\w+)\b|type(?:\s*,[^:]*)?\s*::\s*(\w+)\s*$|interface\s+(\w+)\s*$)')

@@ -11,6 +11,7 @@ program test_simulation
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: parse_document
   use mech9_reader, only: read_mechanism
+  use mech9_explanation, only: explain
   use mech9_simulation, only: simulation_type, simulation_statistics_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
@@ -146,6 +147,7 @@ contains
     call test%no_error(err, 'the start goes well')
     call interrupted%advance(1.0_wp, err)
     call test%has_error(err, exit_interrupted, 'an interruption stops a motion')
+    call explain(err)
     call test%is_true(index(err%message, 'before t = 1 s') > 0, 'and the message says before which time')
     call test%is_true(interrupted%t < 1.0_wp, 'the motion stands before it')
     call interrupted%advance(1.0_wp, err)

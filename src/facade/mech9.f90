@@ -1,0 +1,21 @@
+!> The library for other programs: mechanisms from data files or from values set in code, and their motions (docs/library.md).
+!>
+!> Angles are in rad, lengths in m, times in s, whatever units a data file uses. Nothing is printed and no program is ended: a
+!> failure is a value `type(error_type), allocatable`, whose message tells what is wrong and what to do. Threads may run motions
+!> of their own at the same time.
+module mech9
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, &
+    exit_file, exit_interrupted
+  use mech9_simulation, only: interruption_type, simulation_statistics_type, coordinate_change_type
+  use mech9_checked_mechanism, only: mechanism_type => checked_mechanism_type, read_file, read_text
+  use mech9_design, only: design_type
+  use mech9_motion, only: motion_type
+  implicit none
+  private
+  public :: wp
+  public :: mechanism_type, read_file, read_text, design_type
+  public :: motion_type, interruption_type, simulation_statistics_type, coordinate_change_type
+  public :: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, exit_file, &
+    exit_interrupted
+end module mech9

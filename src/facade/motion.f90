@@ -1,0 +1,259 @@
+!> A motion as the library's users run it: started, advanced from time to time, and asked for its coordinates, points and energies.
+module mech9_motion
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_frame_motion, only: point_motion
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, interruption_type, coordinate_change_type
+  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_explanation, only: explain
+  use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
+  use mech9_checked_mechanism, only: checked_mechanism_type
+  implicit none
+  private
+  public :: motion_type
+
+  !> It must not be copied.
+  type :: motion_type
+    private
+    class(simulation_type), allocatable :: simulation
+  contains
+    procedure :: start_kinematics
+    procedure :: start_dynamics
+    procedure :: advance
+    procedure :: t
+    procedure :: coordinates
+    procedure :: q
+    procedure :: dq
+    procedure :: ddq
+    procedure :: point
+    procedure :: energies
+    procedure :: closure
+    procedure :: events
+    procedure :: statistics
+    procedure :: close => close_motion
+  end type motion_type
+
+contains
+
+  !> Start a driven motion: plan, assemble, and work out the position at the start. Fails with exit_data for a missing drive,
+  !> with exit_structure or exit_assembly where the mechanism cannot be put together, with exit_singular at a singular position.
+  subroutine start_kinematics(self, mechanism, err, interruption)
+    class(motion_type), intent(inout) :: self                        !< the motion; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< with a drive for each independent coordinate
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
+    type(driven_simulation_type), allocatable :: simulation
+    type(mechanism_type) :: taken
+    type(plan_type) :: plan
+    type(state_type) :: assembled
+
+    call self%close()
+    allocate (simulation)
+    call mechanism%take(.true., taken, err)
+    if (.not. allocated(err)) call assemble_driven_start(taken, plan, assembled, err)
+    if (.not. allocated(err)) then
+      call new_driven_simulation(taken, plan, assembled, simulation, pictures=.true.)
+      call simulation%start(err, interruption)
+    end if
+    call mechanism%point_at(err)
+    if (.not. allocated(err)) call move_alloc(simulation, self%simulation)
+  end subroutine start_kinematics
+
+  !> Start a free motion from the initial positions and rates of the independent coordinates. Fails as start_kinematics does,
+  !> with exit_data also where the mechanism has drives or no initial position.
+  subroutine start_dynamics(self, mechanism, err, interruption)
+    class(motion_type), intent(inout) :: self                        !< the motion; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< with bodies, loads and gravity, and without drives
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
+    type(free_simulation_type), allocatable :: simulation
+    type(mechanism_type) :: taken
+    type(plan_type) :: plan
+    type(state_type) :: assembled
+
+    call self%close()
+    allocate (simulation)
+    call mechanism%take(.false., taken, err)
+    if (.not. allocated(err)) call assemble_free_start(taken, plan, assembled, err)
+    if (.not. allocated(err)) call new_free_simulation(taken, plan, assembled, simulation, err, pictures=.true.)
+    if (.not. allocated(err)) call simulation%start(err, interruption)
+    call mechanism%point_at(err)
+    if (allocated(err)) then
+      call simulation%close()
+    else
+      call move_alloc(simulation, self%simulation)
+    end if
+  end subroutine start_dynamics
+
+  !> Go on to a time. Times come in the direction of the mechanism's end. Fails with exit_singular where the motion cannot go on,
+  !> with exit_integrator where the integration cannot, and with exit_usage for a motion that does not run or a time before the
+  !> present one.
+  subroutine advance(self, t, err)
+    class(motion_type), intent(inout) :: self           !< the motion, started
+    real(wp), intent(in) :: t                           !< time to go to [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (allocated(self%simulation)) then
+      call self%simulation%advance(t, err)
+      if (allocated(err)) call explain(err)
+    else
+      call raise(err, exit_usage, 'a motion must be started before it can advance')
+    end if
+  end subroutine advance
+
+  !> The present time [s]; not a number where no motion is started.
+  real(wp) function t(self)
+    class(motion_type), intent(in) :: self   !< the motion
+
+    t = ieee_value(t, ieee_quiet_nan)
+    if (allocated(self%simulation)) t = self%simulation%t
+  end function t
+
+  !> Number of coordinates; 0 where no motion is started.
+  integer function coordinates(self)
+    class(motion_type), intent(in), target :: self   !< the motion
+    type(mechanism_type), pointer :: mechanism
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    coordinates = 0
+    if (.not. allocated(self%simulation)) return
+    call self%simulation%present(mechanism, plan, state)
+    coordinates = plan%n_coordinates
+  end function coordinates
+
+  !> Coordinate k [rad, m]; not a number where there is none.
+  real(wp) function q(self, k)
+    class(motion_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: k                 !< number of the coordinate
+
+    q = derivative(self, k, 0)
+  end function q
+
+  !> Rate of coordinate k [rad/s, m/s]; not a number where there is none.
+  real(wp) function dq(self, k)
+    class(motion_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: k                 !< number of the coordinate
+
+    dq = derivative(self, k, 1)
+  end function dq
+
+  !> Second time derivative of coordinate k [rad/s^2, m/s^2]; not a number where there is none.
+  real(wp) function ddq(self, k)
+    class(motion_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: k                 !< number of the coordinate
+
+    ddq = derivative(self, k, 2)
+  end function ddq
+
+  !> Coordinate k or a time derivative of it.
+  real(wp) function derivative(self, k, order)
+    class(motion_type), intent(in), target :: self   !< the motion
+    integer, intent(in) :: k                 !< number of the coordinate
+    integer, intent(in) :: order             !< of the derivative, 0 to 2
+    type(mechanism_type), pointer :: mechanism
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    derivative = ieee_value(derivative, ieee_quiet_nan)
+    if (.not. allocated(self%simulation)) return
+    call self%simulation%present(mechanism, plan, state)
+    if (k < 1 .or. k > plan%n_coordinates) return
+    select case (order)
+    case (0)
+      derivative = state%q(k)
+    case (1)
+      derivative = state%dq(k)
+    case (2)
+      derivative = state%ddq(k)
+    end select
+  end function derivative
+
+  !> Motion of a named point, in the system of link 1. Fails with exit_usage for a name that is not known.
+  subroutine point(self, name, err, position, velocity, acceleration)
+    class(motion_type), intent(in), target :: self         !< the motion
+    character(len=*), intent(in) :: name                   !< of the point
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp), intent(out), optional :: position(3)         !< [m]
+    real(wp), intent(out), optional :: velocity(3)         !< [m/s]
+    real(wp), intent(out), optional :: acceleration(3)     !< [m/s^2]
+    type(mechanism_type), pointer :: mechanism
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+    real(wp) :: p(3), v(3), a(3)
+    integer :: i
+
+    p = ieee_value(p, ieee_quiet_nan)
+    v = p
+    a = p
+    if (allocated(self%simulation)) then
+      call self%simulation%present(mechanism, plan, state)
+      do i = 1, size(mechanism%points)
+        if (mechanism%points(i)%name == name) exit
+      end do
+      if (i > size(mechanism%points)) then
+        call raise(err, exit_usage, 'the mechanism has no point '''//name//'''')
+      else
+        call point_motion(plan, state, mechanism%points(i)%link, mechanism%points(i)%position, p, v, a)
+      end if
+    else
+      call raise(err, exit_usage, 'a motion must be started before its points are known')
+    end if
+    if (present(position)) position = p
+    if (present(velocity)) velocity = v
+    if (present(acceleration)) acceleration = a
+  end subroutine point
+
+  !> Energies of the present position; not numbers where no motion is started.
+  subroutine energies(self, kinetic, potential)
+    class(motion_type), intent(inout) :: self   !< the motion
+    real(wp), intent(out) :: kinetic            !< of all bodies [J]
+    real(wp), intent(out) :: potential          !< of gravity and springs [J]
+
+    kinetic = ieee_value(kinetic, ieee_quiet_nan)
+    potential = kinetic
+    if (allocated(self%simulation)) call self%simulation%energies(kinetic, potential)
+  end subroutine energies
+
+  !> Largest closure error of the present position [m]; not a number where no motion is started.
+  real(wp) function closure(self)
+    class(motion_type), intent(in) :: self   !< the motion
+
+    closure = ieee_value(closure, ieee_quiet_nan)
+    if (allocated(self%simulation)) closure = self%simulation%closure
+  end function closure
+
+  !> The changes of the independent coordinates so far, in the order of time.
+  subroutine events(self, list)
+    class(motion_type), intent(in) :: self                                !< the motion
+    type(coordinate_change_type), allocatable, intent(out) :: list(:)     !< none of a driven motion
+
+    if (allocated(self%simulation)) then
+      list = self%simulation%events
+    else
+      allocate (list(0))
+    end if
+  end subroutine events
+
+  !> The work that the motion took so far.
+  function statistics(self)
+    class(motion_type), intent(inout) :: self         !< the motion
+    type(simulation_statistics_type) :: statistics
+
+    if (allocated(self%simulation)) statistics = self%simulation%statistics()
+  end function statistics
+
+  !> End the motion and give back what it holds. A motion can then be started again.
+  subroutine close_motion(self)
+    class(motion_type), intent(inout) :: self   !< the motion
+
+    if (.not. allocated(self%simulation)) return
+    call self%simulation%close()
+    deallocate (self%simulation)
+  end subroutine close_motion
+end module mech9_motion

@@ -1,0 +1,117 @@
+!> Designs: values set in code arrive to the bit, and are checked as those of a data file are.
+program test_design
+  use mech9, only: wp, design_type, mechanism_type, motion_type, error_type, read_text, exit_data, exit_usage
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+
+  call check_bits()
+  call check_refusals()
+  call check_everything_else()
+  call test%finish()
+
+contains
+
+  !> A pendulum of length 1/3 that turns about y.
+  subroutine pendulum(design)
+    type(design_type), intent(out) :: design
+
+    call design%independent([1])
+    call design%pair(1, 'revolute', [1, 2], axis=[0.0_wp, 1.0_wp, 0.0_wp])
+    call design%point('tip', 2, [0.0_wp, 0.0_wp, -1.0_wp/3.0_wp])
+  end subroutine pendulum
+
+  !> The start, the drive and a point of the pendulum are as they were set.
+  subroutine check_bits()
+    type(design_type) :: design
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+    real(wp) :: p(3)
+
+    call pendulum(design)
+    call design%drive(1, [0.0_wp, 0.1_wp])
+    call design%time(0.3_wp, 2.0_wp)
+    call design%finish(mechanism, err)
+    call test%no_error(err, 'a design')
+    call motion%start_kinematics(mechanism, err)
+    call test%no_error(err, 'its motion')
+    call test%is_true(abs(motion%t() - 0.3_wp) <= 0.0_wp, 'it starts at the time that was set, to the bit')
+    call test%is_true(abs(motion%q(1) - 0.1_wp*0.3_wp) <= spacing(0.03_wp), 'the polynomial drives it')
+    call test%is_true(abs(motion%dq(1) - 0.1_wp) <= 0.0_wp, 'at the rate that was set, to the bit')
+    call motion%point('tip', err, position=p)
+    call test%no_error(err, 'a point of the pendulum')
+    call test%near(p(3), -cos(0.03_wp)/3.0_wp, 1e-15_wp, 'a point on a circle')
+    call motion%point('top', err)
+    call test%has_error(err, exit_usage, 'a name that no point has')
+    call motion%close()
+  end subroutine check_bits
+
+  subroutine check_refusals()
+    type(design_type) :: design, empty
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+
+    call empty%finish(mechanism, err)
+    call test%has_error(err, exit_data, 'a design without anything')
+    call motion%start_dynamics(mechanism, err)
+    call test%has_error(err, exit_usage, 'no motion of a mechanism that was refused')
+    call pendulum(design)
+    call design%pair(2, 'revolutte', [2, 3], axis=[0.0_wp, 1.0_wp, 0.0_wp])
+    call design%body(2, -1.0_wp)
+    call design%finish(mechanism, err)
+    call test%has_error(err, exit_data, 'an unknown kind of pair')
+    call test%is_true(index(err%message, 'did you mean ''revolute''?') > 0, 'is told with the known one')
+    call test%is_true(index(err%message, '&body link=') > 0, 'and the negative mass is told together with it')
+    call pendulum(design)
+    call design%point('it''s', 2, [0.0_wp, 0.0_wp, 0.0_wp])
+    call design%finish(mechanism, err)
+    call test%has_error(err, exit_data, 'a name with a quote')
+    call test%is_true(index(err%message, 'not ''it''s''') > 0, 'is refused as it was given')
+    call pendulum(design)
+    call design%finish(mechanism, err)
+    call test%no_error(err, 'a design without a drive')
+    call motion%start_kinematics(mechanism, err)
+    call test%has_error(err, exit_data, 'has no driven motion')
+    call motion%start_dynamics(mechanism, err)
+    call test%has_error(err, exit_data, 'and without an initial position no free one')
+    call test%is_true(index(err%message, '&pair') > 0, 'the message shows the pair')
+    call design%drive(1, [0.0_wp, 0.1_wp])
+    call design%finish(mechanism, err)
+    call motion%start_dynamics(mechanism, err)
+    call test%has_error(err, exit_data, 'a driven coordinate is not free')
+    call read_text('&structure cq=1 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,0 /', mechanism, err)
+    call test%has_error(err, exit_data, 'a text is checked, too')
+    call read_text('&structure cq=1,2 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 /', mechanism, err)
+    call test%is_true(allocated(err), 'a structure with an unknown coordinate is refused')
+  end subroutine check_refusals
+
+  !> Groups without a procedure of their own: a spring on a sliding mass. Its motion is a cosine.
+  subroutine check_everything_else()
+    type(design_type) :: design
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+    real(wp) :: kinetic, potential
+
+    call design%independent([1])
+    call design%pair(1, 'prismatic', [1, 2], axis=[1.0_wp, 0.0_wp, 0.0_wp])
+    call design%body(2, 2.0_wp)
+    call design%add('load', 'kind=''coordinate'', coordinate=1, stiffness=8')
+    call design%initial(1, 0.25_wp)
+    call design%tolerances(1e-10_wp, 1e-12_wp)
+    call design%finish(mechanism, err)
+    call motion%start_dynamics(mechanism, err)
+    call test%no_error(err, 'a mass on a spring')
+    call motion%advance(3.0_wp, err)
+    call test%no_error(err, 'moves beyond the end that was set')
+    ! 3 s at 2 rad/s are some 100 steps, with an error of 1e-10 in each
+    call test%near(motion%q(1), 0.25_wp*cos(6.0_wp), 1e-8_wp, 'as a cosine')
+    call test%near(motion%dq(1), -0.5_wp*sin(6.0_wp), 1e-8_wp, 'its rate')
+    call motion%energies(kinetic, potential)
+    call test%near(kinetic, 0.25_wp*sin(6.0_wp)**2, 1e-8_wp, 'kinetic energy')
+    call test%near(potential, 0.25_wp*cos(6.0_wp)**2, 1e-8_wp, 'energy of the spring')
+    call motion%close()
+  end subroutine check_everything_else
+end program test_design

@@ -1,0 +1,100 @@
+!> The library's motions: bad calls are answered by values, energies of a driven motion, motions one after the other.
+program test_library
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use mech9, only: wp, mechanism_type, motion_type, error_type, read_text, coordinate_change_type, simulation_statistics_type, &
+    exit_usage, exit_file, read_file
+  use mech9_testing, only: tester_type
+  implicit none
+  type(tester_type) :: test
+  !> A body of 3 kg, 0.5 m from its axis, that turns against gravity.
+  character(len=*), parameter :: turning = '&structure cq=1 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
+    '&body link=2, mass=3, centre=0.5,0,0, inertia=0,0,0.1,0,0,0 / &gravity acceleration=0,-9.81,0 /'
+  character(len=*), parameter :: driven = turning//' &drive coordinate=1, kind=''polynomial'', coefficients=0.2,2.0 /'
+  character(len=*), parameter :: free = turning//' &initial coordinate=1, position=0.2, velocity=2.0 /'
+
+  call check_nothing_started()
+  call check_driven_energies()
+  call check_one_after_the_other()
+  call test%finish()
+
+contains
+
+  !> Questions to a motion that was never started have no numbers, and do no harm.
+  subroutine check_nothing_started()
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+    type(coordinate_change_type), allocatable :: events(:)
+    real(wp) :: kinetic, potential, t, q, closure
+
+    call read_file('no such file', mechanism, err)
+    call test%has_error(err, exit_file, 'a data file that is not there')
+    call motion%start_kinematics(mechanism, err)
+    call test%has_error(err, exit_usage, 'no mechanism was read')
+    call motion%advance(1.0_wp, err)
+    call test%has_error(err, exit_usage, 'no motion was started')
+    call motion%point('P', err)
+    call test%has_error(err, exit_usage, 'a point of no motion')
+    call motion%energies(kinetic, potential)
+    call motion%events(events)
+    t = motion%t()
+    q = motion%q(1)
+    closure = motion%closure()
+    call test%is_true(all(ieee_is_nan([t, q, closure, kinetic, potential])), 'there are no numbers')
+    call test%is_true(motion%coordinates() == 0 .and. size(events) == 0, 'and nothing to count')
+    call motion%close()
+  end subroutine check_nothing_started
+
+  !> Kinetic energy is half of (0.1 + 3*0.5**2) dq**2, potential energy is 3*9.81 times the height.
+  subroutine check_driven_energies()
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+    type(simulation_statistics_type) :: counts
+    real(wp) :: kinetic, potential
+
+    call read_text(driven, mechanism, err)
+    call test%no_error(err, 'a body that is turned')
+    call motion%start_kinematics(mechanism, err)
+    call motion%advance(0.75_wp, err)
+    call test%no_error(err, 'it moves')
+    call motion%energies(kinetic, potential)
+    call test%near(kinetic, 0.5_wp*0.85_wp*4.0_wp, 1e-13_wp, 'kinetic energy of a driven motion')
+    call test%near(potential, 3.0_wp*9.81_wp*0.5_wp*sin(1.7_wp), 1e-13_wp, 'potential energy of a driven motion')
+    call test%is_true(all(ieee_is_nan([motion%q(0), motion%q(2)])), 'there is one coordinate only')
+    counts = motion%statistics()
+    call test%is_true(counts%positions == 2 .and. counts%evaluations == 0, 'two positions, no evaluation')
+    call motion%advance(0.5_wp, err)
+    call test%has_error(err, exit_usage, 'time does not run back')
+    call test%is_true(index(err%message, 'cannot go back to t = 0.5 s') > 0, 'and the message says it')
+    call test%near(motion%q(1), 1.7_wp, 1e-15_wp, 'and the motion stays where it is')
+    call motion%close()
+  end subroutine check_driven_energies
+
+  !> One variable holds a driven motion, then a free one, then nothing.
+  subroutine check_one_after_the_other()
+    type(mechanism_type) :: with_drive, without
+    type(motion_type) :: motion, beside
+    type(error_type), allocatable :: err
+    real(wp) :: kinetic, potential
+
+    call read_text(driven, with_drive, err)
+    call read_text(free, without, err)
+    call test%no_error(err, 'the same body, free')
+    call motion%start_kinematics(with_drive, err)
+    call motion%start_dynamics(without, err)
+    call test%no_error(err, 'a free motion after a driven one')
+    call beside%start_kinematics(with_drive, err)
+    call test%near(motion%q(1), beside%q(1), 1e-15_wp, 'both start at the same angle')
+    call motion%advance(1.0_wp, err)
+    call test%no_error(err, 'it moves')
+    call motion%energies(kinetic, potential)
+    ! a second of some 50 steps, each with an error of 1e-8 of a state of size 5
+    call test%near(kinetic + potential, 0.5_wp*0.85_wp*4.0_wp + 3.0_wp*9.81_wp*0.5_wp*sin(0.2_wp), 1e-5_wp, 'energy is kept')
+    call motion%start_kinematics(without, err)
+    call test%is_true(allocated(err), 'a mechanism without a drive has no driven motion')
+    call test%is_true(ieee_is_nan(motion%q(1)), 'and the motion before it is closed')
+    call motion%close()
+    call beside%close()
+  end subroutine check_one_after_the_other
+end program test_library
