@@ -17,7 +17,7 @@ contains
 
   !> Whether a mechanism of a file without errors of writing, whose data are sound but for its drives, has the wrong independent coordinates.
   subroutine judge_choice_of(document, sources_of, wrong)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
+    type(document_type), intent(in) :: document        !< the data file as groups and items
     type(diagnostics_type), intent(in) :: sources_of   !< the texts that the document points into
     type(diagnostics_type), intent(out) :: wrong       !< without an error where nothing can be said against it
     type(diagnostics_type) :: of_data
@@ -40,7 +40,7 @@ contains
   !> A document without its drives. By hand: an array constructor of groups would leak (gfortran 12).
   pure subroutine leave_drives_out(document, bare)
     type(document_type), intent(in) :: document   !< the data file as groups and items
-    type(document_type), intent(out) :: bare
+    type(document_type), intent(out) :: bare      !< the data file without groups &drive
     type(group_type), allocatable :: groups(:)
     integer :: i, n
 

@@ -24,9 +24,9 @@ contains
 
   !> The short report of a run.
   subroutine print_dynamic_report(unit, table_path, outcome, simulation)
-    integer, intent(in) :: unit
-    character(len=*), intent(in) :: table_path
-    type(recording_outcome_type), intent(in) :: outcome
+    integer, intent(in) :: unit                               !< the output unit
+    character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
+    type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
     type(integration_statistics_type) :: counts
     integer :: i
@@ -61,8 +61,8 @@ contains
 
   !> The coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
   subroutine print_coefficients(unit, plan, coefficients)
-    integer, intent(in) :: unit
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: unit                  !< the output unit
+    type(plan_type), intent(in) :: plan          !< the plan of the mechanism
     real(wp), intent(in) :: coefficients(:, :)   !< lower triangle
     integer :: p, r
 
@@ -77,11 +77,11 @@ contains
 
   !> What a program may want to know of a run.
   subroutine dynamic_facts(mechanism, plan, outcome, simulation, facts)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(recording_outcome_type), intent(in) :: outcome
+    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
+    type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
-    type(facts_type), intent(out) :: facts
+    type(facts_type), intent(out) :: facts                    !< named numbers and texts about the run
     type(integration_statistics_type) :: counts
     type(work_count_type) :: work
 
@@ -122,14 +122,14 @@ contains
 
   !> The same, and more, as JSON.
   subroutine save_dynamic_report(path, mechanism, plan, table_path, diagnostics, outcome, simulation, err)
-    character(len=*), intent(in) :: path
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan             !< at the start
-    character(len=*), intent(in) :: table_path
-    type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
-    type(recording_outcome_type), intent(in) :: outcome
+    character(len=*), intent(in) :: path                      !< of the report
+    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(plan_type), intent(in) :: plan                       !< at the start
+    character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
+    type(diagnostics_type), intent(in) :: diagnostics         !< what the program is going to say and answer
+    type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
 
@@ -145,9 +145,9 @@ contains
 
   !> [{"p": 1, "r": 5, "value": ...}, ...]
   subroutine add_coefficients(json, plan, coefficients)
-    type(json_type), intent(inout) :: json
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    real(wp), intent(in) :: coefficients(:, :)
+    type(json_type), intent(inout) :: json       !< the report, inside its object
+    type(plan_type), intent(in) :: plan          !< the plan of the mechanism
+    real(wp), intent(in) :: coefficients(:, :)   !< (I,I) a(p,r), in the order of the independent coordinates
     integer :: p, r
 
     call json%begin_array('coefficients')
@@ -165,7 +165,7 @@ contains
 
   !> Changes of the independent coordinates.
   subroutine add_events(json, simulation)
-    type(json_type), intent(inout) :: json
+    type(json_type), intent(inout) :: json                 !< the report, inside its object
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
     integer :: i, k
 
@@ -185,8 +185,8 @@ contains
 
   !> Coefficients of motion as data sets, and room for events.
   subroutine write_dynamics(hdf5, plan, simulation)
-    type(hdf5_sink_type), intent(inout) :: hdf5
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
     real(wp) :: coefficients(size(plan%independent), size(plan%independent))
     integer :: p
@@ -208,7 +208,7 @@ contains
 
   !> Changes of the independent coordinates as data sets.
   subroutine write_events(hdf5, simulation)
-    type(hdf5_sink_type), intent(inout) :: hdf5
+    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
     integer :: independent(size(simulation%motion%system%plan%independent), size(simulation%events)), i
 

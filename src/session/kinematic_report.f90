@@ -21,12 +21,12 @@ contains
 
   !> The short report of a run.
   subroutine print_kinematic_report(unit, mechanism, plan, table_path, outcome, driven)
-    integer, intent(in) :: unit
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    character(len=*), intent(in) :: table_path
-    type(recording_outcome_type), intent(in) :: outcome
-    type(driven_motion_type), intent(in) :: driven
+    integer, intent(in) :: unit                           !< the output unit
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
+    type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
+    type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
     integer :: k, calls
 
     write (unit, '(a)') to_text(outcome%rows)//' positions: '//duration(outcome%seconds_solving)//' to solve'// &
@@ -50,18 +50,18 @@ contains
   end subroutine print_kinematic_report
 
   pure real(wp) function iterations_each(outcome, driven)
-    type(recording_outcome_type), intent(in) :: outcome
-    type(driven_motion_type), intent(in) :: driven
+    type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
+    type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
 
     iterations_each = real(driven%iterations, wp)/max(1, outcome%rows)
   end function iterations_each
 
   !> What a program may want to know of a run.
   subroutine kinematic_facts(plan, outcome, driven, facts)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(recording_outcome_type), intent(in) :: outcome
-    type(driven_motion_type), intent(in) :: driven
-    type(facts_type), intent(out) :: facts
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
+    type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
+    type(facts_type), intent(out) :: facts                !< named numbers and texts about the run
     type(work_count_type) :: work
 
     call facts%add('positions', outcome%rows, 'positions computed')
@@ -87,14 +87,14 @@ contains
 
   !> The same, and more, as JSON.
   subroutine save_kinematic_report(path, mechanism, plan, table_path, diagnostics, outcome, driven, err)
-    character(len=*), intent(in) :: path
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    character(len=*), intent(in) :: table_path
-    type(diagnostics_type), intent(in) :: diagnostics   !< what the program is going to say and answer
-    type(recording_outcome_type), intent(in) :: outcome
-    type(driven_motion_type), intent(in) :: driven
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=*), intent(in) :: path                  !< of the report
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
+    type(diagnostics_type), intent(in) :: diagnostics     !< what the program is going to say and answer
+    type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
+    type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
 

@@ -43,10 +43,10 @@ contains
 
   !> Plan, and put the mechanism together at the start.
   subroutine assemble(self, mechanism, plan, state, err)
-    class(kinematic_task_type), intent(in) :: self   !< the kinematic task
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(out) :: plan   !< the plan of the mechanism
-    type(state_type), intent(out) :: state   !< position and motion of the mechanism
+    class(kinematic_task_type), intent(in) :: self      !< the kinematic task
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
+    type(state_type), intent(out) :: state              !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call assemble_driven_start(mechanism, plan, state, err)
@@ -54,12 +54,12 @@ contains
 
   !> Plan, assemble, and run unless only a check is asked for.
   subroutine work(self, options, mechanism, diagnostics, reported, kept)
-    class(kinematic_task_type), intent(in) :: self   !< the kinematic task
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
-    logical, intent(out) :: reported
-    type(kept_rows_type), intent(inout), optional :: kept
+    class(kinematic_task_type), intent(in) :: self          !< the kinematic task
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    logical, intent(out) :: reported                        !< the run has written the report
+    type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
@@ -89,9 +89,9 @@ contains
   !> What a run would refuse, is refused by a check: a start from which the motion cannot begin, drives without values
   !> at the end of the time.
   subroutine check_motion(mechanism, plan, start, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start            !< assembled
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(state_type), intent(in) :: start               !< assembled position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(driven_simulation_type), target :: simulation
     type(row_source_type) :: source
@@ -107,14 +107,14 @@ contains
 
   !> The run itself and its report.
   subroutine carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
-    type(command_line_type), intent(in) :: options
-    type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(command_line_type), intent(in) :: options                      !< the command line
+    type(picture_requests_type), intent(in) :: pictures                 !< the pictures of the mechanism that are requested
+    type(mechanism_type), intent(in) :: mechanism                       !< the mechanism
+    type(plan_type), intent(in) :: plan                                 !< the plan of the mechanism
     type(driven_simulation_type), intent(inout), target :: simulation   !< to be started
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
-    logical, intent(out) :: reported
-    type(kept_rows_type), intent(inout), optional :: kept
+    type(diagnostics_type), intent(inout) :: diagnostics                !< gets what is wrong
+    logical, intent(out) :: reported                                    !< the run has written the report
+    type(kept_rows_type), intent(inout), optional :: kept               !< gets the rows as well, for a look at them after the run
     type(row_source_type) :: source
     type(results_type), target :: results
     type(facts_type) :: facts

@@ -33,9 +33,9 @@ contains
   !> Do what a command line asks for that is about a data file, or about the program itself; `code` is what the
   !> program answers to the shell.
   subroutine carry_out(task, options, code)
-    class(task_type), intent(in) :: task
-    type(command_line_type), intent(in) :: options
-    integer, intent(out) :: code
+    class(task_type), intent(in) :: task             !< the work of this program
+    type(command_line_type), intent(in) :: options   !< the command line
+    integer, intent(out) :: code                     !< exit code of the program
     type(error_type), allocatable :: err
 
     code = exit_done
@@ -56,15 +56,15 @@ contains
 
   !> Whether the options ask for a text about the program, whatever else they say.
   pure logical function asks_for_text(options)
-    type(command_line_type), intent(in) :: options
+    type(command_line_type), intent(in) :: options   !< the command line
 
     asks_for_text = options%has('help') .or. options%has('version') .or. options%has('help-data')
   end function asks_for_text
 
   subroutine show_data_help(task, group, code)
-    class(task_type), intent(in) :: task
-    character(len=*), intent(in) :: group
-    integer, intent(out) :: code
+    class(task_type), intent(in) :: task    !< the work of this program
+    character(len=*), intent(in) :: group   !< name of a group; empty: the list of groups
+    integer, intent(out) :: code            !< exit code of the program
     type(error_type), allocatable :: err
 
     code = exit_done
@@ -76,10 +76,10 @@ contains
 
   !> Read a data file and do what is asked for.
   subroutine run_file(task, options, path, code, kept)
-    class(task_type), intent(in) :: task
-    type(command_line_type), intent(in) :: options
-    character(len=*), intent(in) :: path
-    integer, intent(out) :: code
+    class(task_type), intent(in) :: task                    !< the work of this program
+    type(command_line_type), intent(in) :: options          !< the command line
+    character(len=*), intent(in) :: path                    !< of the data file
+    integer, intent(out) :: code                            !< exit code of the program
     type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics, choice
@@ -137,9 +137,9 @@ contains
 
   !> The files that are read: the data file, and those of drives.
   pure subroutine list_inputs(path, document, inputs)
-    character(len=*), intent(in) :: path                         !< of the data file
-    type(document_type), intent(in) :: document                  !< what stands in it
-    type(string_type), allocatable, intent(out) :: inputs(:)     !< paths
+    character(len=*), intent(in) :: path                       !< of the data file
+    type(document_type), intent(in) :: document                !< what stands in it
+    type(string_type), allocatable, intent(out) :: inputs(:)   !< paths of the files that are read
     type(string_type), allocatable :: of_drives(:)
     integer :: i
 
@@ -153,12 +153,12 @@ contains
 
   !> The report where no run wrote one. A failure of that is one more error; the first one decides the code.
   subroutine report_briefly(task, options, mechanism, choice, diagnostics, code)
-    class(task_type), intent(in) :: task
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(diagnostics_type), intent(in) :: choice
+    class(task_type), intent(in) :: task                   !< the work of this program
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(diagnostics_type), intent(in) :: choice           !< judgement of the choice of independent coordinates
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
-    integer, intent(inout) :: code
+    integer, intent(inout) :: code                         !< exit code of the program; of the first error
     type(error_type), allocatable :: err
 
     call save_short_report(options%argument('report'), task%program_name, mechanism, code, choice, diagnostics, err)

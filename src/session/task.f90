@@ -38,21 +38,21 @@ module mech9_task
     !> Plan, and put the mechanism together at the start.
     subroutine assemble_interface(self, mechanism, plan, state, err)
       import :: task_type, mechanism_type, plan_type, state_type, error_type
-      class(task_type), intent(in) :: self   !< the task
-      type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-      type(plan_type), intent(out) :: plan   !< the plan of the mechanism
-      type(state_type), intent(out) :: state   !< position and motion of the mechanism
+      class(task_type), intent(in) :: self                !< the task
+      type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+      type(plan_type), intent(out) :: plan                !< the plan of the mechanism
+      type(state_type), intent(out) :: state              !< position and motion of the mechanism
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine assemble_interface
 
     !> Do what the options ask for. Errors go to `diagnostics`, which knows the places in the data file.
     subroutine work_interface(self, options, mechanism, diagnostics, reported, kept)
       import :: task_type, command_line_type, mechanism_type, diagnostics_type, kept_rows_type
-      class(task_type), intent(in) :: self   !< the task
-      type(command_line_type), intent(in) :: options
-      type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-      type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
-      logical, intent(out) :: reported       !< a report was asked for, and it is written: there was a run
+      class(task_type), intent(in) :: self                    !< the task
+      type(command_line_type), intent(in) :: options          !< the command line
+      type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+      type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+      logical, intent(out) :: reported                        !< a report was asked for, and it is written: there was a run
       type(kept_rows_type), intent(inout), optional :: kept   !< the rows of a run, for who looks at them after it
     end subroutine work_interface
   end interface
@@ -61,7 +61,7 @@ contains
 
   !> Is an answer asked for, and no run?
   pure logical function answers_only(options)
-    type(command_line_type), intent(in) :: options
+    type(command_line_type), intent(in) :: options   !< the command line
 
     answers_only = options%has('check') .or. options%has('plan') .or. options%has('branches') &
                    .or. options%has('graph') .or. options%has('range')
@@ -69,12 +69,12 @@ contains
 
   !> Answer --check, --plan, --branches and --graph, and --sketch beside them.
   subroutine print_check(options, pictures, mechanism, plan, requested, start, diagnostics)
-    type(command_line_type), intent(in) :: options
-    type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested      !< what the run asks for
-    type(state_type), intent(in) :: start      !< assembled
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
+    type(requested_type), intent(in) :: requested          !< the requested part of the motion
+    type(state_type), intent(in) :: start                  !< assembled position
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(mobility_report_type) :: report
     type(error_type), allocatable :: err
@@ -99,7 +99,7 @@ contains
   !> What a check can say of the data before the mechanism is put together, and where it cannot be.
   subroutine print_given(mechanism, with_masses)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    logical, intent(in) :: with_masses         !< bodies count in this program
+    logical, intent(in) :: with_masses              !< bodies count in this program
 
     call print_dimensions(output_unit, mechanism)
     call print_notes(output_unit, mechanism, with_masses)
@@ -108,7 +108,7 @@ contains
   !> The coordinates at the start.
   subroutine print_start(mechanism, start)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(state_type), intent(in) :: start
+    type(state_type), intent(in) :: start           !< assembled position
     character(len=16) :: name
     integer :: k
 
@@ -122,9 +122,9 @@ contains
 
   !> Answer --graph.
   subroutine draw_graph(options, mechanism, plan, diagnostics)
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
     character(len=:), allocatable :: said
@@ -140,15 +140,15 @@ contains
 
   !> Before a run: tell what runs, and open what takes its results. Not `ready` after an error.
   subroutine begin_run(options, pictures, mechanism, plan, requested, source, results, diagnostics, ready)
-    type(command_line_type), intent(in) :: options
-    type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested   !< what is worked out of the motion
-    type(row_source_type), intent(inout) :: source   !< computes the rows; gets a film where pictures are wanted
-    type(results_type), intent(out) :: results
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
+    type(requested_type), intent(in) :: requested          !< the requested part of the motion
+    type(row_source_type), intent(inout) :: source         !< computes the rows; gets a film where pictures are wanted
+    type(results_type), intent(out) :: results             !< opened
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
-    logical, intent(out) :: ready
+    logical, intent(out) :: ready                          !< the run can begin
     type(error_type), allocatable :: err
 
     call announce(options, mechanism, plan, requested)
@@ -160,11 +160,11 @@ contains
 
   !> After a run: close its results, draw the mechanism, and say what was written.
   subroutine end_run(options, pictures, mechanism, source, results, diagnostics)
-    type(command_line_type), intent(in) :: options
-    type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(row_source_type), intent(in) :: source   !< of the rows that were written
-    type(results_type), intent(inout) :: results
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(row_source_type), intent(in) :: source            !< of the rows that were written
+    type(results_type), intent(inout) :: results           !< closed on return
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
 
@@ -178,10 +178,10 @@ contains
 
   !> The title, and with --verbose the structure and the plan.
   subroutine announce(options, mechanism, plan, requested)
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested      !< what the run asks for
+    type(command_line_type), intent(in) :: options   !< the command line
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(plan_type), intent(in) :: plan              !< the plan of the mechanism
+    type(requested_type), intent(in) :: requested    !< the requested part of the motion
 
     if (.not. options%has('quiet') .and. mechanism%title /= '') write (error_unit, '(a)') mechanism%title
     if (.not. options%has('verbose')) return
@@ -192,10 +192,10 @@ contains
 
   !> The pictures of the mechanism that are asked for, and a word on each.
   subroutine draw(options, pictures, mechanism, film, diagnostics)
-    type(command_line_type), intent(in) :: options
-    type(picture_requests_type), intent(in) :: pictures
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(film_type), intent(in) :: film                    !< poses and columns at some outputs
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
 

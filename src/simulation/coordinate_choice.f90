@@ -19,9 +19,9 @@ contains
   !> The independent coordinates that leave the best conditioned dependent ones at a closed position, by
   !> QR with column pivoting of the closures' Jacobian over all coordinates. Chains that are left out stay dependent.
   subroutine best_independent(plan, state, independent)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: state       !< frames in place
-    logical, intent(out) :: independent(:)      !< (M)
+    type(plan_type), intent(in) :: plan      !< the plan of the mechanism
+    type(state_type), intent(in) :: state    !< frames in place
+    logical, intent(out) :: independent(:)   !< (M)
     real(wp), allocatable :: a(:, :), tau(:), work(:)
     integer, allocatable :: pivot(:)
     logical :: followed(plan%n_coordinates)
@@ -50,10 +50,11 @@ contains
 
   !> The rows of one closure: the derivatives by all coordinates of its loop.
   pure subroutine add_closure(plan, state, c, row, a)
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: c, row
-    real(wp), intent(inout) :: a(:, :)
+    integer, intent(in) :: c                !< number of the closure
+    integer, intent(in) :: row              !< rows of `a` before those of the closure
+    real(wp), intent(inout) :: a(:, :)      !< (rows,M) derivatives of all closures by all coordinates
     integer :: i, s
 
     associate (loop => plan%closures(c)%loop)
@@ -68,14 +69,14 @@ contains
   !> The same mechanism and state in other independent coordinates. Fails with exit_singular where these cannot serve or the
   !> state cannot be carried over, and with the code of the failure where a pair or the program itself fails.
   subroutine with_independent(mechanism, state, independent, requested, new_mechanism, new_plan, new_state, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(state_type), intent(in) :: state             !< closed, with rates of all coordinates
-    logical, intent(in) :: independent(:)             !< (M)
-    type(requested_type), intent(in) :: requested             !< what does not serve them is left out
-    type(mechanism_type), intent(out) :: new_mechanism
-    type(plan_type), intent(out) :: new_plan
-    type(state_type), intent(out) :: new_state
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+    type(state_type), intent(in) :: state                !< closed, with rates of all coordinates
+    logical, intent(in) :: independent(:)                !< (M)
+    type(requested_type), intent(in) :: requested        !< what does not serve them is left out
+    type(mechanism_type), intent(out) :: new_mechanism   !< with the given independent coordinates
+    type(plan_type), intent(out) :: new_plan             !< its plan
+    type(state_type), intent(out) :: new_state           !< the same position and motion, for the new plan
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     integer :: k
 
     new_mechanism = mechanism

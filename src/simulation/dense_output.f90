@@ -62,10 +62,10 @@ contains
 
   !> The end of a step, or the start of the first one; the system must have been evaluated there last.
   subroutine add(self, system, t, y)
-    class(dense_output_type), intent(inout) :: self   !< the dense output
-    type(motion_system_type), intent(inout) :: system
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)                      !< settled
+    class(dense_output_type), intent(inout) :: self     !< the dense output
+    type(motion_system_type), intent(inout) :: system   !< the system, evaluated at the end
+    real(wp), intent(in) :: t                           !< time of the end [s]
+    real(wp), intent(in) :: y(:)                        !< settled
 
     self%last = mod(self%last, most) + 1
     self%count = min(self%count + 1, most)
@@ -87,8 +87,8 @@ contains
   !> A settled point within the last step; nothing happens where there are enough.
   pure subroutine insert(self, t, y)
     class(dense_output_type), intent(inout) :: self   !< the dense output
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
+    real(wp), intent(in) :: t                         !< time of the point [s]
+    real(wp), intent(in) :: y(:)                      !< the vector there
 
     if (self%inserted == most_inserted) return
     self%inserted = self%inserted + 1
@@ -109,9 +109,9 @@ contains
 
   !> Where the last step began.
   pure subroutine start_of_step(self, t, y)
-    class(dense_output_type), intent(in) :: self     !< with two ends at least
-    real(wp), intent(out) :: t
-    real(wp), intent(out) :: y(:)
+    class(dense_output_type), intent(in) :: self   !< with two ends at least
+    real(wp), intent(out) :: t                     !< time of the start [s]
+    real(wp), intent(out) :: y(:)                  !< the vector there
     integer :: before
 
     before = place(self, 2)
@@ -122,7 +122,7 @@ contains
   !> Place of the i-th end, counted from the last one.
   pure integer function place(self, i)
     class(dense_output_type), intent(in) :: self   !< the dense output
-    integer, intent(in) :: i
+    integer, intent(in) :: i                       !< 0: the last end; 1: the end before it; ...
 
     place = modulo(self%last - i, most) + 1
   end function place
@@ -137,8 +137,8 @@ contains
 
   !> Whether the blocks' Jacobians of the system's state have the signs that they have at the end of the last step.
   logical function agrees(self, system)
-    class(dense_output_type), intent(in) :: self   !< the dense output
-    type(motion_system_type), intent(inout) :: system
+    class(dense_output_type), intent(in) :: self        !< the dense output
+    type(motion_system_type), intent(inout) :: system   !< the system, at the state that is judged
     integer :: signs(size(system%work%blocks))
 
     call system%signs(signs)
@@ -148,11 +148,11 @@ contains
   !> The vector at time t within the last step. `found` is false where it is not certain to be as accurate as the
   !> ends of the step. Leaves the system in another state. Fails as evaluations do.
   subroutine find(self, system, t, y, found, err)
-    class(dense_output_type), intent(inout) :: self   !< the dense output
-    type(motion_system_type), intent(inout) :: system
-    real(wp), intent(in) :: t
-    real(wp), intent(out) :: y(:)
-    logical, intent(out) :: found
+    class(dense_output_type), intent(inout) :: self     !< the dense output
+    type(motion_system_type), intent(inout) :: system   !< the system, which is evaluated
+    real(wp), intent(in) :: t                           !< time within the last step [s]
+    real(wp), intent(out) :: y(:)                       !< the vector at this time
+    logical, intent(out) :: found                       !< the vector is certain to be accurate
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), dimension(system%plan%n_coordinates) :: q, dq, ddq, worse_q, worse_dq
     real(wp) :: change, change_of_rate, per_length
@@ -186,9 +186,9 @@ contains
 
   !> The polynomial through the points next to time t, if it is not there already.
   subroutine build(self, system, t, err)
-    class(dense_output_type), intent(inout) :: self   !< the dense output
-    type(motion_system_type), intent(inout) :: system
-    real(wp), intent(in) :: t
+    class(dense_output_type), intent(inout) :: self     !< the dense output
+    type(motion_system_type), intent(inout) :: system   !< the system, which is evaluated
+    real(wp), intent(in) :: t                           !< time within the last step [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), dimension(system%plan%n_coordinates, most) :: q, dq, ddq
     real(wp) :: times(most)
@@ -220,7 +220,7 @@ contains
   !> Places of the points next to time t, the nearest first; 0 where there are no more.
   pure function points_next_to(self, t) result(chosen)
     class(dense_output_type), intent(in) :: self   !< the dense output
-    real(wp), intent(in) :: t
+    real(wp), intent(in) :: t                      !< time within the last step [s]
     integer :: chosen(most), i, j
     logical :: is_left(size(self%points))
 

@@ -57,11 +57,11 @@ contains
   !> The system from an assembled start with the independent rates in `start`; its motion there is worked out,
   !> and work%coefficients are those of the start.
   subroutine set_motion_system(mechanism, plan, start, system, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start
-    class(motion_system_type), intent(inout) :: system
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
+    type(state_type), intent(in) :: start                !< assembled position, with the independent rates
+    class(motion_system_type), intent(inout) :: system   !< the system, at the start
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
     system%settles = .true.
     system%mechanism = mechanism
@@ -93,10 +93,10 @@ contains
 
   !> Derivatives of the vector. A trial state in a singular position fails with exit_singular.
   subroutine rate(self, t, y, ydot, err)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
-    real(wp), intent(out) :: ydot(:)
+    class(motion_system_type), intent(inout) :: self    !< the motion system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the independent ones
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, m
 
@@ -132,7 +132,8 @@ contains
   !> Positions and independent rates of a vector into the state.
   pure subroutine take(self, t, y)
     class(motion_system_type), intent(inout) :: self   !< the motion system
-    real(wp), intent(in) :: t, y(:)
+    real(wp), intent(in) :: t                          !< time [s]
+    real(wp), intent(in) :: y(:)                       !< the vector: all coordinates, and the rates of the independent ones
     integer :: i, m
 
     self%state%t = t
@@ -147,9 +148,9 @@ contains
 
   !> After an accepted step: close the chains, and put the closed positions back into the vector.
   subroutine settle(self, t, y, err)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    real(wp), intent(in) :: t
-    real(wp), intent(inout) :: y(:)
+    class(motion_system_type), intent(inout) :: self    !< the motion system
+    real(wp), intent(in) :: t                           !< time of the end of the step [s]
+    real(wp), intent(inout) :: y(:)   !< the vector: all coordinates, and the rates of the independent ones; closed on return
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: failed, i
 
@@ -171,9 +172,9 @@ contains
   !> Close the chains of the present state. `failed` is the block that does not close, or only by a change of
   !> more than the trusted one; 0 where all do.
   subroutine close_chains(self, trusted, failed, err)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    real(wp), intent(in) :: trusted              !< change of a coordinate, in its unit
-    integer, intent(out) :: failed
+    class(motion_system_type), intent(inout) :: self    !< the motion system
+    real(wp), intent(in) :: trusted                     !< change of a coordinate, in its unit
+    integer, intent(out) :: failed                      !< number of the block that does not close; 0: none
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: outcome
     integer :: b
@@ -192,10 +193,10 @@ contains
   !> A state between two settled ones, and all its velocities and accelerations: y is where the integrator takes it to
   !> be, and the chains are closed there. `ok` is false where they are not certain to close on the same branch.
   subroutine close_near(self, t, y, ok, err)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
-    logical, intent(out) :: ok
+    class(motion_system_type), intent(inout) :: self    !< the motion system
+    real(wp), intent(in) :: t                           !< time between the settled states [s]
+    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the independent ones
+    logical, intent(out) :: ok                          !< the chains are certain to close on the same branch
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: failed
 
@@ -209,9 +210,9 @@ contains
 
   !> A settled state, and all its velocities and accelerations.
   subroutine move_to(self, t, y, err)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)                 !< as settled
+    class(motion_system_type), intent(inout) :: self    !< the motion system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< as settled
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call take(self, t, y)
@@ -221,8 +222,8 @@ contains
 
   !> Go on with what was expected before steps that led aside.
   pure subroutine resume(self, expectation)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    type(expectation_type), intent(in) :: expectation
+    class(motion_system_type), intent(inout) :: self    !< the motion system
+    type(expectation_type), intent(in) :: expectation   !< continuation of rates from the positions before the steps aside
 
     self%work%expectation = expectation
     self%just_settled = .false.
@@ -231,7 +232,7 @@ contains
   !> With all frames in place: all velocities and accelerations of the state, and the state as
   !> loads see it in work%view, for results.
   subroutine present(self, err)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
+    class(motion_system_type), intent(inout) :: self    !< the motion system
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
@@ -255,7 +256,7 @@ contains
   !> only.
   subroutine signs(self, found)
     class(motion_system_type), intent(inout) :: self   !< the motion system
-    integer, intent(out) :: found(:)             !< (blocks)
+    integer, intent(out) :: found(:)                   !< (blocks)
     integer :: b
 
     do b = 1, size(self%work%blocks)

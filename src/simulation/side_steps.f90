@@ -26,11 +26,11 @@ contains
 
   !> An integrator of the system from (t, y), with the method and the limits that its data file asks for.
   subroutine begin_integration(integrator, system, t, y, err)
-    type(integrator_type), intent(inout) :: integrator
-    type(motion_system_type), intent(inout), target :: system    !< must outlive the integrator
-    real(wp), intent(in) :: t
-    real(wp), intent(in) :: y(:)
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(integrator_type), intent(inout) :: integrator          !< of the system, at its start
+    type(motion_system_type), intent(inout), target :: system   !< must outlive the integrator
+    real(wp), intent(in) :: t                                   !< time of the start [s]
+    real(wp), intent(in) :: y(:)   !< the vector: all coordinates, and the rates of the independent ones
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     real(wp) :: absolute(size(y))
 
     associate (solver => system%mechanism%solver)
@@ -42,12 +42,12 @@ contains
 
   !> To time t, from (from, y), or from where earlier steps led if that lies between. Fails as the integration does.
   subroutine reach(self, system, from, y, t, err)
-    class(side_steps_type), intent(inout) :: self   !< the side steps
-    type(motion_system_type), intent(inout), target :: system    !< the same at each call, until closed
-    real(wp), intent(in) :: from
-    real(wp), intent(in) :: y(:)
-    real(wp), intent(in) :: t
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(side_steps_type), intent(inout) :: self               !< the side steps
+    type(motion_system_type), intent(inout), target :: system   !< the same at each call, until closed
+    real(wp), intent(in) :: from                                !< start of the last step [s]
+    real(wp), intent(in) :: y(:)                                !< the vector there
+    real(wp), intent(in) :: t                                   !< time that is wanted, within the last step [s]
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     type(expectation_type) :: expectation
     logical :: goes_on
 

@@ -17,11 +17,11 @@ contains
 
   !> Where the results come from: enough to compute them again.
   subroutine write_provenance(file, program_name, options, mechanism, data_text)
-    type(hdf5_file_type), intent(inout) :: file
-    character(len=*), intent(in) :: program_name
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    character(len=*), intent(in) :: data_text       !< of the data file, as it is
+    type(hdf5_file_type), intent(inout) :: file      !< the open file
+    character(len=*), intent(in) :: program_name     !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options   !< the command line
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    character(len=*), intent(in) :: data_text        !< of the data file, as it is
 
     call file%add_attribute('/', 'title', mechanism%title)
     call file%add_attribute('/', 'source', program_name//' '//version)
@@ -57,7 +57,7 @@ contains
 
   !> The first and the second set of structural data.
   subroutine write_structure(file, mechanism)
-    type(hdf5_file_type), intent(inout) :: file
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer :: links(2, size(mechanism%pairs)), k
 
@@ -82,9 +82,10 @@ contains
   end subroutine write_structure
 
   subroutine write_vector(file, name, values, long_name)
-    type(hdf5_file_type), intent(inout) :: file
-    character(len=*), intent(in) :: name, long_name
-    integer, intent(in) :: values(:)
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    character(len=*), intent(in) :: name          !< of the data set
+    character(len=*), intent(in) :: long_name     !< its meaning in words
+    integer, intent(in) :: values(:)              !< its numbers
 
     call file%put('structure/'//name, values, long_name)
     call file%attach_scales('structure/'//name, ['/structure/position'])
@@ -92,9 +93,9 @@ contains
 
   !> The coincidence matrix, unless it is huge or cannot say it all: two pairs may join the same two links.
   subroutine write_matrix(file, n_links, links)
-    type(hdf5_file_type), intent(inout) :: file
-    integer, intent(in) :: n_links
-    integer, intent(in) :: links(:, :)
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    integer, intent(in) :: n_links                !< number of links
+    integer, intent(in) :: links(:, :)            !< (2,M) reference and moving link of each pair
     integer, allocatable :: c(:, :)
     integer :: k
 

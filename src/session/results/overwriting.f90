@@ -16,10 +16,10 @@ contains
 
   !> Fails with exit_usage where a file of the input, or another result, would be written over.
   subroutine refuse_overwriting(options, inputs, err, output)
-    type(command_line_type), intent(in) :: options
-    type(string_type), intent(in) :: inputs(:)                     !< paths of the files that are read
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(output_settings_type), intent(in), optional :: output     !< what the data file says, once it is understood
+    type(command_line_type), intent(in) :: options               !< the command line
+    type(string_type), intent(in) :: inputs(:)                   !< paths of the files that are read
+    type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
+    type(output_settings_type), intent(in), optional :: output   !< the group &output of the data file, once it is understood
     type(written_file_type), allocatable :: files(:)
     type(file_place_type), allocatable :: places(:)
     integer :: i
@@ -41,9 +41,9 @@ contains
 
   !> Whether a file is one of those that are read. One that is not there loses nothing.
   subroutine refuse_input(file, place, inputs, err)
-    type(written_file_type), intent(in) :: file
-    type(file_place_type), intent(in) :: place
-    type(string_type), intent(in) :: inputs(:)
+    type(written_file_type), intent(in) :: file         !< the file to be written
+    type(file_place_type), intent(in) :: place          !< the place that its name means
+    type(string_type), intent(in) :: inputs(:)          !< names of the files that are read
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(file_place_type) :: input
     integer :: i
@@ -59,8 +59,8 @@ contains
 
   !> Whether the last file of a list is one of those before it.
   subroutine refuse_output(files, places, err)
-    type(written_file_type), intent(in) :: files(:)
-    type(file_place_type), intent(in) :: places(:)
+    type(written_file_type), intent(in) :: files(:)     !< that are going to be written
+    type(file_place_type), intent(in) :: places(:)      !< the places that their names mean
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, last
 
@@ -81,8 +81,9 @@ contains
   !> loses nothing, where one of them goes through standard output. Two arguments: a list of them, put together for the
   !> call, would leak (gfortran 12).
   pure logical function follow_each_other(first, second, place)
-    type(written_file_type), intent(in) :: first, second   !< the results
-    type(file_place_type), intent(in) :: place             !< where both stand
+    type(written_file_type), intent(in) :: first    !< the result that is named first
+    type(written_file_type), intent(in) :: second   !< the other result
+    type(file_place_type), intent(in) :: place      !< where both stand
     logical :: on_standard_output(2)
 
     on_standard_output = [first%path == standard_output_path, second%path == standard_output_path]
@@ -91,7 +92,7 @@ contains
 
   !> A file in a message.
   pure function words_for(file) result(words)
-    type(written_file_type), intent(in) :: file
+    type(written_file_type), intent(in) :: file   !< the file to be written
     character(len=:), allocatable :: words
 
     words = file%what//" '"//file%path//"'"

@@ -44,11 +44,11 @@ contains
   !> What the options ask for, and the data file where they do not. Errors are those of a view or of the name of a
   !> file that cannot be meant.
   subroutine read_picture_requests(options, mechanism, program_name, requests, err)
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    character(len=*), intent(in) :: program_name
-    type(picture_requests_type), intent(out) :: requests
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    character(len=*), intent(in) :: program_name           !< mech9k or mech9d
+    type(picture_requests_type), intent(out) :: requests   !< the pictures that are requested
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(result_paths_type) :: paths
 
     call find_result_paths(options, mechanism%output, paths)
@@ -83,10 +83,10 @@ contains
 
   !> Make the sketch of an assembled position, without a run. Errors are exit_file.
   subroutine save_start(self, mechanism, plan, start, err)
-    class(picture_requests_type), intent(in) :: self   !< the picture requests
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(state_type), intent(in) :: start
+    class(picture_requests_type), intent(in) :: self    !< the picture requests
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(state_type), intent(in) :: start               !< assembled position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(picture_requests_type) :: sketch_only
     type(film_type) :: film
@@ -100,9 +100,9 @@ contains
 
   !> Make the pictures of a film; of none where it has no frame. Errors are exit_file.
   subroutine save_pictures(self, mechanism, film, err)
-    class(picture_requests_type), intent(in) :: self   !< the picture requests
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
+    class(picture_requests_type), intent(in) :: self    !< the picture requests
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(film_type), intent(in) :: film                 !< poses and columns at some outputs
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(skeleton_type) :: skeleton
     type(view_type) :: view
@@ -125,7 +125,7 @@ contains
   !> Say which pictures were made.
   subroutine print_words(self, unit)
     class(picture_requests_type), intent(in) :: self   !< the picture requests
-    integer, intent(in) :: unit
+    integer, intent(in) :: unit                        !< the output unit
 
     if (self%sketch /= '') write (unit, '(2a)') 'sketch: ', self%sketch
     if (self%animation /= '') write (unit, '(2a)') 'animation: ', self%animation
@@ -133,14 +133,14 @@ contains
 
   !> One picture. A page can be turned, unless the mechanism is planar: it has room for that.
   subroutine save_one(self, mechanism, film, skeleton, view, planar, path, moving, err)
-    class(picture_requests_type), intent(in) :: self   !< the picture requests
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(film_type), intent(in) :: film
-    type(skeleton_type), intent(in) :: skeleton
-    type(view_type), intent(in) :: view
-    logical, intent(in) :: planar
-    character(len=*), intent(in) :: path
-    logical, intent(in) :: moving
+    class(picture_requests_type), intent(in) :: self    !< the picture requests
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(film_type), intent(in) :: film                 !< poses and columns at some outputs
+    type(skeleton_type), intent(in) :: skeleton         !< places of the pairs on their axes
+    type(view_type), intent(in) :: view                 !< direction of the view
+    logical, intent(in) :: planar                       !< the motion keeps to one plane
+    character(len=*), intent(in) :: path                !< of the picture
+    logical, intent(in) :: moving                       !< the picture moves
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(projection_type) :: projection
     type(scene_type) :: scene
@@ -162,7 +162,7 @@ contains
 
   !> What kind of picture a file's name means: its ending in lower case; htm counts as html.
   pure function kind_of(path) result(kind)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !< name of the file
     character(len=len(ending_of(path)) + 1) :: kind
 
     kind = ending_of(path)

@@ -33,8 +33,8 @@ contains
   !> Begin. Nothing will be shown if standard error is no terminal or the user wants no talk.
   subroutine start(self, label, quiet)
     class(progress_type), intent(inout) :: self   !< the progress
-    character(len=*), intent(in) :: label   !< what runs
-    logical, intent(in) :: quiet
+    character(len=*), intent(in) :: label         !< what runs
+    logical, intent(in) :: quiet                  !< nothing is to be shown
 
     self%label = label
     self%shown = .false.
@@ -48,7 +48,7 @@ contains
   !> Tell how much is done; cheap enough for each position.
   subroutine update(self, fraction)
     class(progress_type), intent(inout) :: self   !< the progress
-    real(wp), intent(in) :: fraction   !< 0 to 1
+    real(wp), intent(in) :: fraction              !< 0 to 1
     real(wp) :: elapsed
     integer :: status
 
@@ -78,9 +78,9 @@ contains
 
   !> The line: label, share done, a bar, and the time left if the run goes on as it went so far.
   pure function progress_line(label, fraction, elapsed) result(line)
-    character(len=*), intent(in) :: label
-    real(wp), intent(in) :: fraction    !< 0 to 1; less or more is taken as that
-    real(wp), intent(in) :: elapsed     !< since the start [s]
+    character(len=*), intent(in) :: label   !< name of the run
+    real(wp), intent(in) :: fraction        !< 0 to 1; less or more is taken as that
+    real(wp), intent(in) :: elapsed         !< since the start [s]
     character(len=line_width) :: line
     integer, parameter :: bar_width = 24
     character(len=:), allocatable :: left

@@ -40,12 +40,12 @@ contains
 
   !> Open everything that is asked for. After an error nothing is open.
   subroutine open_results(self, options, mechanism, data_text, program_name, columns, err)
-    class(results_type), intent(out) :: self   !< the results
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    character(len=*), intent(in) :: data_text        !< of the data file
-    character(len=*), intent(in) :: program_name
-    type(columns_type), intent(in) :: columns        !< of the rows to come
+    class(results_type), intent(out) :: self            !< the results
+    type(command_line_type), intent(in) :: options      !< the command line
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    character(len=*), intent(in) :: data_text           !< of the data file
+    character(len=*), intent(in) :: program_name        !< mech9k or mech9d
+    type(columns_type), intent(in) :: columns           !< of the rows to come
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(result_paths_type) :: paths
     type(error_type), allocatable :: at_close
@@ -73,12 +73,12 @@ contains
 
   !> The plots that are asked for.
   subroutine open_plots(self, options, mechanism, columns, plots, err)
-    class(results_type), intent(in) :: self   !< the results
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(columns_type), intent(in) :: columns
-    type(sink_slot_type), allocatable, intent(out) :: plots(:)
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(results_type), intent(in) :: self                      !< the results
+    type(command_line_type), intent(in) :: options               !< the command line
+    type(mechanism_type), intent(in) :: mechanism                !< the mechanism
+    type(columns_type), intent(in) :: columns                    !< names and units of the columns
+    type(sink_slot_type), allocatable, intent(out) :: plots(:)   !< one sink for each plot
+    type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
     type(string_type), allocatable :: requests(:)
     type(plot_type), allocatable :: plot
     character(len=:), allocatable :: picture
@@ -111,10 +111,10 @@ contains
   end function leaves_out
 
   subroutine open_table(self, mechanism, program_name, columns, err)
-    class(results_type), intent(inout) :: self   !< the results
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    character(len=*), intent(in) :: program_name
-    type(columns_type), intent(in) :: columns
+    class(results_type), intent(inout) :: self          !< the results
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    character(len=*), intent(in) :: program_name        !< mech9k or mech9d
+    type(columns_type), intent(in) :: columns           !< names and units of the columns
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(table_type), allocatable :: table
     class(result_sink_type), allocatable :: sink
@@ -128,11 +128,12 @@ contains
   end subroutine open_table
 
   subroutine open_hdf5(self, options, mechanism, data_text, program_name, columns, err)
-    class(results_type), intent(inout) :: self   !< the results
-    type(command_line_type), intent(in) :: options
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    character(len=*), intent(in) :: data_text, program_name
-    type(columns_type), intent(in) :: columns
+    class(results_type), intent(inout) :: self          !< the results
+    type(command_line_type), intent(in) :: options      !< the command line
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    character(len=*), intent(in) :: data_text           !< text of the data file, kept in the file
+    character(len=*), intent(in) :: program_name        !< mech9k or mech9d
+    type(columns_type), intent(in) :: columns           !< names and units of the columns
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(hdf5_sink_type), allocatable :: file
     class(result_sink_type), allocatable :: sink
@@ -152,8 +153,8 @@ contains
 
   !> Rows to everyone; the first error ends it.
   subroutine write_rows(self, rows, err)
-    class(results_type), intent(inout) :: self   !< the results
-    real(wp), intent(in) :: rows(:, :)      !< (columns, rows), those of poses at the end
+    class(results_type), intent(inout) :: self          !< the results
+    real(wp), intent(in) :: rows(:, :)                  !< (columns, rows), those of poses at the end
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
@@ -167,7 +168,7 @@ contains
 
   !> Let no row wait any longer, in none of them; the first error is told.
   subroutine flush_results(self, err)
-    class(results_type), intent(inout) :: self   !< the results
+    class(results_type), intent(inout) :: self          !< the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: one
     integer :: i
@@ -180,7 +181,7 @@ contains
 
   !> Close all of them, whatever happens; the first error is told.
   subroutine close_results(self, err)
-    class(results_type), intent(inout) :: self   !< the results
+    class(results_type), intent(inout) :: self          !< the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(error_type), allocatable :: one
     integer :: i
@@ -210,8 +211,8 @@ contains
   !> those of the files, told with the next rows or when they are closed.
   subroutine write_facts(self, facts, exit_code)
     class(results_type), intent(in), target :: self   !< the results
-    type(facts_type), intent(in) :: facts
-    integer, intent(in), optional :: exit_code   !< that the run is going to answer; before it: not given
+    type(facts_type), intent(in) :: facts             !< named numbers and texts about the run
+    integer, intent(in), optional :: exit_code        !< that the run is going to answer; before it: not given
     type(hdf5_sink_type), pointer :: hdf5
     integer :: code
 
@@ -226,8 +227,8 @@ contains
   !> What the user is told about what was written, once all is closed; to be `quiet`, about what was not.
   subroutine print_words(self, unit, quiet)
     class(results_type), intent(in) :: self   !< the results
-    integer, intent(in) :: unit
-    logical, intent(in) :: quiet
+    integer, intent(in) :: unit               !< the output unit
+    logical, intent(in) :: quiet              !< only failures are told
     character(len=:), allocatable :: words
     integer :: i
 

@@ -33,9 +33,9 @@ contains
   !> Where the results of a run go: the command line comes before the data file. Where nothing is asked for, the table
   !> goes to standard output.
   pure subroutine find_result_paths(options, output, paths)
-    type(command_line_type), intent(in) :: options
-    type(output_settings_type), intent(in) :: output     !< what the data file says
-    type(result_paths_type), intent(out) :: paths
+    type(command_line_type), intent(in) :: options     !< the command line
+    type(output_settings_type), intent(in) :: output   !< the group &output of the data file
+    type(result_paths_type), intent(out) :: paths      !< of table, HDF5 file and others
 
     call choose(options, 'table', output%table, paths%table)
     call choose(options, 'hdf5', output%hdf5, paths%hdf5)
@@ -51,10 +51,10 @@ contains
   end subroutine find_result_paths
 
   pure subroutine choose(options, option, in_data_file, path)
-    type(command_line_type), intent(in) :: options
-    character(len=*), intent(in) :: option                !< without the dashes
-    character(len=*), intent(in) :: in_data_file          !< the path there; empty: none
-    character(len=:), allocatable, intent(out) :: path
+    type(command_line_type), intent(in) :: options       !< the command line
+    character(len=*), intent(in) :: option               !< without the dashes
+    character(len=*), intent(in) :: in_data_file         !< the path there; empty: none
+    character(len=:), allocatable, intent(out) :: path   !< that of the option, else that of the data file
 
     path = in_data_file
     if (options%has(option)) path = options%argument(option)
@@ -62,9 +62,9 @@ contains
 
   !> The list. Without `output` the data file is not understood, and nothing but a report is written.
   pure subroutine list_written_files(options, files, output)
-    type(command_line_type), intent(in) :: options
-    type(written_file_type), allocatable, intent(out) :: files(:)
-    type(output_settings_type), intent(in), optional :: output   !< what the data file says
+    type(command_line_type), intent(in) :: options                  !< the command line
+    type(written_file_type), allocatable, intent(out) :: files(:)   !< all files that are going to be written
+    type(output_settings_type), intent(in), optional :: output      !< the group &output of the data file
 
     allocate (files(0))
     if (present(output) .and. options%answer() == '') then
@@ -77,9 +77,9 @@ contains
 
   !> What a run writes.
   pure subroutine list_results(options, output, files)
-    type(command_line_type), intent(in) :: options
-    type(output_settings_type), intent(in) :: output
-    type(written_file_type), allocatable, intent(inout) :: files(:)
+    type(command_line_type), intent(in) :: options                    !< the command line
+    type(output_settings_type), intent(in) :: output                  !< the group &output of the data file
+    type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the results
     type(result_paths_type) :: paths
 
     call find_result_paths(options, output, paths)
@@ -99,9 +99,9 @@ contains
 
   !> Plots, each with its script.
   pure subroutine list_plots(options, table, files)
-    type(command_line_type), intent(in) :: options
-    character(len=*), intent(in) :: table                 !< file of the table
-    type(written_file_type), allocatable, intent(inout) :: files(:)
+    type(command_line_type), intent(in) :: options                    !< the command line
+    character(len=*), intent(in) :: table                             !< file of the table
+    type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets plots and scripts
     type(string_type), allocatable :: requests(:)
     character(len=:), allocatable :: picture
     integer :: i
@@ -116,8 +116,8 @@ contains
 
   !> What is written where there is no run.
   pure subroutine list_answers(options, files)
-    type(command_line_type), intent(in) :: options
-    type(written_file_type), allocatable, intent(inout) :: files(:)
+    type(command_line_type), intent(in) :: options                    !< the command line
+    type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the files of answers
     character(len=*), parameter :: printed(*) = [character(len=9) :: 'structure', 'check', 'plan', 'branches', 'range']
     character(len=:), allocatable :: graph
     integer :: i
@@ -135,8 +135,9 @@ contains
 
   !> One file more; none where the path is empty.
   pure subroutine append(files, what, path)
-    type(written_file_type), allocatable, intent(inout) :: files(:)
-    character(len=*), intent(in) :: what, path
+    type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets one file more
+    character(len=*), intent(in) :: what                              !< its kind in words
+    character(len=*), intent(in) :: path                              !< its name
     type(written_file_type), allocatable :: longer(:)
     integer :: i
 
@@ -153,8 +154,8 @@ contains
 
   !> How results are called in a message: by their option, or by their name in the data file.
   pure function name_of(options, option, in_data_file) result(name)
-    type(command_line_type), intent(in) :: options
-    character(len=*), intent(in) :: option                !< without the dashes
+    type(command_line_type), intent(in) :: options   !< the command line
+    character(len=*), intent(in) :: option           !< without the dashes
     character(len=*), intent(in) :: in_data_file          !< the name in &output
     character(len=:), allocatable :: name
 
