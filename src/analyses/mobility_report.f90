@@ -2,6 +2,7 @@
 !> independent, and idle ones.
 module mech9_mobility_report
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: rank_tolerance, rank_tolerance_for
   use mech9_rotation, only: cross
   use mech9_screw, only: orthonormal_basis
   use mech9_least_squares, only: least_squares_type
@@ -16,8 +17,6 @@ module mech9_mobility_report
   private
   public :: mobility_report_type, idle_type, report_mobility
 
-  !> Pivots below this fraction of the largest count as zero, and so do rates below it.
-  real(wp), parameter :: tolerance = 1.0e-9_wp
 
   !> Coordinates in series that can move, with one freedom, while the links at both ends of the series stand still.
   type :: idle_type
@@ -85,7 +84,7 @@ contains
       if (plan%blocks(b)%equations == 0) cycle
       work = new_block_work(plan%blocks(b))
       call factorize_block(plan, plan%blocks(b), state, work)
-      ranks(b) = work%equations%rank(tolerance)
+      ranks(b) = work%equations%rank(rank_tolerance_for(plan%data_tolerance))
       if (present(redundant) .and. ranks(b) < plan%blocks(b)%equations) &
         call find_redundant(plan, plan%blocks(b), state, work%column_of, redundant)
     end do
@@ -110,7 +109,7 @@ contains
       call equations%create(rows, size(a, 2))
       equations%a = a(:rows, :)
       call equations%factorize()
-      rank = equations%rank(tolerance)
+      rank = equations%rank(rank_tolerance_for(plan%data_tolerance))
       redundant(c) = plan%closures(c)%rank - (rank - before)
       before = rank
     end do
@@ -141,7 +140,7 @@ contains
         call solve_rates(plan, plan%blocks(b), moving, work(b))
       end do
       report%shares(:, i) = moving%dq/plan%unit_of
-      report%moves = report%moves .or. abs(report%shares(:, i)) > tolerance
+      report%moves = report%moves .or. abs(report%shares(:, i)) > rank_tolerance
     end do
   end subroutine find_shares
 
@@ -246,6 +245,6 @@ contains
       screws(4:6, i) = (v + cross(place - first_place, screws(1:3, i)))/plan%length
       screws(:, i) = screws(:, i)/norm2(screws(:, i))
     end do
-    call orthonormal_basis(screws, tolerance, basis, rank)
+    call orthonormal_basis(screws, rank_tolerance, basis, rank)
   end function rank_of_series
 end module mech9_mobility_report

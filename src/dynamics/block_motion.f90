@@ -1,21 +1,20 @@
 !> Rates and Jacobians of one block, and the accelerations that its rates alone give.
 module mech9_block_motion
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: round_off_of_rates, singular_conditioning
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_singular_block
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
-  use mech9_jacobian, only: find_jacobian, noise_of_rates
+  use mech9_jacobian, only: find_jacobian
   use mech9_frame_motion, only: spread_velocities, spread_accelerations
   use mech9_block_equations, only: block_rates
   implicit none
   private
   public :: move_block
 
-  !> Blocks whose least pivot is below this are at a singular position.
-  real(wp), parameter :: singular = 1.0e-9_wp
 
 contains
 
@@ -39,7 +38,7 @@ contains
       end if
       call dynamics%arithmetic%factorize_block(plan, b, state, work)
       conditioning = work%blocks(b)%equations%conditioning()
-      if (conditioning < singular) then
+      if (conditioning < singular_conditioning) then
         call raise(err, exit_singular, failure_singular_block)
         err%failure%chains = block%chains
         err%failure%coordinates = block%coordinates
@@ -120,7 +119,7 @@ contains
     call spread_accelerations(plan, block, block%last_step, state)
     call block_rates(plan, block, 2, state, work%right)
     work%right = -work%right
-    call work%equations%solve(work%right, work%change, round_off=noise_of_rates*scale)
+    call work%equations%solve(work%right, work%change, round_off=round_off_of_rates*scale)
     do i = 1, size(block%unknowns)
       k = block%coordinates(i)
       state%ddq(k) = state%ddq(k) + work%change(i)*plan%unit_of(k)

@@ -1,17 +1,14 @@
 !> Jacobians of frames with respect to the independent coordinates, with the dependent coordinates eliminated block by block.
 module mech9_jacobian
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: round_off_of_rates
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type
   implicit none
   private
-  public :: start_jacobian, find_jacobian, noise_of_rates
-
-  !> Round-off of rates where a block is well conditioned. Near a singular position closed positions
-  !> are uncertain by round-off over the pivot, and rates by that over the pivot again.
-  real(wp), parameter :: noise_of_rates = 64.0_wp*epsilon(1.0_wp)
+  public :: start_jacobian, find_jacobian
 
 contains
 
@@ -82,7 +79,7 @@ contains
     end do
     work%right = -work%right
     k = plan%independent(dynamics%column(dynamics%first(block%first_step) + offset))
-    call work%equations%solve(work%right, work%change, round_off=noise_of_rates/plan%unit_of(k))
+    call work%equations%solve(work%right, work%change, round_off=round_off_of_rates/plan%unit_of(k))
     do i = 1, size(block%unknowns)
       s = block%unknowns(i)
       e = dynamics%first(s) + offset

@@ -1,6 +1,7 @@
 !> The last guard of a run: no row whose closed chains are open is ever recorded.
 module mech9_closure_guard
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: largest_closure
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_open_position
   use mech9_plan, only: plan_type
@@ -8,9 +9,6 @@ module mech9_closure_guard
   private
   public :: check_closure
 
-  !> Closed chains count as closed up to this part of the mechanism's size: a thousand times above the worst round-off that was
-  !> ever seen, far below any accuracy that is asked for.
-  real(wp), parameter :: closed = 1.0e-9_wp
 
 contains
 
@@ -22,7 +20,7 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: tolerance
 
-    tolerance = max(closed, plan%data_tolerance)*plan%length
+    tolerance = max(largest_closure, plan%data_tolerance)*plan%length
     if (gap <= tolerance) return
     call raise(err, exit_singular, failure_open_position)
     err%failure%t = t

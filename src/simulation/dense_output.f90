@@ -6,6 +6,7 @@
 !> method, and accelerations are worked out anew: every position is one of closed chains that satisfies (19).
 module mech9_dense_output
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: steepest_slope
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_motion_system, only: motion_system_type
@@ -15,8 +16,6 @@ module mech9_dense_output
 
   !> Ends of steps that are kept, and points of a polynomial.
   integer, parameter :: most = 4
-  !> Steepest slope between two neighbouring triple zeros, times their distance, against the height: 3.4.
-  real(wp), parameter :: steepness = 4.0_wp
   !> Points inserted into a step.
   integer, parameter :: most_inserted = 3
 
@@ -165,7 +164,7 @@ contains
     if (allocated(err)) return
     call self%way%evaluate(t, worse_q, worse_dq, ddq, points=size(self%way%x)/3 - 1)
     call self%way%evaluate(t, q, dq, ddq)
-    per_length = steepness/abs(self%points(self%chosen(1))%t - self%points(self%chosen(2))%t)
+    per_length = steepest_slope/abs(self%points(self%chosen(1))%t - self%points(self%chosen(2))%t)
     m = system%plan%n_coordinates
     y(:m) = q
     found = .true.

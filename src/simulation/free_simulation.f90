@@ -2,6 +2,7 @@
 !> ones come to a singular position.
 module mech9_free_simulation
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
   use mech9_failure, only: failure_no_initial_position, failure_singular_block, failure_singular_start_block
   use mech9_mechanism, only: mechanism_type
@@ -14,16 +15,12 @@ module mech9_free_simulation
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_integrator, only: integration_statistics_type
   use mech9_motion_system, only: set_motion_system
-  use mech9_integrated_motion, only: integrated_motion_type, doubtful
+  use mech9_integrated_motion, only: integrated_motion_type
   use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
   implicit none
   private
   public :: free_simulation_type, new_free_simulation, assemble_free
 
-  !> Above this conditioning a step may go beyond the time that is asked for: it will not come to a singular position unseen.
-  real(wp), parameter :: regular = 0.14_wp
-  !> A step from a well conditioned state is made again, shorter, where it meets worse than this.
-  real(wp), parameter :: refused = 0.03_wp
 
   type, extends(simulation_type) :: free_simulation_type
     type(integrated_motion_type) :: motion
@@ -148,16 +145,17 @@ contains
     logical :: changed, is_regular
 
     associate (motion => self%motion)
-      is_regular = motion%conditioning_here > doubtful
-      if (is_regular) motion%look_below = doubtful
+      is_regular = motion%conditioning_here > doubtful_conditioning
+      if (is_regular) motion%look_below = doubtful_conditioning
       if (motion%conditioning_here < motion%look_below) then
         call self%change_coordinates(changed, err)
         if (allocated(err)) return
-        is_regular = motion%conditioning_here > doubtful
+        is_regular = motion%conditioning_here > doubtful_conditioning
       end if
-      motion%system%refuse_below = merge(refused, 0.0_wp, is_regular)
+      motion%system%refuse_below = merge(refused_conditioning, 0.0_wp, is_regular)
       farthest = t
-      if (motion%conditioning_here > regular .and. .not. self%steps_onto .and. (self%end - t)*(t - motion%t) > 0.0_wp) &
+      if (motion%conditioning_here > regular_conditioning .and. .not. self%steps_onto .and. &
+        (self%end - t)*(t - motion%t) > 0.0_wp) &
         farthest = self%end
       call motion%integrator%step(t, motion%t, motion%y, failure, farthest)
       if (.not. allocated(failure)) then

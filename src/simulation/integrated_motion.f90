@@ -2,6 +2,7 @@
 !> change to other coordinates.
 module mech9_integrated_motion
   use mech9_kinds, only: wp, long
+  use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
@@ -17,13 +18,8 @@ module mech9_integrated_motion
   use mech9_side_steps, only: side_steps_type, begin_integration
   implicit none
   private
-  public :: integrated_motion_type, doubtful
+  public :: integrated_motion_type
 
-  !> Below this conditioning other independent coordinates are looked for ...
-  real(wp), parameter :: doubtful = 0.08_wp
-  !> ... and taken if they are so many times better conditioned; else the next look is at so many
-  !> times worse conditioning.
-  real(wp), parameter :: worth_it = 4.0_wp
 
   !> It must not be copied: the integrator keeps hold of the system.
   type :: integrated_motion_type
@@ -34,7 +30,7 @@ module mech9_integrated_motion
     real(wp) :: t = 0.0_wp                        !< end of the last step [s]
     real(wp), allocatable :: y(:)                 !< the integrated vector there
     real(wp) :: conditioning_here = 0.0_wp        !< worst pivot ratio there
-    real(wp) :: look_below = doubtful             !< conditioning at which other coordinates are looked for
+    real(wp) :: look_below = doubtful_conditioning             !< conditioning at which other coordinates are looked for
     type(integration_statistics_type), private :: before   !< of the integrators before the present one
     type(work_count_type), private :: work_before          !< for the blocks of the systems before the present one
   contains
@@ -84,7 +80,7 @@ contains
     if (gives_up(failure, err)) return
     call best_independent(self%system%plan, self%system%state, independent)
     if (all(independent .eqv. self%system%mechanism%structure%independent)) then
-      self%look_below = self%system%conditioning()/worth_it
+      self%look_below = self%system%conditioning()/worthwhile_improvement
       return
     end if
     call with_independent(self%system%mechanism, self%system%state, independent, requested, mechanism, plan, state, failure)
@@ -93,8 +89,8 @@ contains
     call set_motion_system(mechanism, plan, state, other, failure)
     ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
     if (allocated(failure)) return
-    if (other%conditioning() < worth_it*self%system%conditioning()) then
-      self%look_below = self%system%conditioning()/worth_it
+    if (other%conditioning() < worthwhile_improvement*self%system%conditioning()) then
+      self%look_below = self%system%conditioning()/worthwhile_improvement
       return
     end if
     call replace_system(self, other)
@@ -122,7 +118,7 @@ contains
     self%work_before = self%work_done()
     deallocate (self%system)
     allocate (self%system, source=other)
-    self%look_below = min(doubtful, self%system%conditioning()/worth_it)
+    self%look_below = min(doubtful_conditioning, self%system%conditioning()/worthwhile_improvement)
   end subroutine replace_system
 
   !> Work out a point that divides the last step, for dense output.

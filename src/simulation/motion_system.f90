@@ -5,6 +5,7 @@
 !> half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
+  use mech9_tolerances, only: trusted_between_steps, trusted_closing
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_singular_step, failure_unclosed_step
   use mech9_mechanism, only: mechanism_type
@@ -23,11 +24,6 @@ module mech9_motion_system
   private
   public :: motion_system_type, set_motion_system
 
-  !> Largest change of a coordinate, in its unit, by which closing may move what the integrator found:
-  !> its error is far below; more, and the chains might close on another branch.
-  real(wp), parameter :: trusted_correction = 0.02_wp
-  !> The same between two steps, where the position is known as well as at their ends.
-  real(wp), parameter :: trusted_between = 1.0e-3_wp
 
   type, extends(ode_system_type) :: motion_system_type
     type(mechanism_type) :: mechanism
@@ -155,7 +151,7 @@ contains
     integer :: failed, i
 
     call take(self, t, y)
-    call close_chains(self, trusted_correction, failed, err)
+    call close_chains(self, trusted_closing, failed, err)
     if (allocated(err)) return
     if (failed > 0) then
       call raise(err, exit_singular, failure_unclosed_step)
@@ -202,7 +198,7 @@ contains
 
     ok = .false.
     call take(self, t, y)
-    call close_chains(self, trusted_between, failed, err)
+    call close_chains(self, trusted_between_steps, failed, err)
     if (allocated(err) .or. failed > 0) return
     call self%present(err)
     ok = .not. allocated(err)

@@ -2,6 +2,7 @@
 !> random starts lead to them.
 module mech9_assemblies
   use mech9_kinds, only: wp, pi
+  use mech9_tolerances, only: same_assembly
   use mech9_error, only: error_type
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, block_type, step_type
@@ -12,8 +13,6 @@ module mech9_assemblies
   private
   public :: assembly_list_type, find_assemblies, close_from_random_starts
 
-  !> Coordinates that differ by less, in their units, belong to one assembly.
-  real(wp), parameter :: same = 1.0e-6_wp
 
   !> Assemblies, in the order in which they were found.
   type :: assembly_list_type
@@ -115,7 +114,7 @@ contains
       do k = 1, size(q)
         difference = q(k) - list%q(k, i)
         if (turns(plan%steps(plan%step_of(k)))) difference = within_half_a_turn(difference)
-        if (abs(difference) > same*plan%unit_of(k)) exit
+        if (abs(difference) > same_assembly*plan%unit_of(k)) exit
       end do
       if (k <= size(q)) cycle
       list%found(i) = list%found(i) + 1

@@ -5,12 +5,13 @@
 !> same in every run.
 module mech9_assembly
   use mech9_kinds, only: wp, pi
+  use mech9_tolerances, only: allowed_gap, closed_singular, closed_to_round_off, newton_radius, regular_correction
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, apply_change, closed_enough
+  use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, apply_change
   use mech9_frame_motion, only: place_frames
   use mech9_block_equations, only: block_jacobian, block_residual
   implicit none
@@ -25,15 +26,7 @@ module mech9_assembly
   integer, parameter :: most_steps = 200
   !> Number of steps in which the residual must become clearly smaller.
   integer, parameter :: patience = 25
-  !> Newton's method takes over from residuals below this.
-  real(wp), parameter :: newton_radius = 1.0e-8_wp
-  !> A larger correction of Newton's method from there shows a singular position.
-  real(wp), parameter :: regular_correction = 1.0e-5_wp
-  !> Residual that is accepted at a singular position, where convergence is slow: still far below any tolerance.
-  real(wp), parameter :: closed_singular = 1.0e-12_wp
 
-  !> Factor from the tolerance of the data, which holds for one closure, to the residual of a block with several closures.
-  real(wp), parameter :: allowed_gap = 10.0_wp
 
   !> The result of an assembly.
   type :: assembly_outcome_type
@@ -103,7 +96,7 @@ contains
 
     ! where inexact redundant equations stay open, the residual must be the least one
     small_enough = newton_radius
-    if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) small_enough = closed_enough
+    if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) small_enough = closed_to_round_off
     call reduce_errors(plan, block, state, work, small_enough, 1.0e-2_wp, residual_norm, err)
     if (allocated(err)) return
     outcome%closed = residual_norm <= max(newton_radius, allowed_gap*plan%data_tolerance)
@@ -113,7 +106,7 @@ contains
       if (allocated(err)) return
       if (.not. newton%converged .or. newton%correction > regular_correction) then
         state%q(block%coordinates) = before
-        call reduce_errors(plan, block, state, work, closed_enough, 1.0e-10_wp, residual_norm, err)
+        call reduce_errors(plan, block, state, work, closed_to_round_off, 1.0e-10_wp, residual_norm, err)
         if (allocated(err)) return
         outcome%closed = residual_norm <= max(closed_singular, allowed_gap*plan%data_tolerance)
       end if

@@ -1,6 +1,7 @@
 !> The diagnosis of a choice of independent coordinates that cannot serve, with choices that can.
 module mech9_diagnosis
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: apparent_motion, least_rate, returned_to_start
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
   use mech9_failure, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
     failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain
@@ -10,16 +11,11 @@ module mech9_diagnosis
   use mech9_assembly, only: assembly_outcome_type
   use mech9_finite_motion, only: locked_chain_type
   use mech9_release, only: close_free, most_free_coordinates
-  use mech9_mobility, only: find_motions, choose_coordinates, shares_of, moves_least
+  use mech9_mobility, only: find_motions, choose_coordinates, shares_of
   implicit none
   private
   public :: judge_choice, refuse_open, refuse_undetermined, refuse_locked
 
-  !> A coordinate that differs from the start by less than this, in its unit, after a change of all coordinates has returned to
-  !> it: at a singular position the round-off of a closure changes coordinates by its square root.
-  real(wp), parameter :: returned = 1.0e-4_wp
-  !> A coordinate whose rates in motions of norm one exceed this would not return to the start by chance.
-  real(wp), parameter :: moves_clearly = 1.0e-2_wp
 
   !> Gaps below this part of the mechanism's size come from dimensions with too few digits.
   real(wp), parameter :: nearly_closed = 1.0e-5_wp
@@ -62,7 +58,7 @@ contains
       if (allocated(err)) return
       held = .false.
       call find_motions(plan, trial, held, motions)
-      held = returns .and. [(norm2(motions(k, :)) > moves_clearly, k=1, size(held))]
+      held = returns .and. [(norm2(motions(k, :)) > apparent_motion, k=1, size(held))]
       if (any(held)) call find_motions(plan, trial, held, motions)
       call choose_coordinates(motions, wanted, chosen)
       if (all(chosen .eqv. wanted)) return
@@ -102,7 +98,7 @@ contains
       if (.not. outcome%closed) cycle
       n = n + 1
       found(:, n) = trial%q
-      returns = returns .and. abs(trial%q - state%q) < returned*plan%unit_of
+      returns = returns .and. abs(trial%q - state%q) < returned_to_start*plan%unit_of
     end do
     if (n < 2) returns = .false.
     if (n == 0) then
@@ -126,10 +122,10 @@ contains
     err%failure%number = size(wanted)
     err%failure%coordinates = numbers_of(wanted)
     err%failure%others = numbers_of(chosen)
-    err%failure%idle = numbers_of([(norm2(motions(k, :)) <= moves_least, k=1, size(wanted))])
+    err%failure%idle = numbers_of([(norm2(motions(k, :)) <= least_rate, k=1, size(wanted))])
     if (.not. any(chosen)) return
     call shares_of(motions, chosen, shares)
-    err%failure%replaces = abs(shares) > moves_least
+    err%failure%replaces = abs(shares) > least_rate
   end subroutine refuse_choice
 
   !> Fail because of coordinates that no chain determines, in a mechanism that is too large to be judged as one block.

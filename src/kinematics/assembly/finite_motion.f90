@@ -9,6 +9,8 @@
 !> changes of the constant poses of the loop's steps enter the closures like motions of six more pairs in each step.
 module mech9_finite_motion
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: closed_after_motion, deciding_conditioning, finite_movement, first_displacement, &
+    first_order_gap, ineffective_dimensions, settled_unknowns, small_gap, small_part, unexplained_gap
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
   use mech9_random, only: random_type
@@ -36,29 +38,10 @@ module mech9_finite_motion
     real(wp) :: distance = huge(1.0_wp)    !< distance from dimensions with which it moves [rad, parts of the size]; huge: unknown
   end type locked_chain_type
 
-  !> Residuals of a chain that stays closed [rad, parts of the size]: sums of round-off over the steps of a loop.
-  real(wp), parameter :: round_off = 1.0e-12_wp
-  !> Residuals below this, and below this part of the squared displacement, come from inexact dimensions if the position is
-  !> regular: inputs out of reach and other branches of an earlier block leave larger ones.
-  real(wp), parameter :: small_gap = 1.0e-6_wp, small_part = 1.0e-4_wp
-  !> Least conditioning of a position whose residual decides alone: round-off of earlier blocks grows by its inverse square.
-  real(wp), parameter :: regular = 1.0e-3_wp
-  !> Largest distance of the unknowns from those with the least residual.
-  real(wp), parameter :: settled = 1.0e-8_wp
   !> Number of displacements that are tried, and number of their sizes, each half of the one before.
   integer, parameter :: most_trials = 21, sizes = 7
-  !> Largest displacement, in units of the coordinates.
-  real(wp), parameter :: first_displacement = 0.3_wp
-  !> Least change of a coordinate, in its unit, that counts as a motion where all coordinates are displaced.
-  real(wp), parameter :: finite = 1.0e-2_wp
   !> Blocks whose last step is at most this one are also moved with all coordinates free.
   integer, parameter :: largest_free_block = 200
-  !> Singular values of the effect of dimensions on closures below this part of the largest do not count.
-  real(wp), parameter :: ineffective = 1.0e-3_wp
-  !> Largest gap, in parts of the size, on which changes of dimensions act to first order.
-  real(wp), parameter :: first_order = 1.0e-2_wp
-  !> Largest part of the gaps that changes of dimensions may leave unexplained.
-  real(wp), parameter :: unexplained = 0.1_wp
 
 contains
 
@@ -136,7 +119,7 @@ contains
     real(wp) :: gap, tolerance, conditioning
     integer :: b
 
-    tolerance = max(round_off, plan%data_tolerance)
+    tolerance = max(closed_after_motion, plan%data_tolerance)
     conditioning = 1.0_wp
     do b = 1, size(plan%blocks)
       work = new_block_work(plan%blocks(b))
@@ -155,7 +138,7 @@ contains
       if (outcome%gap < nearest(b)%gap) nearest(b) = &
         locked_chain_type(exists=.true., block=b, closure=outcome%worst_closure, gap=outcome%gap, displacement=amount)
       if (.not. moves(b) .and. gap <= max(min(small_gap, small_part*amount**2), 1.0e3_wp*tolerance) .and. &
-          conditioning > regular) then
+          conditioning > deciding_conditioning) then
         if (is_least(plan, plan%blocks(b), state, work)) locked = nearest(b)
       end if
       return
@@ -171,7 +154,7 @@ contains
 
     call block_residual(plan, block, state, work%right)
     call work%equations%solve(work%right, work%change)
-    is_least = maxval(abs(work%change)) <= settled
+    is_least = maxval(abs(work%change)) <= settled_unknowns
   end function is_least
 
   !> Displace all coordinates up to block b and close them together, for independent coordinates that cannot be displaced alone.
@@ -201,7 +184,8 @@ contains
       end do
       call assemble_block(plan, block, state, work, .false., outcome, err)
       if (allocated(err)) cycle
-      moves = outcome%gap <= max(round_off, plan%data_tolerance)*plan%length .and. has_moved(plan, plan%blocks(b), home, state)
+      moves = outcome%gap <= max(closed_after_motion, plan%data_tolerance)*plan%length .and. &
+              has_moved(plan, plan%blocks(b), home, state)
       if (moves) return
     end do
   end subroutine displace_all
@@ -217,7 +201,7 @@ contains
     has_moved = .false.
     do c = block%first_closure, block%last_closure
       associate (k => plan%steps(plan%closures(c)%loop%steps)%coordinate)
-        has_moved = has_moved .or. any(abs(state%q(k) - home%q(k)) > finite*plan%unit_of(k))
+        has_moved = has_moved .or. any(abs(state%q(k) - home%q(k)) > finite_movement*plan%unit_of(k))
       end associate
     end do
   end function has_moved
@@ -281,14 +265,14 @@ contains
     do i = 1, b
       work = new_block_work(plan%blocks(i))
       call assemble_block(plan, plan%blocks(i), state, work, .false., outcome, err)
-      if (allocated(err) .or. (i < b .and. .not. outcome%closed) .or. outcome%gap > first_order*plan%length) return
+      if (allocated(err) .or. (i < b .and. .not. outcome%closed) .or. outcome%gap > first_order_gap*plan%length) return
     end do
     m = plan%blocks(b)%equations
     n = unknowns_of(plan%blocks(b))
     allocate (a(m, n), u(m, m), s(n), vt(n, n), scratch(20*(m + n)), columns(m, 6*plan%n_coordinates))
     call block_jacobian(plan, plan%blocks(b), state, work%column_of, a)
     call dgesvd('A', 'N', m, n, a, m, s, u, m, vt, n, scratch, size(scratch), info)
-    rank = count(s > regular*s(1))
+    rank = count(s > deciding_conditioning*s(1))
     if (info /= 0 .or. rank < n) return
     call block_residual(plan, plan%blocks(b), state, work%right)
     call dimension_columns(plan, plan%blocks(b), state, columns)
@@ -337,9 +321,9 @@ contains
     integer :: rank, info
 
     call dgesvd('A', 'S', size(b), size(x), a, size(b), s, u, size(b), vt, size(vt, 1), scratch, size(scratch), info)
-    rank = count(s > ineffective*s(1))
+    rank = count(s > ineffective_dimensions*s(1))
     parts = matmul(b, u)
-    explained = info == 0 .and. rank > 0 .and. norm2(parts(rank + 1:)) <= unexplained*norm2(b)
+    explained = info == 0 .and. rank > 0 .and. norm2(parts(rank + 1:)) <= unexplained_gap*norm2(b)
     x = 0.0_wp
     if (explained) x = matmul(parts(:rank)/s(:rank), vt(:rank, :))
   end subroutine least_changes

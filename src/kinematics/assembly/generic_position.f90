@@ -1,6 +1,7 @@
 !> A generic position: a closed position away from the start, at which ranks are judged if the start is, or may be, singular.
 module mech9_generic_position
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: least_movement
   use mech9_error, only: error_type
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, block_type
@@ -26,9 +27,6 @@ module mech9_generic_position
   integer, parameter :: most_trials_each = 12
   !> Blocks whose last step is at most this one are also closed with their independent coordinates free.
   integer, parameter :: largest_free_block = 200
-  !> A change of a coordinate below this, in its unit, is no motion: at a singular position the round-off of a closure changes
-  !> coordinates by its square root.
-  real(wp), parameter :: moved = 1.0e-4_wp
 
 contains
 
@@ -155,7 +153,7 @@ contains
     do c = block%first_closure, block%last_closure
       do i = 1, size(plan%closures(c)%loop%steps)
         k = plan%steps(plan%closures(c)%loop%steps(i))%coordinate
-        has_moved = has_moved .or. abs(state%q(k) - start%q(k)) > moved*plan%unit_of(k)
+        has_moved = has_moved .or. abs(state%q(k) - start%q(k)) > least_movement*plan%unit_of(k)
       end do
     end do
   end function has_moved

@@ -1,6 +1,7 @@
 !> The motions that the chains of a mechanism allow, and the coordinates that can describe them.
 module mech9_mobility
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: least_rate, rank_tolerance_for
   use mech9_lapack, only: dgesvd
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
@@ -9,14 +10,8 @@ module mech9_mobility
   use mech9_block_equations, only: block_jacobian
   implicit none
   private
-  public :: find_motions, choose_coordinates, shares_of, moves_least
+  public :: find_motions, choose_coordinates, shares_of
 
-  !> Singular values below this fraction of the largest count as zero.
-  real(wp), parameter :: rank_tolerance = 1.0e-8_wp
-  !> Factor from the error of inexact dimensions to the singular values that it causes.
-  real(wp), parameter :: inexact = 10.0_wp
-  !> Coordinates whose rates in all motions of norm one are below this do not move.
-  real(wp), parameter :: moves_least = 1.0e-8_wp
 
 contains
 
@@ -46,7 +41,7 @@ contains
     if (n > 0) then
       if (block%equations > 0) call block_jacobian(plan, block, state, column_of, a)
       call dgesvd('N', 'A', m, n, a, m, s, u, 1, vt, n, work, size(work), info)
-      rank = count(s > max(rank_tolerance, inexact*plan%data_tolerance)*max(s(1), tiny(s)))
+      rank = count(s > rank_tolerance_for(plan%data_tolerance)*max(s(1), tiny(s)))
     end if
     allocate (motions(plan%n_coordinates, n - rank), source=0.0_wp)
     do i = 1, plan%n_coordinates
@@ -71,7 +66,7 @@ contains
       do while (count(chosen) < size(motions, 2))
         may = .not. chosen .and. (wanted .or. stage == 2)
         lengths = [(norm2(rest(k, :)), k=1, size(wanted))]
-        if (maxval(lengths, may) <= moves_least) exit
+        if (maxval(lengths, may) <= least_rate) exit
         ! the first of those with nearly the largest rate
         best = findloc(may .and. lengths >= 0.3_wp*maxval(lengths, may), .true., dim=1)
         chosen(best) = .true.

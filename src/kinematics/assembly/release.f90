@@ -4,6 +4,7 @@
 !> there, and the given values may be reached from there by a motion.
 module mech9_release
   use mech9_kinds, only: wp, pi
+  use mech9_tolerances, only: least_part_of_carrying
   use mech9_error, only: error_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
@@ -16,8 +17,6 @@ module mech9_release
 
   !> Mechanisms with more coordinates are not closed as one block.
   integer, parameter :: most_free_coordinates = 500
-  !> The motion is given up when a step would be less than this part of the whole distance.
-  real(wp), parameter :: least_part = 1.0e-4_wp
 
 contains
 
@@ -65,7 +64,7 @@ contains
     done = 0.0_wp
     part = 0.1_wp
     before = state%q
-    do while (done < 1.0_wp .and. part >= least_part)
+    do while (done < 1.0_wp .and. part >= least_part_of_carrying)
       part = min(part, 1.0_wp - done)
       state%q = before
       state%q(plan%independent) = from + (done + part)*distance

@@ -1,6 +1,7 @@
 !> The solution of one block at one time: Newton's method for the positions, then the exact rates and accelerations.
 module mech9_block_solver
   use mech9_kinds, only: wp, long
+  use mech9_tolerances, only: closed_to_round_off, last_correction, small_turn, unchanged_position
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
@@ -11,18 +12,8 @@ module mech9_block_solver
   implicit none
   private
   public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, solve_motion
-  public :: apply_change, closed_enough, newton_outcome_type, work_count_type, work_of
+  public :: apply_change, newton_outcome_type, work_count_type, work_of
 
-  !> A chain counts as closed when its independent equations hold to this many times round-off,
-  !> rotations in rad, translations in lengths of the mechanism: a sum over the steps of a loop
-  !> loses a few units.
-  real(wp), parameter :: closed_enough = 32.0_wp*epsilon(1.0_wp)
-  !> Once a correction is this small, the next error is its square: round-off.
-  real(wp), parameter :: last_correction = 1.0e-9_wp
-  !> Angles that change by less are turned on to second order: what is left out is round-off.
-  real(wp), parameter :: small_turn = 1.0e-5_wp
-  !> A correction by less than this is round-off of poses and Jacobians, which stay as they are.
-  real(wp), parameter :: same_place = 8.0_wp*epsilon(1.0_wp)
   integer, parameter :: most_iterations = 12
 
   !> Numbers of operations done.
@@ -97,7 +88,7 @@ contains
     do while (.not. outcome%converged)
       call block_residual(plan, block, state, work%right)
       residual_norm = maxval(abs(work%right))
-      outcome%converged = residual_norm <= closed_enough .and. outcome%iterations >= least
+      outcome%converged = residual_norm <= closed_to_round_off .and. outcome%iterations >= least
       if (outcome%converged) return
       ! the iteration has diverged, or is too slow
       if (outcome%iterations == most_iterations .or. .not. residual_norm < huge(residual_norm)) return
@@ -107,7 +98,7 @@ contains
       call apply_change(plan, block, work%change, state)
       outcome%iterations = outcome%iterations + 1
       size_of_change = maxval(abs(work%change))
-      if (size_of_change <= same_place) then
+      if (size_of_change <= unchanged_position) then
         outcome%factorized = .true.
       else
         work%count%frames_placed = work%count%frames_placed + steps_of(block)

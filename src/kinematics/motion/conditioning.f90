@@ -3,15 +3,12 @@
 !> Rotations are in rad, translations in lengths of the mechanism. The value is 1 where there is no closed chain.
 module mech9_conditioning
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: clearly_less, lower_pivot
   use mech9_block_solver, only: block_work_type
   implicit none
   private
   public :: conditioning_type
 
-  !> The least singular value is looked at when the least pivot has fallen to this part.
-  real(wp), parameter :: worth_a_look = 0.99_wp
-  !> Of values that differ by no more than round-off, after a whole turn for example, the first one counts.
-  real(wp), parameter :: clearly_less = 1.0_wp - 1.0e-12_wp
 
   !> The worst of several positions.
   type :: conditioning_type
@@ -39,7 +36,7 @@ contains
     do b = 1, size(work)
       if (work(b)%equations%n > 0) pivot = min(pivot, work(b)%equations%least_pivot())
     end do
-    if (pivot >= worth_a_look*self%pivot) return
+    if (pivot >= lower_pivot*self%pivot) return
     self%pivot = pivot
     call self%update(t, work, least)
   end subroutine update_by_pivots

@@ -5,6 +5,7 @@
 !> therefore closed alone, with all its coordinates free, at positions away from its guess, and the rank there counts.
 module mech9_loop_rank
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: rank_tolerance_for
   use mech9_error, only: error_type
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, closure_type, block_type, new_state
@@ -21,10 +22,6 @@ module mech9_loop_rank
   integer, parameter :: never_overconstrained = 3
   !> Loops with more coordinates are not closed alone: they have enough freedom to have the full rank.
   integer, parameter :: longest_loop = 60
-  !> Pivots below this fraction of the largest count as zero.
-  real(wp), parameter :: rank_tolerance = 1.0e-9_wp
-  !> Factor from the error of inexact dimensions to the pivots that it causes.
-  real(wp), parameter :: inexact = 10.0_wp
 
 contains
 
@@ -70,7 +67,7 @@ contains
       if (allocated(err)) cycle
       if (.not. outcome%closed) cycle
       call factorize_block(loop, loop%blocks(1), state, work)
-      found = work%equations%rank(max(rank_tolerance, inexact*loop%data_tolerance))
+      found = work%equations%rank(rank_tolerance_for(loop%data_tolerance))
       best = max(best, found)
       closed = closed + 1
       if (best == rank .or. closed == 2) exit

@@ -4,6 +4,7 @@
 !> of the closure (Herve's groups of displacements, docs/bibliography.md).
 module mech9_loop_space
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: inexact_dimensions, screw_tolerance
   use mech9_error, only: error_type
   use mech9_random, only: random_type
   use mech9_rotation, only: cross
@@ -15,11 +16,6 @@ module mech9_loop_space
   private
   public :: find_loop_spaces
 
-  !> Screws whose components outside a smaller space are below this lie in it: well above the round-off of directions given
-  !> with 16 digits, well below any deliberate deviation.
-  real(wp), parameter :: tolerance = 1.0e-11_wp
-  !> Factor from the error of inexact dimensions to that of their screws, which are products of several of them.
-  real(wp), parameter :: inexact = 10.0_wp
 
 contains
 
@@ -56,7 +52,7 @@ contains
     integer :: i, n, s
     real(wp) :: within
 
-    within = max(tolerance, inexact*plan%data_tolerance)
+    within = max(screw_tolerance, inexact_dimensions*plan%data_tolerance)
     n = 0
     do i = 1, size(closure%loop%steps)
       s = closure%loop%steps(i)

@@ -1,6 +1,7 @@
 !> Second part of the plan: a test whether the mechanism is planar, and its plan in the plane.
 module mech9_planar_layout
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: planar_round_off
   use mech9_failure, only: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
   use mech9_rotation, only: identity
   use mech9_pose, only: pose_type, pose_from_axis, default_zero
@@ -10,8 +11,6 @@ module mech9_planar_layout
   private
   public :: lay_out_in_plane
 
-  !> Directions, and heights in lengths of the mechanism, may differ from the plane's by this: round-off of data with 16 digits.
-  real(wp), parameter :: round_off = 64.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -93,7 +92,7 @@ contains
       normal = matmul(r, normal)
       f = plan%steps(f)%parent
     end do
-    planar%in_xy_plane = norm2(normal(1:2)) <= round_off
+    planar%in_xy_plane = norm2(normal(1:2)) <= planar_round_off
     fits = .true.
     if (planar%in_xy_plane) return
     call pose_from_axis([0.0_wp, 0.0_wp, 0.0_wp], normal, default_zero(normal), frame, fits)
@@ -120,14 +119,14 @@ contains
       if (flat%turns) then
         ! the axis may point in either direction along the normal
         side = sign(1.0_wp, r(3, 3))
-        fits = norm2(r(1:2, 3)) <= round_off .and. .not. abs(step%slide) > 0.0_wp
+        fits = norm2(r(1:2, 3)) <= planar_round_off .and. .not. abs(step%slide) > 0.0_wp
         flat%turn = side*step%turn
         flat%angle = flat%turn*step%offset + atan2(r(2, 1), r(1, 1))
         to_frame(:, :, s) = identity
         to_frame(2, 2, s) = side
         to_frame(3, 3, s) = side
       else
-        fits = abs(r(3, 3)) <= round_off
+        fits = abs(r(3, 3)) <= planar_round_off
         flat%slide = step%slide*r(1:2, 3)
         flat%place = flat%place + step%offset*flat%slide
         to_frame(:, :, s) = r
@@ -154,8 +153,8 @@ contains
       flat%place = p(1:2)
       flat%cosine = r(1, 1)
       flat%sine = r(2, 1)
-      fits = norm2(r(1:2, 3)) <= round_off .and. r(3, 3) > 0.0_wp .and. &
-             abs(planar%height(closure%target) + p(3) - planar%height(closure%closing)) <= round_off*plan%length
+      fits = norm2(r(1:2, 3)) <= planar_round_off .and. r(3, 3) > 0.0_wp .and. &
+             abs(planar%height(closure%target) + p(3) - planar%height(closure%closing)) <= planar_round_off*plan%length
     end associate
   end subroutine lay_out_closure
 

@@ -5,6 +5,7 @@
 !> determine them is joined with the next ones until it does.
 module mech9_planning
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: contradicting_rates, inexact_dimensions, rank_tolerance_for
   use mech9_error, only: error_type, raise, exit_structure
   use mech9_failure, only: failure_large_block, failure_undetermined_block, failure_contradictory_inputs
   use mech9_mechanism, only: mechanism_type
@@ -30,14 +31,8 @@ module mech9_planning
   private
   public :: make_plan
 
-  !> Pivots below this fraction of the largest count as zero when ranks are found.
-  real(wp), parameter :: rank_tolerance = 1.0e-9_wp
-  !> Factor from the error of inexact dimensions to the pivots, and to the contradictions of rates, that it causes.
-  real(wp), parameter :: inexact = 10.0_wp
   !> Largest number of unknowns of one block, whose equations are a full matrix: more would need too much memory and time.
   integer, parameter :: most_unknowns = 3000
-  !> Least residual of the rate equations, for independent rates of about one, that shows that these contradict each other.
-  real(wp), parameter :: contradiction = 1.0e-7_wp
 
 contains
 
@@ -166,13 +161,13 @@ contains
         generic%exists = .false.
       end if
       call factorize_block(plan, block, state, work)
-      complete = work%equations%rank(max(rank_tolerance, inexact*plan%data_tolerance)) == size(block%unknowns)
+      complete = work%equations%rank(rank_tolerance_for(plan%data_tolerance)) == size(block%unknowns)
       if (complete .and. .not. generic%exists) return
       ! a generic position tells whether the start is singular or the rank is small everywhere
       call find_generic_position(plan, blocks, state, generic, closed)
       if (complete .or. .not. closed) return
       call factorize_block(plan, block, generic%state, work)
-      complete = work%equations%rank(max(rank_tolerance, inexact*plan%data_tolerance)) == size(block%unknowns)
+      complete = work%equations%rank(rank_tolerance_for(plan%data_tolerance)) == size(block%unknowns)
     end associate
   end subroutine assemble_next
 
@@ -237,7 +232,7 @@ contains
       work = new_block_work(plan%blocks(b))
       if (plan%blocks(b)%equations > 0) call factorize_block(plan, plan%blocks(b), trial, work)
       call solve_rates(plan, plan%blocks(b), trial, work, remainder)
-      free = remainder <= max(contradiction, inexact*plan%data_tolerance)
+      free = remainder <= max(contradicting_rates, inexact_dimensions*plan%data_tolerance)
       if (.not. free) exit
     end do
     if (free) return

@@ -1,6 +1,7 @@
 !> The scaling of a mechanism: its size, which is the unit of length, its origin, and the units of its coordinates.
 module mech9_scaling
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: negligible_distance
   use mech9_pose, only: pose_type, inverse
   use mech9_pair, only: screw_factors_type
   use mech9_mechanism, only: mechanism_type
@@ -9,9 +10,6 @@ module mech9_scaling
   private
   public :: find_size, find_units
 
-  !> Distances between pairs below this part of their distances from the links' origins are not taken as the size: round-off
-  !> of the positions would exceed 1e-12 of them. Errors of a spherical mechanism's centre make such distances.
-  real(wp), parameter :: no_size = 1.0e-4_wp
 
 contains
 
@@ -58,7 +56,7 @@ contains
     do k = 1, size(mechanism%points)
       reach = max(reach, maxval(abs(mechanism%points(k)%position)))
     end do
-    if (plan%length <= no_size*reach) plan%length = reach
+    if (plan%length <= negligible_distance*reach) plan%length = reach
     if (plan%length <= 1.0e-14_wp) plan%length = 1.0_wp
   end subroutine find_size
 

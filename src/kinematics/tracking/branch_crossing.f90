@@ -6,6 +6,7 @@
 !> equations determine.
 module mech9_branch_crossing
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: near_singular, shorter_crossing, trusted_crossing, trusted_crossing_rates
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_mechanism, only: mechanism_type
@@ -32,14 +33,6 @@ module mech9_branch_crossing
 
   !> Number of distances from the crossing that are tried.
   integer, parameter :: most_trials = 4
-  !> Each distance over the one tried before.
-  real(wp), parameter :: shorter = 1.0_wp/3.0_wp
-  !> Largest correction of a position beyond the crossing, over the least pivot there.
-  real(wp), parameter :: trusted_correction = 0.02_wp
-  !> Largest difference between its rates and those of the polynomial, over the largest rate.
-  real(wp), parameter :: trusted_rates = 0.02_wp
-  !> A block takes its motion from the polynomial where its least pivot is below this part of the largest least pivot so far.
-  real(wp), parameter :: near = 0.03_wp
 
 contains
 
@@ -65,7 +58,7 @@ contains
       if (allocated(err)) return
       if (trial == 1 .or. crossing%exists) call try_crossing(mechanism, plan, probe, t, half, crossing, err)
       if (allocated(err) .or. crossing%exists) return
-      half = half*shorter
+      half = half*shorter_crossing
     end do
   end subroutine build_crossing
 
@@ -200,12 +193,12 @@ contains
         stepper%iterations = stepper%iterations + newton%iterations
         if (allocated(err) .or. .not. newton%converged) return
         call factorize_trial(plan, block, stepper%state, work, monitor)
-        if (size(block%unknowns) > 0 .and. newton%correction > slack*trusted_correction*monitor%trial_pivot) return
+        if (size(block%unknowns) > 0 .and. newton%correction > slack*trusted_crossing*monitor%trial_pivot) return
         call solve_rates(plan, block, stepper%state, work)
         call solve_accelerations(plan, block, stepper%state, work)
       end associate
     end do
-    ok = maxval(abs(stepper%state%dq - dq)/plan%unit_of) <= slack*trusted_rates*maxval(abs(dq)/plan%unit_of)
+    ok = maxval(abs(stepper%state%dq - dq)/plan%unit_of) <= slack*trusted_crossing_rates*maxval(abs(dq)/plan%unit_of)
     if (.not. ok) return
     stepper%steps = stepper%steps + 1
     call accept_start(stepper)
@@ -236,7 +229,7 @@ contains
         call place_frames(plan, block, state, err)
         if (allocated(err)) return
         call factorize_trial(plan, block, state, work(b), monitors(b))
-        if (size(block%unknowns) > 0 .and. monitors(b)%trial_pivot < near*monitors(b)%largest_pivot) then
+        if (size(block%unknowns) > 0 .and. monitors(b)%trial_pivot < near_singular*monitors(b)%largest_pivot) then
           call close_where_determined(plan, block, state, work(b), monitors(b), err)
           if (allocated(err)) return
           state%dq(block%coordinates) = dq(block%coordinates)
@@ -300,6 +293,6 @@ contains
     type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
 
     work%right = -work%right
-    call work%equations%solve(work%right, work%change, tolerance=near*monitor%largest_pivot/work%equations%largest_pivot())
+    call work%equations%solve(work%right, work%change, tolerance=near_singular*monitor%largest_pivot/work%equations%largest_pivot())
   end subroutine solve_where_determined
 end module mech9_branch_crossing

@@ -6,6 +6,8 @@
 !> docs/bibliography.md). The correction is measured by the least pivot, which tells how far away other branches are.
 module mech9_branch_stepping
   use mech9_kinds, only: wp, long
+  use mech9_tolerances, only: creeping_move, creeping_step, least_step, longest_drive, longest_move, small_correction, &
+    trusted_contraction, trusted_correction, trusted_rate_change
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
@@ -22,25 +24,6 @@ module mech9_branch_stepping
   public :: branch_stepper_type, new_branch_stepper, accept_start, step_towards, set_inputs, restore_last_position, &
     add_accelerations
 
-  !> Largest movement of a driven coordinate in a step [rad, lengths of the mechanism].
-  real(wp), parameter :: longest_drive = 0.25_wp
-  !> Largest movement of a dependent coordinate in a step [rad, lengths of the mechanism].
-  real(wp), parameter :: longest_move = 0.5_wp
-  !> Largest correction of the prediction over the least pivot. By Kantorovich's theorem Newton's method converges to the only
-  !> solution near by while this is below about 1/2 over the curvature.
-  real(wp), parameter :: trusted_correction = 0.05_wp
-  !> Largest change of the rates in a step, times its length, over the movement: beyond it the movement turned back.
-  real(wp), parameter :: trusted_rate_change = 1.0_wp
-  !> Newton's method must reduce its correction to this part from the first to the second iteration, ...
-  real(wp), parameter :: trusted_contraction = 0.25_wp
-  !> ... unless the correction is below this part of the least pivot.
-  real(wp), parameter :: small_correction = 1.0e-4_wp
-  !> A step shorter than this part of the time is not tried.
-  real(wp), parameter :: least_step = 1.0e-14_wp
-  !> A step creeps if it goes less than this part of the remaining time and moves no coordinate farther than creeping_move.
-  real(wp), parameter :: creeping_step = 1.0e-5_wp
-  !> Largest movement of a creeping step [rad, lengths of the mechanism].
-  real(wp), parameter :: creeping_move = 1.0e-3_wp
   !> After this many creeping steps towards one time the branch stepper gives up.
   integer, parameter :: most_creeping = 10000
 

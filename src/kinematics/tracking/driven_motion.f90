@@ -1,6 +1,7 @@
 !> A driven motion from output to output, through singular positions or up to its end.
 module mech9_driven_motion
   use mech9_kinds, only: wp, long
+  use mech9_tolerances, only: just_short_of_end, singular_conditioning
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
     failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
@@ -23,11 +24,6 @@ module mech9_driven_motion
   private
   public :: driven_motion_type, start_driven_motion, advance, set_inputs
 
-  !> A block whose least pivot is below this part of its largest one starts in a singular position: at a dead point round-off
-  !> of the position gives its square root, about 1e-8.
-  real(wp), parameter :: singular = 1.0e-7_wp
-  !> A motion that ends goes up to this part of the time between the position where the end was found and the end.
-  real(wp), parameter :: just_short = 1.0e-9_wp
 
   !> A driven motion: the branch stepper, the special position ahead, and counts for the report.
   type, extends(branch_stepper_type) :: driven_motion_type
@@ -65,7 +61,7 @@ contains
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b), work => driven%work(b))
         call factorize_trial(plan, block, driven%state, work, driven%monitors(b))
-        if (work%equations%conditioning() < singular) then
+        if (work%equations%conditioning() < singular_conditioning) then
           call find_rates_off_start(mechanism, plan, block, starts_singular, driven, err)
           if (allocated(err)) return
           starts_singular = .true.
@@ -270,7 +266,7 @@ contains
     integer :: refused_by
     logical :: stuck
 
-    t = driven%ahead%t - just_short*(driven%ahead%t - driven%predictor%t)
+    t = driven%ahead%t - just_short_of_end*(driven%ahead%t - driven%predictor%t)
     stuck = .false.
     do while (abs(t - driven%predictor%t) > 0.0_wp .and. .not. stuck .and. .not. allocated(err))
       call step_towards(mechanism, plan, driven%branch_stepper_type, t, stuck, refused_by, err)

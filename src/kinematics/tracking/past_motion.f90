@@ -6,6 +6,7 @@
 !> times leave a smaller correction.
 module mech9_past_motion
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: least_spacing, longest_prediction, same_spacing, worth_positions
   implicit none
   private
   public :: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, predict_from_past, &
@@ -13,15 +14,6 @@ module mech9_past_motion
 
   !> Number of times before the latest one that are kept, and number of those whose positions are used.
   integer, parameter :: most = 4, most_with_positions = 3
-  !> Weights serve again where all times agree within this part of the step with those for which they were found.
-  real(wp), parameter :: same = 1.0e-9_wp
-  !> A prediction goes at most this many times the last step beyond the latest time.
-  real(wp), parameter :: longest_prediction = 3.0_wp
-  !> Earlier times are used as long as the distances between them are at least this part of the last step.
-  real(wp), parameter :: least_distance = 0.2_wp
-  !> Positions are used where the correction of a prediction from rates exceeds this, in units of the coordinates. Newton's
-  !> method takes a second iteration from 1e-9 on; round-off of the positions makes a correction of about 1e-14.
-  real(wp), parameter :: worth_positions = 1.0e-10_wp
 
   !> The motion at the last times, in a ring of slots, and the weights of a prediction.
   type :: past_motion_type
@@ -131,7 +123,7 @@ contains
     end do
     past%h = h
     ! outputs are mostly equidistant except for round-off
-    if (past%weighed .and. all(abs(nodes - past%nodes) <= same)) return
+    if (past%weighed .and. all(abs(nodes - past%nodes) <= same_spacing)) return
     past%nodes = nodes
     past%weighed = past%count > most
     past%of_positions = 0.0_wp
@@ -158,7 +150,7 @@ contains
     if (kept == 0 .or. longest_prediction*abs(nodes(1)) < 1.0_wp) return
     n = 1
     do i = 2, kept
-      if (abs(nodes(i) - nodes(i - 1)) < least_distance*abs(nodes(1))) return
+      if (abs(nodes(i) - nodes(i - 1)) < least_spacing*abs(nodes(1))) return
       n = i
     end do
   end function times_to_use

@@ -2,6 +2,7 @@
 !> positions with their rates and accelerations (Hermite's) or, without accelerations, from the motion at the last few times.
 module mech9_predictor
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: longest_prediction, round_off_term
   use mech9_plan, only: block_type
   use mech9_state, only: state_type
   use mech9_past_motion, only: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, &
@@ -11,10 +12,6 @@ module mech9_predictor
   public :: predictor_type, new_predictor, begin_prediction, add_position, prepare_prediction, predict, set_accelerations, &
     acceleration_of
 
-  !> A prediction uses the polynomial through two positions up to this many times their distance.
-  real(wp), parameter :: longest_prediction = 3.0_wp
-  !> The highest term of the polynomial is only round-off where it is below this part of the coordinate or of its unit.
-  real(wp), parameter :: only_round_off = 64.0_wp*epsilon(1.0_wp)
 
   !> The position accepted last, and all that a prediction needs.
   type :: predictor_type
@@ -199,7 +196,7 @@ contains
       z = x + d1 + 4.0_wp*d0
       y = d0 + x + z
       ! where the last term is only round-off of the positions, the polynomial goes without them
-      is_round_off = abs(z) <= only_round_off*max(unit_of(k), abs(q(k)))
+      is_round_off = abs(z) <= round_off_term*max(unit_of(k), abs(q(k)))
       x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_round_off)
       y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_round_off)
       z = merge(0.0_wp, z, is_round_off)

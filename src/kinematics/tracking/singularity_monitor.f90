@@ -4,6 +4,7 @@
 !> while a norm of J^-1 D is below 1. The norm of D over the least pivot of J is a cheap estimate of it.
 module mech9_singularity_monitor
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: harmless_change, near_singular, trusted_change, unbounded_excess
   use mech9_balance, only: balance
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
@@ -12,16 +13,7 @@ module mech9_singularity_monitor
   private
   public :: singularity_monitor_type, new_singularity_monitor, factorize_trial, monitor_step, accept_jacobians, nearness, is_near
 
-  !> A change of the Jacobian (root of the sum of squares) up to this part of the least pivot is accepted.
-  real(wp), parameter :: harmless_change = 0.25_wp
-  !> Norm of J^-1 D that is accepted: below 1 no singular matrix lies on the straight line between the two Jacobians; the
-  !> margin is for the true path, which is not straight.
-  real(wp), parameter :: trusted_change = 0.5_wp
-  !> Measure of a step whose excess of length has no measure.
-  real(wp), parameter :: unbounded = 1.0e30_wp
 
-  !> A block is near a singular position where its least pivot is below this part of the largest least pivot so far.
-  real(wp), parameter :: near = 0.03_wp
 
   !> The Jacobian of a block at the start of a step, and the measures of it and of that at the end of the trial step.
   type :: singularity_monitor_type
@@ -82,7 +74,7 @@ contains
     if (.not. factorized) call factorize_block(plan, block, state, work)
     call read_factors(work, monitor)
     if (.not. monitor%trial_pivot > 0.0_wp) then
-      worst = unbounded
+      worst = unbounded_excess
       return
     end if
     change = distance(size(monitor%jacobian), work%jacobian, monitor%jacobian)/(harmless_change*monitor%trial_pivot)
@@ -124,7 +116,7 @@ contains
     type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
     integer :: j
 
-    change = unbounded
+    change = unbounded_excess
     if (work%equations%rank() < work%equations%n) return
     do j = 1, work%equations%n
       work%right = work%jacobian(:, j) - monitor%jacobian(:, j)
@@ -155,7 +147,7 @@ contains
   pure elemental logical function is_near(monitor)
     type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
 
-    is_near = monitor%pivot < near*monitor%largest_pivot
+    is_near = monitor%pivot < near_singular*monitor%largest_pivot
   end function is_near
 
   !> Least pivot at the end of the trial step, divided by the largest least pivot so far.

@@ -7,6 +7,8 @@
 !> axes become parallel it grows as a power of 1/(T - t), and there is no position at T.
 module mech9_special_position
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: clear_pivot, crossing_growth, crossing_pivot, dead_growth, escape_law, escaped_slide, &
+    escaping_speed, far_slide, last_pivot, longest_growth, probe_move, stuck_pivot
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
@@ -33,35 +35,10 @@ module mech9_special_position
 
   ! All pivots below are parts of the largest least pivot so far.
 
-  !> Above this least pivot the block is far from the singular position again.
-  real(wp), parameter :: clear = 0.06_wp
-  !> Rates that have grown by this factor show a dead point.
-  real(wp), parameter :: dead_growth = 1.0e4_wp
-  !> Below this least pivot ...
-  real(wp), parameter :: crossing_pivot = 1.0e-6_wp
-  !> ... rates that have grown by less than this factor show a crossing.
-  real(wp), parameter :: crossing_growth = 3.0_wp
-  !> The same where no step is accepted any more, which round-off may cause somewhat before.
-  real(wp), parameter :: stuck_pivot = 1.0e-4_wp
-  !> Below this least pivot round-off dominates, so that the kind must be decided.
-  real(wp), parameter :: last_pivot = 3.0e-8_wp
-  !> Movement of the fastest coordinate in a step of the probe [rad, lengths of the mechanism].
-  real(wp), parameter :: probe_move = 0.1_wp
   !> Largest number of steps of the probe.
   integer, parameter :: most_steps = 2000
-  !> Largest ratio of a step of the probe to the one before it, and factor by which steps are shortened where drives end.
-  real(wp), parameter :: longer = 4.0_wp
   !> Largest number of such shortenings of one step.
   integer, parameter :: most_trials = 20
-  !> A slide that exceeds so many lengths of the mechanism may escape.
-  real(wp), parameter :: far = 3.0_wp
-  !> A slide escapes where it exceeds so many lengths of the mechanism ...
-  real(wp), parameter :: far_away = 100.0_wp
-  !> ... and is so many times faster than the coordinates that drive it: hardly any mechanism has two axes that come so close
-  !> to parallel and part again.
-  real(wp), parameter :: fast_away = 5.0e3_wp
-  !> For x = c/(T - t)^p the quotient x x''/x'^2 is 1 + 1/p, between these; at a dead point it is large.
-  real(wp), parameter :: power_law(2) = [1.2_wp, 6.0_wp]
 
 contains
 
@@ -92,12 +69,12 @@ contains
       if (.not. speed > 0.0_wp) return
       pivot_before = probe%monitors(b)%pivot
       t_before = probe%predictor%t
-      step = min(probe%reach, probe_move/speed, longer*probe%predictor%before)
+      step = min(probe%reach, probe_move/speed, longest_growth*probe%predictor%before)
       do trial = 1, most_trials
         t = t_before + direction*step
         call step_towards(mechanism, plan, probe, t, stuck, refused_by, err)
         if (.not. allocated(err)) exit
-        step = step/longer                      ! a drive may end before the special position, or just at it
+        step = step/longest_growth                      ! a drive may end before the special position, or just at it
       end do
       if (allocated(err)) return
       if (stuck .and. refused_by /= b) return   ! the look-ahead of the other block decides
@@ -105,7 +82,7 @@ contains
       call find_speeds(plan, probe, b, speed, usual)
       growth = speed/max(usual, tiny(usual))
       part = probe%monitors(b)%pivot/probe%monitors(b)%largest_pivot
-      if (part > clear) return
+      if (part > clear_pivot) return
       call find_escape(plan, probe, b, stuck, finding)
       if (finding%kind == escape) return
       if (follows_power_law(plan, probe, b)) cycle
@@ -141,7 +118,7 @@ contains
     usual = 0.0_wp
     call find_speeds(plan, stepper, b, speed, usual)
     k = fastest_of(plan, stepper, b)
-    if (.not. stuck .and. (speed <= fast_away*usual .or. abs(stepper%predictor%q(k)) < far_away*plan%unit_of(k))) return
+    if (.not. stuck .and. (speed <= escaping_speed*usual .or. abs(stepper%predictor%q(k)) < escaped_slide*plan%unit_of(k))) return
     if (.not. follows_power_law(plan, stepper, b)) return
     associate (q => stepper%predictor%q(k), dq => stepper%predictor%dq(k), ddq => acceleration_of(stepper%predictor, k))
       ! x'/x'' is (T - t)/(p + 1), and x/x' is (T - t)/p
@@ -159,7 +136,7 @@ contains
     slides_far = .false.
     do i = 1, size(plan%blocks(b)%unknowns)
       k = plan%blocks(b)%coordinates(i)
-      if (abs(stepper%predictor%q(k)) < far*plan%unit_of(k)) cycle
+      if (abs(stepper%predictor%q(k)) < far_slide*plan%unit_of(k)) cycle
       associate (step => plan%steps(plan%blocks(b)%unknowns(i)))
         slides_far = step%is_screw .and. .not. abs(step%turn) > 0.0_wp
       end associate
@@ -183,9 +160,9 @@ contains
       end associate
     end do
     associate (q => stepper%predictor%q(k), dq => stepper%predictor%dq(k), ddq => acceleration_of(stepper%predictor, k))
-      if (abs(q) < far*plan%unit_of(k) .or. .not. q*dq > 0.0_wp .or. .not. dq*ddq > 0.0_wp) return
+      if (abs(q) < far_slide*plan%unit_of(k) .or. .not. q*dq > 0.0_wp .or. .not. dq*ddq > 0.0_wp) return
       quotient = (q/dq)*(ddq/dq)
-      follows = quotient > power_law(1) .and. quotient < power_law(2)
+      follows = quotient > escape_law(1) .and. quotient < escape_law(2)
     end associate
   end function follows_power_law
 

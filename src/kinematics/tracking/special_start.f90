@@ -5,6 +5,7 @@
 !> w . (J' x' + ...) = 0. Each of its real roots is a branch through the position (Allgower and Georg in docs/bibliography.md).
 module mech9_special_start
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: first_move, singular_conditioning, zero_rate
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
   use mech9_hermite, only: build_hermite
@@ -28,12 +29,6 @@ module mech9_special_start
     real(wp), allocatable :: rates(:, :)     !< (unknowns, 2) rates of the coordinates, one branch in each column [rad/s, m/s]
   end type starting_rates_type
 
-  !> Singular values and terms below this part of the largest count as zero.
-  real(wp), parameter :: nothing = 1.0e-7_wp
-  !> Rates below this part of the largest are zero but for round-off.
-  real(wp), parameter :: round_off = 1.0e-13_wp
-  !> Movement from the start to the first regular position that is tried [rad, lengths of the mechanism].
-  real(wp), parameter :: first_move = 0.05_wp
   !> Number of distances that are tried, each a third of the one before.
   integer, parameter :: most_trials = 5
 
@@ -56,12 +51,12 @@ contains
     n = size(block%unknowns)
     allocate (starting%rates(n, 2), source=0.0_wp)
     call decompose(plan, block, state, work, u, s, vt)
-    rank = count(s > nothing*s(1))
+    rank = count(s > singular_conditioning*s(1))
     starting%undetermined = n - rank /= 1
     if (starting%undetermined) return
     call set_rates(plan, block, 0.0_wp*s, state)
     call block_rates(plan, block, 1, state, right)
-    starting%dead = norm2(matmul(right, u(:, n:))) > nothing*max(norm2(right), tiny(s))
+    starting%dead = norm2(matmul(right, u(:, n:))) > singular_conditioning*max(norm2(right), tiny(s))
     if (starting%dead) return
     particular = -matmul(matmul(right, u(:, :rank))/s(:rank), vt(:rank, :))
     ! the quadratic from three of its values: at -1, 0 and 1
@@ -72,7 +67,7 @@ contains
     call find_roots(matmul(transpose(u(:, n:)), terms), starting%count, roots, starting%undetermined)
     do i = 1, starting%count
       starting%rates(:, i) = particular + roots(i)*vt(n, :)
-      where (abs(starting%rates(:, i)) <= round_off*maxval(abs(starting%rates(:, i)))) starting%rates(:, i) = 0.0_wp
+      where (abs(starting%rates(:, i)) <= zero_rate*maxval(abs(starting%rates(:, i)))) starting%rates(:, i) = 0.0_wp
       starting%rates(:, i) = starting%rates(:, i)*plan%unit_of(block%coordinates)
     end do
   end subroutine find_starting_rates
@@ -126,7 +121,7 @@ contains
     roots = 0.0_wp
     undetermined = .not. max(norm2(square), norm2(linear)) > tiny(a)
     if (undetermined) return
-    if (norm2(square) >= max(norm2(linear), nothing*norm2(constant))) then
+    if (norm2(square) >= max(norm2(linear), singular_conditioning*norm2(constant))) then
       a = norm2(square)
       b = dot_product(linear, square)/a
       c = dot_product(constant, square)/a
@@ -135,16 +130,16 @@ contains
       a = dot_product(square, linear)/b
       c = dot_product(constant, linear)/b
     end if
-    undetermined = max(abs(a), abs(b)) <= nothing*max(abs(c), nothing)
+    undetermined = max(abs(a), abs(b)) <= singular_conditioning*max(abs(c), singular_conditioning)
     if (undetermined) return
-    if (abs(a) <= nothing*abs(b)) then
+    if (abs(a) <= singular_conditioning*abs(b)) then
       n_roots = 1
       roots(1) = -c/b
       return
     end if
     root = b**2 - 4.0_wp*a*c
     ! a double root: two branches that touch
-    undetermined = abs(root) <= nothing*max(b**2, abs(a*c))
+    undetermined = abs(root) <= singular_conditioning*max(b**2, abs(a*c))
     if (undetermined .or. root < 0.0_wp) return
     n_roots = 2
     root = -0.5_wp*(b + sign(sqrt(root), b))
