@@ -14,7 +14,7 @@ contains
 
   !> A pendulum of length 1/3 that turns about y.
   subroutine pendulum(design)
-    type(design_type), intent(out) :: design
+    type(design_type), intent(out) :: design   !< gets the pendulum
 
     call design%independent([1])
     call design%pair(1, 'revolute', [1, 2], axis=[0.0_wp, 1.0_wp, 0.0_wp])

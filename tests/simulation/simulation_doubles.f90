@@ -25,7 +25,7 @@ contains
 
   !> Whether this question is the one.
   logical function is_wanted(self)
-    class(countdown_type), intent(in) :: self
+    class(countdown_type), intent(in) :: self   !< counts its questions
 
     self%left = self%left - 1
     is_wanted = self%left == 0
@@ -33,7 +33,7 @@ contains
 
   !> The closure error that was set.
   real(wp) function present_closure(self)
-    class(open_chains_type), intent(in) :: self
+    class(open_chains_type), intent(in) :: self   !< the simulation
 
     present_closure = self%gap
   end function present_closure

@@ -53,9 +53,9 @@ contains
 
   !> A simulation of a text in the form of a data file, not started.
   subroutine new_simulation(text, is_driven, simulation)
-    character(len=*), intent(in) :: text                               !< groups of the data file
-    logical, intent(in) :: is_driven                                   !< all independent coordinates are driven
-    class(simulation_type), allocatable, intent(out) :: simulation
+    character(len=*), intent(in) :: text                             !< groups of the data file
+    logical, intent(in) :: is_driven                                 !< all independent coordinates are driven
+    class(simulation_type), allocatable, intent(out) :: simulation   !< not started
     type(driven_simulation_type), allocatable :: of_drives
     type(free_simulation_type), allocatable :: of_forces
     type(mechanism_type) :: mechanism
@@ -79,9 +79,9 @@ contains
   end subroutine new_simulation
 
   subroutine read(text, is_driven, mechanism)
-    character(len=*), intent(in) :: text
-    logical, intent(in) :: is_driven
-    type(mechanism_type), intent(out) :: mechanism
+    character(len=*), intent(in) :: text             !< text of a data file
+    logical, intent(in) :: is_driven                 !< all independent coordinates are driven
+    type(mechanism_type), intent(out) :: mechanism   !< that it describes
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
@@ -92,7 +92,7 @@ contains
 
   !> Coordinates and rates of the present state.
   function numbers(simulation)
-    class(simulation_type), intent(in), target :: simulation
+    class(simulation_type), intent(in), target :: simulation   !< at some time
     real(wp), allocatable :: numbers(:)
     type(mechanism_type), pointer :: mechanism
     type(plan_type), pointer :: plan
@@ -104,9 +104,9 @@ contains
 
   !> The motion at its end by one call, and by many.
   subroutine check_pieces(text, is_driven, tolerance)
-    character(len=*), intent(in) :: text
-    logical, intent(in) :: is_driven
-    real(wp), intent(in) :: tolerance          !< of coordinates [rad] and rates [rad/s]
+    character(len=*), intent(in) :: text   !< text of a data file
+    logical, intent(in) :: is_driven       !< all independent coordinates are driven
+    real(wp), intent(in) :: tolerance      !< of coordinates [rad] and rates [rad/s]
     class(simulation_type), allocatable :: whole, pieces
     type(error_type), allocatable :: err
     integer :: i
@@ -131,9 +131,9 @@ contains
 
   !> A motion that is interrupted at the given question stops there with its code; asked again it goes on to the same end.
   subroutine check_interruption(text, is_driven, question)
-    character(len=*), intent(in) :: text
-    logical, intent(in) :: is_driven
-    integer, intent(in) :: question            !< after the one of the start
+    character(len=*), intent(in) :: text   !< text of a data file
+    logical, intent(in) :: is_driven       !< all independent coordinates are driven
+    integer, intent(in) :: question        !< after the one of the start
     class(simulation_type), allocatable :: whole, interrupted
     type(error_type), allocatable :: err
     integer, target :: left
@@ -194,8 +194,8 @@ contains
 
   !> No motion without a start, and none back.
   subroutine check_order_of_times(text, is_driven)
-    character(len=*), intent(in) :: text
-    logical, intent(in) :: is_driven
+    character(len=*), intent(in) :: text   !< text of a data file
+    logical, intent(in) :: is_driven       !< all independent coordinates are driven
     class(simulation_type), allocatable :: simulation
     type(error_type), allocatable :: err
     real(wp), allocatable :: there(:)
