@@ -16,8 +16,8 @@ module mech9_coordinate_choice
 
 contains
 
-  !> The independent coordinates that leave the best conditioned dependent ones at a closed position, by
-  !> QR with column pivoting of the closures' Jacobian over all coordinates. Chains that are left out stay dependent.
+  !> The independent coordinates with the best conditioned dependent ones at a closed position, by QR with column pivoting of the
+  !> closures' Jacobian over all coordinates. Chains that are left out stay dependent.
   subroutine best_independent(plan, state, independent)
     type(plan_type), intent(in) :: plan      !< the plan of the mechanism
     type(state_type), intent(in) :: state    !< frames in place
@@ -87,7 +87,7 @@ contains
       if (err%code == exit_structure .or. err%code == exit_assembly) err%code = exit_singular
       return
     end if
-    ! chains that nobody followed so far close where they can
+    ! chains that were left out so far close anywhere
     k = maxloc(abs(new_state%q - state%q)/new_plan%unit_of, dim=1, mask=requested%coordinates)
     if (abs(new_state%q(k) - state%q(k)) > 1.0e-6_wp*new_plan%unit_of(k)) then
       call raise(err, exit_singular, failure_other_branch)

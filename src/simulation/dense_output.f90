@@ -19,24 +19,24 @@ module mech9_dense_output
   !> Points inserted into a step.
   integer, parameter :: most_inserted = 3
 
-  !> A settled point: the end of a step, or inserted into one.
+  !> A point with closed chains: the end of a step, or inserted into one.
   type :: step_point_type
-    real(wp) :: t = 0.0_wp                            !< [s]
-    real(wp), allocatable :: y(:)                     !< settled
-    integer, allocatable :: signs(:)                  !< of the blocks' Jacobians
-    logical :: is_known = .false.                     !< the following were worked out
-    real(wp), allocatable :: q(:), dq(:), ddq(:)      !< (M)
+    real(wp) :: t = 0.0_wp                            !< time [s]
+    real(wp), allocatable :: y(:)                     !< vector of the motion system
+    integer, allocatable :: signs(:)                  !< signs of the determinants of the blocks' Jacobians
+    logical :: is_known = .false.                     !< the following are known
+    real(wp), allocatable :: q(:), dq(:), ddq(:)      !< (M) coordinates, rates and accelerations
   end type step_point_type
 
-  !> The last ends of steps in the same independent coordinates, and what was inserted into the last one after them.
+  !> The ends of the last steps in the same independent coordinates, and the points inserted into the last step.
   type :: dense_output_type
     private
-    type(step_point_type) :: points(most + most_inserted)
+    type(step_point_type) :: points(most + most_inserted)   !< the ends in a ring, then the inserted points
     integer :: last = 0                               !< place of the end of the last step
-    integer :: count = 0                              !< ends
-    integer :: inserted = 0
-    integer :: chosen(most) = 0                       !< the points through which `way` leads, the nearest first
-    type(hermite_type) :: way                         !< of all coordinates
+    integer :: count = 0                              !< number of ends
+    integer :: inserted = 0                           !< number of inserted points
+    integer :: chosen(most) = 0                       !< places of the points of the polynomial, the nearest first
+    type(hermite_type) :: polynomial                  !< all coordinates over time
   contains
     procedure :: begin
     procedure :: add
@@ -50,7 +50,7 @@ module mech9_dense_output
 
 contains
 
-  !> Nothing is known yet.
+  !> Forget all steps.
   pure subroutine begin(self)
     class(dense_output_type), intent(inout) :: self   !< the dense output
 
@@ -59,7 +59,7 @@ contains
     self%chosen = 0
   end subroutine begin
 
-  !> The end of a step, or the start of the first one; the system must have been evaluated there last.
+  !> Add the end of a step, or the start of the first one; the last evaluation of the system must have been there.
   subroutine add(self, system, t, y)
     class(dense_output_type), intent(inout) :: self     !< the dense output
     type(motion_system_type), intent(inout) :: system   !< the system, evaluated at the end
@@ -83,7 +83,7 @@ contains
     end associate
   end subroutine add
 
-  !> A settled point within the last step; nothing happens where there are enough.
+  !> Insert a point with closed chains into the last step, unless enough are inserted.
   pure subroutine insert(self, t, y)
     class(dense_output_type), intent(inout) :: self   !< the dense output
     real(wp), intent(in) :: t                         !< time of the point [s]
@@ -99,14 +99,14 @@ contains
     end associate
   end subroutine insert
 
-  !> Such points of the last step.
+  !> Number of points that were inserted into the last step.
   pure integer function count_inserted(self)
     class(dense_output_type), intent(in) :: self   !< the dense output
 
     count_inserted = self%inserted
   end function count_inserted
 
-  !> Where the last step began.
+  !> Time and vector at the start of the last step.
   pure subroutine start_of_step(self, t, y)
     class(dense_output_type), intent(in) :: self   !< with two ends at least
     real(wp), intent(out) :: t                     !< time of the start [s]
@@ -118,7 +118,7 @@ contains
     y = self%points(before)%y
   end subroutine start_of_step
 
-  !> Place of the i-th end, counted from the last one.
+  !> Place of the i-th end of a step, counted from the last one.
   pure integer function place(self, i)
     class(dense_output_type), intent(in) :: self   !< the dense output
     integer, intent(in) :: i                       !< 0: the last end; 1: the end before it; ...
@@ -126,8 +126,8 @@ contains
     place = modulo(self%last - i, most) + 1
   end function place
 
-  !> Whether a singular position of the independent coordinates lies within the last step: signs are not the same at
-  !> its ends.
+  !> Whether a singular position of the independent coordinates lies within the last step, which has different signs of a
+  !> block's determinant at its ends.
   pure logical function crosses(self)
     class(dense_output_type), intent(in) :: self   !< the dense output
 
@@ -144,8 +144,8 @@ contains
     agrees = all(signs == self%points(self%last)%signs)
   end function agrees
 
-  !> The vector at time t within the last step. `found` is false where it is not certain to be as accurate as the
-  !> ends of the step. Leaves the system in another state. Fails as evaluations do.
+  !> Find the vector at time t within the last step. `found` is false if it is not certain to be as accurate as the ends of the
+  !> step. The system is left in another state. Fails as evaluations do.
   subroutine find(self, system, t, y, found, err)
     class(dense_output_type), intent(inout) :: self     !< the dense output
     type(motion_system_type), intent(inout) :: system   !< the system, which is evaluated
@@ -162,8 +162,8 @@ contains
     if (self%count < 2) return
     call build(self, system, t, err)
     if (allocated(err)) return
-    call self%way%evaluate(t, worse_q, worse_dq, ddq, points=size(self%way%x)/3 - 1)
-    call self%way%evaluate(t, q, dq, ddq)
+    call self%polynomial%evaluate(t, worse_q, worse_dq, ddq, points=size(self%polynomial%x)/3 - 1)
+    call self%polynomial%evaluate(t, q, dq, ddq)
     per_length = steepest_slope/abs(self%points(self%chosen(1))%t - self%points(self%chosen(2))%t)
     m = system%plan%n_coordinates
     y(:m) = q
@@ -172,7 +172,7 @@ contains
       do i = 1, size(system%plan%independent)
         k = system%plan%independent(i)
         y(m + i) = dq(k)
-        ! a difference may vanish here by chance: then its derivative does not, or the other way about
+        ! a difference may vanish here by chance, but not together with its derivative
         change = abs(q(k) - worse_q(k))
         change_of_rate = abs(dq(k) - worse_dq(k))
         found = found .and. change + change_of_rate/per_length <= solver%relative_tolerance*abs(q(k)) &
@@ -183,7 +183,7 @@ contains
     end associate
   end subroutine find
 
-  !> The polynomial through the points next to time t, if it is not there already.
+  !> Build the polynomial through the points next to time t, unless the present one goes through them.
   subroutine build(self, system, t, err)
     class(dense_output_type), intent(inout) :: self     !< the dense output
     type(motion_system_type), intent(inout) :: system   !< the system, which is evaluated
@@ -212,7 +212,7 @@ contains
         ddq(:, i) = point%ddq
       end associate
     end do
-    call build_hermite(times(:n), q(:, :n), dq(:, :n), ddq(:, :n), self%way)
+    call build_hermite(times(:n), q(:, :n), dq(:, :n), ddq(:, :n), self%polynomial)
     self%chosen = chosen
   end subroutine build
 

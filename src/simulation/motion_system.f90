@@ -50,8 +50,8 @@ module mech9_motion_system
 
 contains
 
-  !> The system from an assembled start with the independent rates in `start`; its motion there is worked out,
-  !> and work%coefficients are those of the start.
+  !> Make the system from an assembled start with the independent rates in `start`. The motion there is found, and
+  !> work%coefficients are those of the start.
   subroutine set_motion_system(mechanism, plan, start, system, err)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
@@ -115,17 +115,17 @@ contains
     end do
   end subroutine rate
 
-  !> Keep what the first evaluation after an accepted step found there.
+  !> Keep the accelerations of the first evaluation after an accepted step.
   pure subroutine remember(self)
     class(motion_system_type), intent(inout) :: self   !< the motion system
 
     self%just_settled = .false.
-    ! nothing to expect where all coordinates are independent
+    ! where all coordinates are independent there are no accelerations to expect
     if (size(self%plan%closures) == 0) return
     call self%work%expectation%remember(self%state%t, self%work%jacobian%b, self%state%ddq)
   end subroutine remember
 
-  !> Positions and independent rates of a vector into the state.
+  !> Put the positions and independent rates of a vector into the state.
   pure subroutine take(self, t, y)
     class(motion_system_type), intent(inout) :: self   !< the motion system
     real(wp), intent(in) :: t                          !< time [s]
@@ -142,7 +142,7 @@ contains
     end do
   end subroutine take
 
-  !> After an accepted step: close the chains, and put the closed positions back into the vector.
+  !> Close the chains after an accepted step, and put the closed positions into the vector.
   subroutine settle(self, t, y, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time of the end of the step [s]
@@ -165,8 +165,7 @@ contains
     self%just_settled = .true.
   end subroutine settle
 
-  !> Close the chains of the present state. `failed` is the block that does not close, or only by a change of
-  !> more than the trusted one; 0 where all do.
+  !> Close the chains of the present state. A block fails if it does not close, or changes a coordinate by more than is trusted.
   subroutine close_chains(self, trusted, failed, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: trusted                     !< change of a coordinate, in its unit
@@ -186,8 +185,8 @@ contains
     failed = 0
   end subroutine close_chains
 
-  !> A state between two settled ones, and all its velocities and accelerations: y is where the integrator takes it to
-  !> be, and the chains are closed there. `ok` is false where they are not certain to close on the same branch.
+  !> Find a state within a step, with its rates and accelerations: the chains are closed from the vector y, an approximation.
+  !> `ok` is false where they are not certain to close on the same branch.
   subroutine close_near(self, t, y, ok, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time between the settled states [s]
@@ -204,7 +203,7 @@ contains
     ok = .not. allocated(err)
   end subroutine close_near
 
-  !> A settled state, and all its velocities and accelerations.
+  !> Move to a vector with closed chains, and find its rates and accelerations.
   subroutine move_to(self, t, y, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time [s]
@@ -216,7 +215,7 @@ contains
     if (.not. allocated(err)) call self%present(err)
   end subroutine move_to
 
-  !> Go on with what was expected before steps that led aside.
+  !> Go on with the expectation that held before side steps.
   pure subroutine resume(self, expectation)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     type(expectation_type), intent(in) :: expectation   !< continuation of rates from the positions before the steps aside

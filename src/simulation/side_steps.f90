@@ -24,7 +24,7 @@ module mech9_side_steps
 
 contains
 
-  !> An integrator of the system from (t, y), with the method and the limits that its data file asks for.
+  !> Make an integrator of the system from (t, y), with the method and the limits of its data file.
   subroutine begin_integration(integrator, system, t, y, err)
     type(integrator_type), intent(inout) :: integrator          !< of the system, at its start
     type(motion_system_type), intent(inout), target :: system   !< must outlive the integrator
@@ -40,7 +40,8 @@ contains
     end associate
   end subroutine begin_integration
 
-  !> To time t, from (from, y), or from where earlier steps led if that lies between. Fails as the integration does.
+  !> Integrate to time t, from (from, y), or from the end of earlier side steps if that lies between. Fails as the integration
+  !> does.
   subroutine reach(self, system, from, y, t, err)
     class(side_steps_type), intent(inout) :: self               !< the side steps
     type(motion_system_type), intent(inout), target :: system   !< the same at each call, until closed
@@ -66,7 +67,7 @@ contains
     call system%resume(expectation)
   end subroutine reach
 
-  !> What they took.
+  !> The statistics of the side steps.
   function statistics(self)
     class(side_steps_type), intent(inout) :: self   !< the side steps
     type(integration_statistics_type) :: statistics
