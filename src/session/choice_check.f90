@@ -15,7 +15,8 @@ module mech9_choice_check
 
 contains
 
-  !> Whether a mechanism of a file without errors of writing, whose data are sound but for its drives, has the wrong independent coordinates.
+  !> Find out whether the choice of the independent coordinates is wrong. The document must be without errors except those of
+  !> its drives.
   subroutine judge_choice_of(document, sources_of, wrong)
     type(document_type), intent(in) :: document        !< the data file as groups and items
     type(diagnostics_type), intent(in) :: sources_of   !< the texts that the document points into
@@ -37,7 +38,7 @@ contains
     if (err%code == exit_structure) call wrong%add_error(err)
   end subroutine judge_choice_of
 
-  !> A document without its drives. By hand: an array constructor of groups would leak (gfortran 12).
+  !> A document without its drives. The groups are copied in a loop: an array constructor of them would leak (gfortran 12).
   pure subroutine leave_drives_out(document, bare)
     type(document_type), intent(in) :: document   !< the data file as groups and items
     type(document_type), intent(out) :: bare      !< the data file without groups &drive

@@ -1,4 +1,4 @@
-!> What mech9d says at the end of a run: a few lines for a person, JSON and data sets for programs.
+!> The report of mech9d at the end of a run: a few lines for a person, JSON and data sets for programs.
 module mech9_dynamic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -75,7 +75,7 @@ contains
     end do
   end subroutine print_coefficients
 
-  !> What a program may want to know of a run.
+  !> The facts about a run, for reports that programs read.
   subroutine dynamic_facts(mechanism, plan, outcome, simulation, facts)
     type(mechanism_type), intent(in) :: mechanism             !< the mechanism
     type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
@@ -120,7 +120,7 @@ contains
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
   end subroutine dynamic_facts
 
-  !> The same, and more, as JSON.
+  !> Write the report as JSON, with structure, coefficients of motion and events.
   subroutine save_dynamic_report(path, mechanism, plan, table_path, diagnostics, outcome, simulation, err)
     character(len=*), intent(in) :: path                      !< of the report
     type(mechanism_type), intent(in) :: mechanism             !< the mechanism
@@ -143,7 +143,7 @@ contains
     call json%save(path, err)
   end subroutine save_dynamic_report
 
-  !> [{"p": 1, "r": 5, "value": ...}, ...]
+  !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
   subroutine add_coefficients(json, plan, coefficients)
     type(json_type), intent(inout) :: json       !< the report, inside its object
     type(plan_type), intent(in) :: plan          !< the plan of the mechanism
@@ -163,7 +163,7 @@ contains
     call json%end_array()
   end subroutine add_coefficients
 
-  !> Changes of the independent coordinates.
+  !> Add the changes of the independent coordinates.
   subroutine add_events(json, simulation)
     type(json_type), intent(inout) :: json                 !< the report, inside its object
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
@@ -183,7 +183,7 @@ contains
     call json%end_array()
   end subroutine add_events
 
-  !> Coefficients of motion as data sets, and room for events.
+  !> Write the coefficients of motion as data sets, and make data sets for events.
   subroutine write_dynamics(hdf5, plan, simulation)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
@@ -206,7 +206,7 @@ contains
     call hdf5%begin_events(size(plan%independent))
   end subroutine write_dynamics
 
-  !> Changes of the independent coordinates as data sets.
+  !> Write the changes of the independent coordinates as data sets.
   subroutine write_events(hdf5, simulation)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went

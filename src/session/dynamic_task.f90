@@ -1,4 +1,4 @@
-!> What mech9d does with a mechanism.
+!> The work of mech9d on a mechanism.
 module mech9_dynamic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
@@ -40,7 +40,7 @@ contains
     task%needs_drives = .false.
   end function dynamic_task
 
-  !> Plan, and put the mechanism together at the start.
+  !> Make the plan and assemble the mechanism at the start.
   subroutine assemble(self, mechanism, plan, state, err)
     class(dynamic_task_type), intent(in) :: self        !< the dynamic task
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
@@ -51,7 +51,7 @@ contains
     call assemble_free_start(mechanism, plan, state, err)
   end subroutine assemble
 
-  !> Plan, assemble, work out the start, and run unless only a check is asked for.
+  !> Make the plan, assemble the mechanism, compute its state at the start, and run unless only an answer is requested.
   subroutine work(self, options, mechanism, diagnostics, reported, kept)
     class(dynamic_task_type), intent(in) :: self            !< the dynamic task
     type(command_line_type), intent(in) :: options          !< the command line
@@ -83,7 +83,7 @@ contains
     call simulation%close()
   end subroutine work
 
-  !> What a run would refuse at its start, is refused by a check.
+  !> Fail in a check where a run would fail at its start.
   subroutine check_motion(mechanism, simulation, err)
     type(mechanism_type), intent(in) :: mechanism                     !< the mechanism
     type(free_simulation_type), intent(inout), target :: simulation   !< is started

@@ -1,4 +1,4 @@
-!> What mech9k says at the end of a run: a few lines for a person, JSON for a program.
+!> The report of mech9k at the end of a run: a few lines for a person, JSON for a program.
 module mech9_kinematic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -56,7 +56,7 @@ contains
     iterations_each = real(driven%iterations, wp)/max(1, outcome%rows)
   end function iterations_each
 
-  !> What a program may want to know of a run.
+  !> The facts about a run, for reports that programs read.
   subroutine kinematic_facts(plan, outcome, driven, facts)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
@@ -85,7 +85,7 @@ contains
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
   end subroutine kinematic_facts
 
-  !> The same, and more, as JSON.
+  !> Write the report as JSON, with the structure.
   subroutine save_kinematic_report(path, mechanism, plan, table_path, diagnostics, outcome, driven, err)
     character(len=*), intent(in) :: path                  !< of the report
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism

@@ -1,4 +1,4 @@
-!> What mech9k does with a mechanism.
+!> The work of mech9k on a mechanism.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
@@ -33,7 +33,7 @@ module mech9_kinematic_task
 
 contains
 
-  !> What mech9k does.
+  !> The task of mech9k.
   pure function kinematic_task() result(task)
     type(kinematic_task_type) :: task
 
@@ -41,7 +41,7 @@ contains
     task%needs_drives = .true.
   end function kinematic_task
 
-  !> Plan, and put the mechanism together at the start.
+  !> Make the plan and assemble the mechanism at the start.
   subroutine assemble(self, mechanism, plan, state, err)
     class(kinematic_task_type), intent(in) :: self      !< the kinematic task
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
@@ -52,7 +52,7 @@ contains
     call assemble_driven_start(mechanism, plan, state, err)
   end subroutine assemble
 
-  !> Plan, assemble, and run unless only a check is asked for.
+  !> Make the plan, assemble the mechanism, and run unless only an answer is requested.
   subroutine work(self, options, mechanism, diagnostics, reported, kept)
     class(kinematic_task_type), intent(in) :: self          !< the kinematic task
     type(command_line_type), intent(in) :: options          !< the command line
@@ -86,7 +86,7 @@ contains
     call carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
   end subroutine work
 
-  !> What a run would refuse, is refused by a check: a start from which the motion cannot begin, drives without values
+  !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values
   !> at the end of the time.
   subroutine check_motion(mechanism, plan, start, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism

@@ -30,8 +30,8 @@ module mech9_session
 
 contains
 
-  !> Do what a command line asks for that is about a data file, or about the program itself; `code` is what the
-  !> program answers to the shell.
+  !> Carry out a command line about a data file or about the program itself; `code` is the exit code of the
+  !> program.
   subroutine carry_out(task, options, code)
     class(task_type), intent(in) :: task             !< the work of this program
     type(command_line_type), intent(in) :: options   !< the command line
@@ -54,7 +54,7 @@ contains
     if (code == exit_done) code = err%code
   end subroutine carry_out
 
-  !> Whether the options ask for a text about the program, whatever else they say.
+  !> Whether the options request a text about the program; all other options are then ignored.
   pure logical function asks_for_text(options)
     type(command_line_type), intent(in) :: options   !< the command line
 
@@ -74,7 +74,7 @@ contains
     code = err%code
   end subroutine show_data_help
 
-  !> Read a data file and do what is asked for.
+  !> Read a data file and carry out the options.
   subroutine run_file(task, options, path, code, kept)
     class(task_type), intent(in) :: task                    !< the work of this program
     type(command_line_type), intent(in) :: options          !< the command line
@@ -91,7 +91,7 @@ contains
     logical :: legible, reported
     integer :: i
 
-    ! an answer that takes too long leaves nothing to be kept: Ctrl-C ends it as it ends any program
+    ! an answer without a run has no results to keep: Ctrl-C ends it at once
     call catch_size_limit()
     if (.not. answers_only(options)) call catch_interrupts()
     call read_document(path, document, diagnostics)
@@ -151,7 +151,7 @@ contains
     end do
   end subroutine list_inputs
 
-  !> The report where no run wrote one. A failure of that is one more error; the first one decides the code.
+  !> Write the report where no run wrote one. A failure to write it is another error; the first error determines the code.
   subroutine report_briefly(task, options, mechanism, choice, diagnostics, code)
     class(task_type), intent(in) :: task                   !< the work of this program
     type(command_line_type), intent(in) :: options         !< the command line

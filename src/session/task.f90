@@ -1,4 +1,4 @@
-!> What a program does with a mechanism, as the session sees it, and what all tasks share.
+!> The interface of a program's work on a mechanism, and procedures that all tasks share.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_error, only: error_type
@@ -35,7 +35,7 @@ module mech9_task
   end type task_type
 
   abstract interface
-    !> Plan, and put the mechanism together at the start.
+    !> Make the plan and assemble the mechanism at the start.
     subroutine assemble_interface(self, mechanism, plan, state, err)
       import :: task_type, mechanism_type, plan_type, state_type, error_type
       class(task_type), intent(in) :: self                !< the task
@@ -45,7 +45,7 @@ module mech9_task
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine assemble_interface
 
-    !> Do what the options ask for. Errors go to `diagnostics`, which knows the places in the data file.
+    !> Carry out the options. Errors are added to `diagnostics`, which knows the places in the data file.
     subroutine work_interface(self, options, mechanism, diagnostics, reported, kept)
       import :: task_type, command_line_type, mechanism_type, diagnostics_type, kept_rows_type
       class(task_type), intent(in) :: self                    !< the task
@@ -59,7 +59,7 @@ module mech9_task
 
 contains
 
-  !> Is an answer asked for, and no run?
+  !> Whether the options request an answer instead of a run.
   pure logical function answers_only(options)
     type(command_line_type), intent(in) :: options   !< the command line
 
@@ -67,7 +67,7 @@ contains
                    .or. options%has('graph') .or. options%has('range')
   end function answers_only
 
-  !> Answer --check, --plan, --branches and --graph, and --sketch beside them.
+  !> Carry out --check, --plan, --branches and --graph, and --sketch beside them.
   subroutine print_check(options, pictures, mechanism, plan, requested, start, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
@@ -96,7 +96,7 @@ contains
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine print_check
 
-  !> What a check can say of the data before the mechanism is put together, and where it cannot be.
+  !> Print the results of a check that need no assembly of the mechanism.
   subroutine print_given(mechanism, with_masses)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     logical, intent(in) :: with_masses              !< bodies count in this program
@@ -105,7 +105,7 @@ contains
     call print_notes(output_unit, mechanism, with_masses)
   end subroutine print_given
 
-  !> The coordinates at the start.
+  !> Print the coordinates at the start.
   subroutine print_start(mechanism, start)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(state_type), intent(in) :: start           !< assembled position
@@ -120,7 +120,7 @@ contains
     end do
   end subroutine print_start
 
-  !> Answer --graph.
+  !> Carry out --graph.
   subroutine draw_graph(options, mechanism, plan, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
     type(mechanism_type), intent(in) :: mechanism          !< the mechanism
@@ -138,7 +138,7 @@ contains
     end if
   end subroutine draw_graph
 
-  !> Before a run: tell what runs, and open what takes its results. Not `ready` after an error.
+  !> Print the title of the run and open its results. `ready` is false after an error.
   subroutine begin_run(options, pictures, mechanism, plan, requested, source, results, diagnostics, ready)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
@@ -158,7 +158,7 @@ contains
     if (.not. ready) call diagnostics%add_error(err)
   end subroutine begin_run
 
-  !> After a run: close its results, draw the mechanism, and say what was written.
+  !> Close the results of a run, draw the mechanism, and print which files were written.
   subroutine end_run(options, pictures, mechanism, source, results, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
@@ -171,12 +171,12 @@ contains
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     call results%print_words(error_unit, options%has('quiet'))
-    ! pictures take longer than a program may take that is asked to end
+    ! an interrupted program makes no pictures, which would take too long
     if (asked_to_end()) return
     if (allocated(source%film)) call draw(options, pictures, mechanism, source%film, diagnostics)
   end subroutine end_run
 
-  !> The title, and with --verbose the structure and the plan.
+  !> Print the title, and with --verbose the structure and the plan.
   subroutine announce(options, mechanism, plan, requested)
     type(command_line_type), intent(in) :: options   !< the command line
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
@@ -190,7 +190,7 @@ contains
     call print_plan(error_unit, mechanism, plan, requested)
   end subroutine announce
 
-  !> The pictures of the mechanism that are asked for, and a word on each.
+  !> Draw the requested pictures of the mechanism, and print a line about each.
   subroutine draw(options, pictures, mechanism, film, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested

@@ -1,4 +1,4 @@
-!> What an HDF5 file of results holds besides the rows: where they come from, and the structure they belong to.
+!> Content of an HDF5 file of results besides the rows: their origin, and the structure of the mechanism.
 module mech9_hdf5_record
   use mech9_text, only: to_text
   use mech9_lapack, only: ilaver
@@ -10,12 +10,12 @@ module mech9_hdf5_record
   private
   public :: write_provenance, write_structure
 
-  !> More links than this, and C would be larger than the results.
+  !> Most links with which the coincidence matrix is written; for more links it would be larger than the results.
   integer, parameter :: largest_matrix = 1000
 
 contains
 
-  !> Where the results come from: enough to compute them again.
+  !> Write the origin of the results, with all data that are needed to compute them again.
   subroutine write_provenance(file, program_name, options, mechanism, data_text)
     type(hdf5_file_type), intent(inout) :: file      !< the open file
     character(len=*), intent(in) :: program_name     !< mech9k or mech9d
@@ -55,7 +55,7 @@ contains
            zone(1:3)//':'//zone(4:5)
   end function present_time
 
-  !> The first and the second set of structural data.
+  !> Write the first and the second set of structural data.
   subroutine write_structure(file, mechanism)
     type(hdf5_file_type), intent(inout) :: file     !< the open file
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
@@ -91,7 +91,7 @@ contains
     call file%attach_scales('structure/'//name, ['/structure/position'])
   end subroutine write_vector
 
-  !> The coincidence matrix, unless it is huge or cannot say it all: two pairs may join the same two links.
+  !> Write the coincidence matrix, unless it is very large or two pairs join the same two links, which it cannot show.
   subroutine write_matrix(file, n_links, links)
     type(hdf5_file_type), intent(inout) :: file   !< the open file
     integer, intent(in) :: n_links                !< number of links

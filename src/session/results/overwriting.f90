@@ -1,4 +1,4 @@
-!> What is going to be written, held against what is read and against itself, before anything is lost.
+!> Check that no file to be written is a file of the input or another result, before any file is changed.
 module mech9_overwriting
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type
@@ -39,7 +39,7 @@ contains
     end do
   end subroutine refuse_overwriting
 
-  !> Whether a file is one of those that are read. One that is not there loses nothing.
+  !> Fail if a file is one of those that are read. A file that does not exist cannot be lost.
   subroutine refuse_input(file, place, inputs, err)
     type(written_file_type), intent(in) :: file         !< the file to be written
     type(file_place_type), intent(in) :: place          !< the place that its name means
@@ -57,7 +57,7 @@ contains
     end do
   end subroutine refuse_input
 
-  !> Whether the last file of a list is one of those before it.
+  !> Fail if the last file of a list is one of those before it.
   subroutine refuse_output(files, places, err)
     type(written_file_type), intent(in) :: files(:)     !< that are going to be written
     type(file_place_type), intent(in) :: places(:)      !< the places that their names mean
@@ -77,9 +77,9 @@ contains
     end do
   end subroutine refuse_output
 
-  !> Whether two results in one place stand there one behind the other: on standard output itself, or in a pipe, which
-  !> loses nothing, where one of them goes through standard output. Two arguments: a list of them, put together for the
-  !> call, would leak (gfortran 12).
+  !> Whether two results of one place are written one after the other: on standard output itself, or in a pipe, which
+  !> loses nothing, if one of them is written to standard output. There are two arguments because a list of them, made for
+  !> the call, would leak (gfortran 12).
   pure logical function follow_each_other(first, second, place)
     type(written_file_type), intent(in) :: first    !< the result that is named first
     type(written_file_type), intent(in) :: second   !< the other result

@@ -1,4 +1,4 @@
-!> Pictures of the mechanism itself that a run is asked for: a sketch, a moving picture.
+!> Requested pictures of the mechanism: a sketch, and a moving picture.
 module mech9_picture_requests
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data
@@ -24,7 +24,7 @@ module mech9_picture_requests
   private
   public :: picture_requests_type, read_picture_requests
 
-  !> What is asked for. A path that is empty asks for nothing.
+  !> The requested pictures. An empty path means no picture.
   type :: picture_requests_type
     character(len=:), allocatable :: sketch
     character(len=:), allocatable :: animation
@@ -41,8 +41,8 @@ module mech9_picture_requests
 
 contains
 
-  !> What the options ask for, and the data file where they do not. Errors are those of a view or of the name of a
-  !> file that cannot be meant.
+  !> Read the requests of the options, or those of the data file where the options have none. A wrong view and a wrong
+  !> ending of a file's name are errors.
   subroutine read_picture_requests(options, mechanism, program_name, requests, err)
     type(command_line_type), intent(in) :: options         !< the command line
     type(mechanism_type), intent(in) :: mechanism          !< the mechanism
@@ -74,7 +74,7 @@ contains
     end if
   end subroutine read_picture_requests
 
-  !> Whether any picture is asked for.
+  !> Whether any picture is requested.
   pure logical function any_wanted(self)
     class(picture_requests_type), intent(in) :: self   !< the picture requests
 
@@ -98,7 +98,7 @@ contains
     call sketch_only%save(mechanism, film, err)
   end subroutine save_start
 
-  !> Make the pictures of a film; of none where it has no frame. Errors are exit_file.
+  !> Make the pictures of a film; a film without frames gives none. Errors are exit_file.
   subroutine save_pictures(self, mechanism, film, err)
     class(picture_requests_type), intent(in) :: self    !< the picture requests
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
@@ -113,7 +113,7 @@ contains
     call place_slides(mechanism, film, skeleton)
     call choose_view(mechanism, film, skeleton, view, planar)
     if (allocated(self%view)) then
-      ! still along the normal of the plane?
+      ! whether the view is along the normal of the plane
       planar = planar .and. abs(dot_product(self%view%toward, view%toward)) > 1.0_wp - 1.0e-6_wp
       view = self%view
     end if
@@ -122,7 +122,7 @@ contains
       call save_one(self, mechanism, film, skeleton, view, planar, self%animation, .true., err)
   end subroutine save_pictures
 
-  !> Say which pictures were made.
+  !> Print which pictures were made.
   subroutine print_words(self, unit)
     class(picture_requests_type), intent(in) :: self   !< the picture requests
     integer, intent(in) :: unit                        !< the output unit
@@ -131,7 +131,7 @@ contains
     if (self%animation /= '') write (unit, '(2a)') 'animation: ', self%animation
   end subroutine print_words
 
-  !> One picture. A page can be turned, unless the mechanism is planar: it has room for that.
+  !> Make one picture. The mechanism on a page can be turned unless it is planar; its projection leaves room for that.
   subroutine save_one(self, mechanism, film, skeleton, view, planar, path, moving, err)
     class(picture_requests_type), intent(in) :: self    !< the picture requests
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
@@ -160,7 +160,7 @@ contains
     end if
   end subroutine save_one
 
-  !> What kind of picture a file's name means: its ending in lower case; htm counts as html.
+  !> The kind of picture by the name of its file: the ending in lower case; htm counts as html.
   pure function kind_of(path) result(kind)
     character(len=*), intent(in) :: path   !< name of the file
     character(len=len(ending_of(path)) + 1) :: kind

@@ -11,7 +11,7 @@ module mech9_progress
 
   !> Letters of the line; the last column of an 80-column terminal stays free, where some wrap.
   integer, parameter :: line_width = 79
-  !> How long a run must last to be spoken of, and how often it is spoken of then [s].
+  !> Time after which the progress of a run is shown, and the interval at which it is shown again [s].
   real(wp), parameter :: first_line_after = 1.0_wp, line_every = 0.25_wp
 
   !> The progress of one run.
@@ -19,8 +19,8 @@ module mech9_progress
     private
     character(len=:), allocatable :: label
     real(wp) :: started = 0.0_wp       !< [s]
-    logical :: active = .false.        !< someone looks at it
-    logical :: shown = .false.         !< a line stands on the terminal
+    logical :: active = .false.    !< whether progress is shown
+    logical :: shown = .false.     !< whether a line stands on the terminal
     type(pacer_type) :: pacer
   contains
     procedure :: start
@@ -30,7 +30,7 @@ module mech9_progress
 
 contains
 
-  !> Begin. Nothing will be shown if standard error is no terminal or the user wants no talk.
+  !> Begin. Nothing is shown if standard error is not a terminal, or with --quiet.
   subroutine start(self, label, quiet)
     class(progress_type), intent(inout) :: self   !< the progress
     character(len=*), intent(in) :: label         !< what runs
@@ -45,7 +45,7 @@ contains
     call self%pacer%start(line_every)
   end subroutine start
 
-  !> Tell how much is done; cheap enough for each position.
+  !> Show the progress; the call is cheap enough for each position.
   subroutine update(self, fraction)
     class(progress_type), intent(inout) :: self   !< the progress
     real(wp), intent(in) :: fraction              !< 0 to 1
@@ -56,14 +56,14 @@ contains
     if (.not. self%pacer%due()) return
     elapsed = seconds() - self%started
     if (elapsed < first_line_after) return
-    ! back at its beginning, lest the terminal's echo of Ctrl-C flow over into the next line
+    ! the cursor goes back to the beginning, so that the echo of Ctrl-C by the terminal does not begin another line
     write (error_unit, '(3a)', advance='no', iostat=status) achar(13), &
       progress_line(self%label, fraction, elapsed), achar(13)
     flush (error_unit, iostat=status)
     self%shown = .true.
   end subroutine update
 
-  !> Take the line away; to be called before anything else is said on the terminal.
+  !> Remove the line; this is called before any other output on the terminal.
   subroutine finish(self)
     class(progress_type), intent(inout) :: self   !< the progress
     integer :: status
@@ -102,7 +102,7 @@ contains
     character(len=24) :: buffer
     integer :: whole, hours, minutes
 
-    ! a hundred days is as good as for ever, and fits an integer
+    ! more than a hundred days are shown as a hundred, which fit into an integer
     whole = int(min(time, 8640000.0_wp))
     hours = whole/3600
     minutes = mod(whole, 3600)/60

@@ -1,4 +1,4 @@
-!> Recording a motion: rows are computed and written by turns.
+!> Recording of a motion: rows are computed and written alternately.
 module mech9_recording
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -15,20 +15,20 @@ module mech9_recording
   !> Rows that are computed before they are written together, so that both can be timed without a
   !> clock in the inner loop.
   integer, parameter :: rows_together = 256
-  !> ... unless they take longer than this: they are written then, lest a run that is killed lose them [s].
+  !> Time after which computed rows are written even if there are fewer, so that a killed run does not lose them [s].
   real(wp), parameter :: longest_wait = 0.25_wp
 
   !> How the recording went.
   type :: recording_outcome_type
-    integer :: rows = 0                       !< that were computed
+    integer :: rows = 0            !< how many rows were computed
     real(wp) :: seconds_solving = 0.0_wp      !< real time [s]
     real(wp) :: seconds_writing = 0.0_wp      !< real time [s]
   end type recording_outcome_type
 
 contains
 
-  !> Rows at all output times, into the results, which stay open. When the motion cannot go on, or the
-  !> user interrupts, what was computed is written first.
+  !> Record the rows at all output times in the results, which stay open. When the motion cannot go on, or the
+  !> user interrupts, the computed rows are written first.
   subroutine record(source, mechanism, results, quiet, outcome, err, kept)
     type(row_source_type), intent(inout) :: source              !< computes the rows
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
@@ -68,7 +68,7 @@ contains
     if (.not. allocated(err)) call move_alloc(stopped, err)
   end subroutine record
 
-  !> The next rows, from output number `next` on; fewer than fit where the motion or the run ends, or takes long.
+  !> Compute the next rows, from output number `next` on; there are fewer where the motion or the run ends, or takes long.
   subroutine compute_rows(source, mechanism, progress, pacer, next, rows, count, err)
     type(row_source_type), intent(inout) :: source              !< computes the rows
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism

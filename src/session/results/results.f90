@@ -1,4 +1,4 @@
-!> All that a run writes its rows to, opened in one place from the options and the data file.
+!> The results of a run, opened in one place by the options and the data file.
 module mech9_results
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -38,7 +38,7 @@ module mech9_results
 
 contains
 
-  !> Open everything that is asked for. After an error nothing is open.
+  !> Open all requested results. After an error none is open.
   subroutine open_results(self, options, mechanism, data_text, program_name, columns, err)
     class(results_type), intent(out) :: self            !< the results
     type(command_line_type), intent(in) :: options      !< the command line
@@ -71,7 +71,7 @@ contains
     end do
   end subroutine open_results
 
-  !> The plots that are asked for.
+  !> Open the requested plots.
   subroutine open_plots(self, options, mechanism, columns, plots, err)
     class(results_type), intent(in) :: self                      !< the results
     type(command_line_type), intent(in) :: options               !< the command line
@@ -151,7 +151,7 @@ contains
     call append_sink(self%sinks, sink)
   end subroutine open_hdf5
 
-  !> Rows to everyone; the first error ends it.
+  !> Write rows to all results, up to the first error.
   subroutine write_rows(self, rows, err)
     class(results_type), intent(inout) :: self          !< the results
     real(wp), intent(in) :: rows(:, :)                  !< (columns, rows), those of poses at the end
@@ -166,7 +166,7 @@ contains
     end do
   end subroutine write_rows
 
-  !> Let no row wait any longer, in none of them; the first error is told.
+  !> Write the rows that are held back, in all results; the first error is returned.
   subroutine flush_results(self, err)
     class(results_type), intent(inout) :: self          !< the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -179,7 +179,7 @@ contains
     end do
   end subroutine flush_results
 
-  !> Close all of them, whatever happens; the first error is told.
+  !> Close all results, also after errors; the first error is returned.
   subroutine close_results(self, err)
     class(results_type), intent(inout) :: self          !< the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -192,7 +192,7 @@ contains
     end do
   end subroutine close_results
 
-  !> The HDF5 file among the results, for what it holds besides rows; null where there is none.
+  !> The HDF5 file among the results, for data besides rows; null where there is none.
   function hdf5(self)
     class(results_type), intent(in), target :: self   !< the results
     type(hdf5_sink_type), pointer :: hdf5
@@ -207,8 +207,8 @@ contains
     end do
   end function hdf5
 
-  !> What is to be told of the run, where there is a place for it: before the run, and again after it. Failures are
-  !> those of the files, told with the next rows or when they are closed.
+  !> Write the facts about the run to the HDF5 file, if there is one: before the run, and again after it. Failures are
+  !> those of the file, returned with the next rows or when it is closed.
   subroutine write_facts(self, facts, exit_code)
     class(results_type), intent(in), target :: self   !< the results
     type(facts_type), intent(in) :: facts             !< named numbers and texts about the run
@@ -224,7 +224,7 @@ contains
     call hdf5%file%put('diagnostics/exit_code', code, 'what the program answered to the shell; -1: the run did not end')
   end subroutine write_facts
 
-  !> What the user is told about what was written, once all is closed; to be `quiet`, about what was not.
+  !> Print which files were written, after all are closed; with `quiet`, only those that could not be made.
   subroutine print_words(self, unit, quiet)
     class(results_type), intent(in) :: self   !< the results
     integer, intent(in) :: unit               !< the output unit

@@ -1,4 +1,4 @@
-!> Everything that a run or an answer is going to write, also what is made beside it: one list, known before anything is opened.
+!> All files that a run or an answer will write, with those made beside them: one list, known before any file is opened.
 module mech9_written_files
   use mech9_text, only: string_type
   use mech9_settings, only: output_settings_type
@@ -14,7 +14,7 @@ module mech9_written_files
   !> The name that stands for standard output.
   character, parameter :: standard_output_path = '-'
 
-  !> Where the results of a run go; an empty path means: nowhere.
+  !> The paths of the results of a run; an empty path means that there is no such result.
   type :: result_paths_type
     character(len=:), allocatable :: table        !< '-' is standard output
     character(len=:), allocatable :: hdf5
@@ -30,8 +30,8 @@ module mech9_written_files
 
 contains
 
-  !> Where the results of a run go: the command line comes before the data file. Where nothing is asked for, the table
-  !> goes to standard output.
+  !> The paths of the results of a run: the command line comes before the data file. If no result is requested, the table
+  !> is written to standard output.
   pure subroutine find_result_paths(options, output, paths)
     type(command_line_type), intent(in) :: options     !< the command line
     type(output_settings_type), intent(in) :: output   !< the group &output of the data file
@@ -60,7 +60,7 @@ contains
     if (options%has(option)) path = options%argument(option)
   end subroutine choose
 
-  !> The list. Without `output` the data file is not understood, and nothing but a report is written.
+  !> List the files. Without `output` the data file could not be read, and only a report is written.
   pure subroutine list_written_files(options, files, output)
     type(command_line_type), intent(in) :: options                  !< the command line
     type(written_file_type), allocatable, intent(out) :: files(:)   !< all files that are going to be written
@@ -75,7 +75,7 @@ contains
     if (options%has('report')) call append(files, '--report', options%argument('report'))
   end subroutine list_written_files
 
-  !> What a run writes.
+  !> Add the files that a run writes.
   pure subroutine list_results(options, output, files)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(output_settings_type), intent(in) :: output                  !< the group &output of the data file
@@ -97,7 +97,7 @@ contains
     call append(files, name_of(options, 'animate', 'animation'), paths%animation)
   end subroutine list_results
 
-  !> Plots, each with its script.
+  !> Add plots, each with its script.
   pure subroutine list_plots(options, table, files)
     type(command_line_type), intent(in) :: options                    !< the command line
     character(len=*), intent(in) :: table                             !< file of the table
@@ -114,7 +114,7 @@ contains
     end do
   end subroutine list_plots
 
-  !> What is written where there is no run.
+  !> Add the files that are written without a run.
   pure subroutine list_answers(options, files)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the files of answers
@@ -133,7 +133,7 @@ contains
     if (text_of_graph(graph) /= graph) call append(files, 'the text of --graph', text_of_graph(graph))
   end subroutine list_answers
 
-  !> One file more; none where the path is empty.
+  !> Append a file; none where the path is empty.
   pure subroutine append(files, what, path)
     type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets one file more
     character(len=*), intent(in) :: what                              !< its kind in words
@@ -152,7 +152,7 @@ contains
     call move_alloc(longer, files)
   end subroutine append
 
-  !> How results are called in a message: by their option, or by their name in the data file.
+  !> Name of a result in a message: its option, or its name in the data file.
   pure function name_of(options, option, in_data_file) result(name)
     type(command_line_type), intent(in) :: options   !< the command line
     character(len=*), intent(in) :: option           !< without the dashes
