@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 
-FLOORS = 'base numerics spatial structure model user kinematics ode dynamics simulation input'.split()
+FLOORS = 'base numerics spatial structure model user kinematics ode dynamics simulation wording input facade'.split()
 SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'src')
 PRINTS_HELP = 'data_help.f90'    # of use to a program's --help only
 
