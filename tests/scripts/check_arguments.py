@@ -1,6 +1,6 @@
-"""Every argument of every procedure is explained: reads the Fortran files of src, bench and user_procs.
+"""Every argument of every procedure is explained: reads the Fortran files of the tree.
 
-usage: check_arguments.py [PATH...]      files or folders; these three unless given
+usage: check_arguments.py [PATH...]      files or folders; src, bench, user_procs and tests unless given
 
 An argument stands alone on a declaration of its own, at whose end `!<` tells its meaning, with unit, shape and frame
 where these make sense. The rule holds for private procedures and for interfaces too.
@@ -112,7 +112,7 @@ def check_reader(checks):
 def main():
     checks = Checks()
     check_reader(checks)
-    for path in sys.argv[1:] or [os.path.join(TREE, folder) for folder in ('src', 'bench', 'user_procs')]:
+    for path in sys.argv[1:] or [os.path.join(TREE, folder) for folder in ('src', 'bench', 'user_procs', 'tests')]:
         for file in files_of(path):
             missing = [f'line {line}: {argument} of {name}' for line, name, argument in unexplained(text_of(file), os.path.dirname(file))]
             checks.true(not missing, f'{os.path.relpath(file, TREE)}: every argument has a declaration of its own with !<',
