@@ -23,21 +23,21 @@ module mech9_tolerances
 
   !> Pivots below this fraction of the largest count as zero when ranks are found.
   real(wp), parameter :: rank_tolerance = 1.0e-9_wp
-  !> Pivots, and rates that chains cannot follow, that inexact dimensions make, against their error.
+  !> Factor from the error of inexact dimensions to the pivots, and to the contradictions of rates, that it causes.
   real(wp), parameter :: inexact_dimensions = 10.0_wp
-  !> Rates that the chains cannot follow, against rates of one, where the inputs contradict each other.
+  !> Least residual of the rate equations, for independent rates of about one, that shows that these contradict each other.
   real(wp), parameter :: contradicting_rates = 1.0e-7_wp
   !> Screws whose components outside a smaller space are below this lie in it: well above the round-off of directions given
   !> with 16 digits, well below any deliberate deviation.
   real(wp), parameter :: screw_tolerance = 1.0e-11_wp
   !> Coordinates whose rates in all motions of norm one are below this do not move.
   real(wp), parameter :: least_rate = 1.0e-8_wp
-  !> A block is at a singular position where its least pivot is below this part of the largest: at a dead point round-off of the
-  !> position leaves its square root, some 1e-8.
+  !> A block is in a singular position where its least pivot is below this part of its largest one: at a dead point round-off of
+  !> the position gives its square root, about 1e-8.
   real(wp), parameter :: singular_conditioning = 1.0e-7_wp
   !> Rates below this part of the largest are zero but for round-off.
   real(wp), parameter :: zero_rate = 1.0e-13_wp
-  !> The least singular value is looked at when the least pivot has fallen to this part.
+  !> The least singular value is found when the least pivot has fallen to this part.
   real(wp), parameter :: lower_pivot = 0.99_wp
   !> Of values that differ by no more than round-off, after a whole turn for example, the first one counts.
   real(wp), parameter :: clearly_less = 1.0_wp - 1.0e-12_wp
@@ -61,7 +61,7 @@ module mech9_tolerances
   real(wp), parameter :: closed_to_round_off = 32.0_wp*epsilon(1.0_wp)
   !> Once a correction is this small, the next error is its square: round-off.
   real(wp), parameter :: last_correction = 1.0e-9_wp
-  !> Angles that change by less are turned on to second order: what is left out is round-off.
+  !> Angles that change by less are changed to second order: the terms of higher order are round-off.
   real(wp), parameter :: small_turn = 1.0e-5_wp
   !> A correction by less than this is round-off of poses and Jacobians, which stay as they are.
   real(wp), parameter :: unchanged_position = 8.0_wp*epsilon(1.0_wp)
@@ -73,20 +73,20 @@ module mech9_tolerances
   real(wp), parameter :: closed_singular = 1.0e-12_wp
   !> Factor from the tolerance of the data, which holds for one closure, to the residual of a block with several closures.
   real(wp), parameter :: allowed_gap = 10.0_wp
-  !> Closed chains count as closed up to this part of the mechanism's size: a thousand times above the worst round-off that was
-  !> ever seen, far below any accuracy that is asked for.
+  !> Chains count as closed up to this part of the mechanism's size: a thousand times above the worst round-off that was
+  !> measured, far below any accuracy that users need.
   real(wp), parameter :: largest_closure = 1.0e-9_wp
-  !> The motion is given up when a step would be less than this part of the whole distance.
+  !> Independent coordinates are moved to given values in steps of at least this part of the whole distance.
   real(wp), parameter :: least_part_of_carrying = 1.0e-4_wp
   !> Coordinates that differ by less, in their units, belong to one assembly.
   real(wp), parameter :: same_assembly = 1.0e-6_wp
   !> A change of a coordinate below this, in its unit, is no motion: at a singular position the round-off of a closure changes
   !> coordinates by its square root.
   real(wp), parameter :: least_movement = 1.0e-4_wp
-  !> Coordinates that are this near the start again, in their units, after a change of all of them have
-  !> come back. Round-off of a closure moves coordinates of a singular position by its root.
+  !> A coordinate that differs from the start by less than this, in its unit, after a change of all coordinates has returned to
+  !> it: at a singular position the round-off of a closure changes coordinates by its square root.
   real(wp), parameter :: returned_to_start = 1.0e-4_wp
-  !> Part in the motions of length one from which a coordinate would not come back by chance.
+  !> A coordinate whose rates in motions of norm one exceed this would not return to the start by chance.
   real(wp), parameter :: apparent_motion = 1.0e-2_wp
 
   ! Chains that close at the start only.
@@ -156,7 +156,7 @@ module mech9_tolerances
   !> method takes a second iteration from 1e-9 on; round-off of the positions makes a correction of about 1e-14.
   real(wp), parameter :: worth_positions = 1.0e-10_wp
 
-  ! Special positions of driven motions.
+  ! Special positions of driven motions. All pivots are parts of the largest least pivot so far.
 
   !> Above this least pivot the block is far from the singular position again.
   real(wp), parameter :: clear_pivot = 0.06_wp
@@ -183,9 +183,9 @@ module mech9_tolerances
   real(wp), parameter :: escaping_speed = 5.0e3_wp
   !> For x = c/(T - t)^p the quotient x x''/x'^2 is 1 + 1/p, between these; at a dead point it is large.
   real(wp), parameter :: escape_law(2) = [1.2_wp, 6.0_wp]
-  !> A motion that ends is followed up to this part of the way from where the end was seen.
+  !> A motion that ends goes up to this part of the time between the position where the end was found and the end.
   real(wp), parameter :: just_short_of_end = 1.0e-9_wp
-  !> Each distance over the one tried before.
+  !> Distance of a polynomial from the crossing, over the distance tried before.
   real(wp), parameter :: shorter_crossing = 1.0_wp/3.0_wp
   !> Largest correction of a position beyond the crossing, over the least pivot there.
   real(wp), parameter :: trusted_crossing = 0.02_wp
@@ -196,19 +196,19 @@ module mech9_tolerances
 
   ! Motions of dynamics.
 
-  !> Below this conditioning other independent coordinates are looked for ...
+  !> Below this conditioning other independent coordinates are tried ...
   real(wp), parameter :: doubtful_conditioning = 0.08_wp
-  !> ... and taken if they are so many times better conditioned; else the next look is at so many
-  !> times worse conditioning.
+  !> ... and taken if they are so many times better conditioned; otherwise they are tried again when the conditioning is so many
+  !> times worse.
   real(wp), parameter :: worthwhile_improvement = 4.0_wp
-  !> Above this conditioning a step may go beyond the time that is asked for: it will not come to a singular position unseen.
+  !> Above this conditioning a step may go beyond the next output: it will not reach a singular position unnoticed.
   real(wp), parameter :: regular_conditioning = 0.14_wp
-  !> A step from a well conditioned state is made again, shorter, where it meets worse than this.
+  !> A step from a well conditioned state is repeated with a shorter length if it meets a conditioning below this.
   real(wp), parameter :: refused_conditioning = 0.03_wp
-  !> Largest change of a coordinate, in its unit, by which closing may move what the integrator found:
-  !> its error is far below; more, and the chains might close on another branch.
+  !> Largest change of a coordinate, in its unit, when the chains are closed at the integrator's result, whose error is far
+  !> smaller: after a larger change they might be closed on another branch.
   real(wp), parameter :: trusted_closing = 0.02_wp
-  !> The same between two steps, where the position is known as well as at their ends.
+  !> The same for a position within a step, which is known as well as the ends of the step.
   real(wp), parameter :: trusted_between_steps = 1.0e-3_wp
   !> Steepest slope between two neighbouring triple zeros, times their distance, against the height: 3.4.
   real(wp), parameter :: steepest_slope = 4.0_wp

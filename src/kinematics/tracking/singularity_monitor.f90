@@ -110,7 +110,7 @@ contains
   end subroutine copy
 
   !> Norm (root of the sum of squares) of J^-1 D after balancing, which chooses the units of the coordinates that make it
-  !> small; `unbounded` where J is singular.
+  !> small; `unbounded_excess` where J is singular.
   real(wp) function relative_change(work, monitor) result(change)
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
     type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian

@@ -33,11 +33,10 @@ module mech9_special_position
     integer :: coordinate = 0               !< number of the coordinate that escapes
   end type finding_type
 
-  ! All pivots below are parts of the largest least pivot so far.
 
   !> Largest number of steps of the probe.
   integer, parameter :: most_steps = 2000
-  !> Largest number of such shortenings of one step.
+  !> Largest number of shortenings of one step of the probe where drives end.
   integer, parameter :: most_trials = 20
 
 contains
