@@ -33,7 +33,6 @@ module mech9_special_position
     integer :: coordinate = 0               !< number of the coordinate that escapes
   end type finding_type
 
-
   !> Largest number of steps of the probe.
   integer, parameter :: most_steps = 2000
   !> Largest number of shortenings of one step of the probe where drives end.
