@@ -12,6 +12,7 @@ module mech9_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
   use mech9_failure, only: failure_no_inertia
+  use mech9_tolerances, only: negligible_inertia
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
@@ -22,7 +23,7 @@ module mech9_lagrange
   use mech9_frame_motion, only: spread_all_accelerations, spread_all_velocities
   implicit none
   private
-  public :: find_motion, find_equations, complete_accelerations
+  public :: find_motion, find_equations, check_inertia, complete_accelerations
 
 contains
 
@@ -62,6 +63,31 @@ contains
     work%accelerations = work%forces - work%velocity_terms
     call cholesky_solve(n, work%factors, work%accelerations)
   end subroutine find_motion
+
+  !> Fail with exit_data where a coefficient of motion is no inertia but round-off: the rate of its coordinate moves no mass, by
+  !> rates that should be zero.
+  subroutine check_inertia(plan, dynamics, work, err)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    type(lagrange_work_type), intent(in) :: work        !< with the coefficients of motion
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: largest
+    integer :: i, k
+
+    largest = 0.0_wp
+    do i = 1, size(dynamics%bodies)
+      associate (body => dynamics%bodies(i))
+        largest = largest + body%mass*plan%length**2 + body%inertia(1, 1) + body%inertia(2, 2) + body%inertia(3, 3)
+      end associate
+    end do
+    do i = 1, size(plan%independent)
+      k = plan%independent(i)
+      if (work%coefficients(i, i)*plan%unit_of(k)**2 > negligible_inertia*largest) cycle
+      call raise(err, exit_data, failure_no_inertia)
+      err%failure%coordinates = [k]
+      return
+    end do
+  end subroutine check_inertia
 
   !> Coefficients of motion, velocity terms and generalized forces, and the rates of the dependent coordinates;
   !> see find_motion.

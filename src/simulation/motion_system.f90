@@ -17,7 +17,7 @@ module mech9_motion_system
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_expectation, only: expectation_type
   use mech9_lagrange_work, only: new_lagrange_work
-  use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
+  use mech9_lagrange, only: find_motion, find_equations, check_inertia, complete_accelerations
   use mech9_generalized_forces, only: show_state
   use mech9_frame_motion, only: place_all
   implicit none
@@ -69,6 +69,7 @@ contains
     if (system%dynamics%open_chains) call find_equations(mechanism, plan, system%dynamics, system%state, system%work, err)
     if (allocated(err)) return
     call system%present(err)
+    if (.not. allocated(err)) call check_inertia(plan, system%dynamics, system%work, err)
   end subroutine set_motion_system
 
   !> Length of the vector that is integrated.

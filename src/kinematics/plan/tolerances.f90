@@ -17,7 +17,7 @@ module mech9_tolerances
     clear_pivot, dead_growth, crossing_pivot, crossing_growth, stuck_pivot, last_pivot, probe_move, longest_growth, &
     far_slide, escaped_slide, escaping_speed, escape_law, just_short_of_end, shorter_crossing, trusted_crossing, &
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
-    refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope
+    refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -196,6 +196,9 @@ module mech9_tolerances
 
   ! Motions of dynamics.
 
+  !> A coefficient of motion below this part of the whole mechanism's inertia is the square of rates that are round-off; the
+  !> inertias of a watch's gear and of a crane are in the ratio 1e-18.
+  real(wp), parameter :: negligible_inertia = 1.0e-26_wp
   !> Below this conditioning other independent coordinates are tried ...
   real(wp), parameter :: doubtful_conditioning = 0.08_wp
   !> ... and taken if they are so many times better conditioned; otherwise they are tried again when the conditioning is so many
