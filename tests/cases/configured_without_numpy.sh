@@ -12,7 +12,7 @@ fail() {
   exit 1
 }
 
-"$cmake" -S "$tree" -B "$folder/build" -DCMAKE_Fortran_COMPILER="$compiler" -DMECH9_BUILD_TESTS=ON \
+"$cmake" -S "$tree" -B "$folder/build" -G Ninja -DCMAKE_Fortran_COMPILER="$compiler" -DMECH9_BUILD_TESTS=ON \
   -DMECH9_TEST_PYTHON=false >"$folder/log" 2>&1 || { cat "$folder/log"; fail "cmake does not configure"; }
 tr -s ' \n' ' ' <"$folder/log" | grep -q "Python 3 with numpy" || fail "nothing tells that Python is not there"
 tests=$("$ctest" --test-dir "$folder/build" -N)
