@@ -111,7 +111,7 @@ contains
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     real(wp), parameter :: beyond = 34.0_wp, edge = 14.0_wp   ! [px]
     real(wp) :: at(3), along(3), xy(2), depth
-    integer :: side
+    integer :: side, link
 
     along = unit(scene%node_at(:, guide(2)) - scene%node_at(:, guide(1)))
     do side = 1, 2
@@ -122,7 +122,9 @@ contains
       call projection%on_page(at, xy, depth)
       if (all(xy > edge) .and. all(xy < [projection%width, projection%height] - edge)) exit
     end do
-    call scene%add_node(scene%node_link(node), at, node)
+    ! the call gives `node` a new value
+    link = scene%node_link(node)
+    call scene%add_node(link, at, node)
     call scene%add_item(open_path, in_guide, [guide(min(side, 2)), node])
   end subroutine add_support
 
