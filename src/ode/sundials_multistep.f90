@@ -4,10 +4,11 @@ module mech9_sundials_multistep
     c_funloc, c_f_pointer
   use mech9_kinds, only: wp, long
   use mech9_integration_methods, only: integration_method_type
-  use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
+  use mech9_stepper, only: stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     not_convergent, too_accurate, out_of_memory, refused
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, SUNMatrix, FSUNMatDestroy, SUNLinearSolver, &
-    FSUNLinSolFree, SUNNonlinearSolver, FSUNNonlinSolFree, index_kind, open_context, close_context, silence_cvode
+    FSUNLinSolFree, SUNNonlinearSolver, FSUNNonlinSolFree, index_kind, silence_cvode
+  use mech9_sundials_stepper, only: sundials_stepper_type, most_failures
   use mech9_sundials_system, only: system_box_type, evaluate_rate, evaluate_jacobian
   use fcvode_mod, only: FCVodeCreate, FCVodeFree, FCVodeInit, FCVodeReInit, FCVode, FCVodeSVtolerances, &
     FCVodeSetUserData, FCVodeSetLinearSolver, FCVodeSetNonlinearSolver, FCVodeSetJacFn, FCVodeSetMaxHnilWarns, &
@@ -17,7 +18,6 @@ module mech9_sundials_multistep
     CV_ADAMS, CV_BDF, CV_ONE_STEP, CV_SUCCESS, CV_TSTOP_RETURN, CV_TOO_MUCH_ACC, CV_ERR_FAILURE, CV_CONV_FAILURE, &
     CV_LSETUP_FAIL, CV_LSOLVE_FAIL, CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, &
     CV_UNREC_RHSFUNC_ERR, CV_MEM_FAIL
-  use fnvector_serial_mod, only: FN_VNew_Serial
   use fsunmatrix_dense_mod, only: FSUNDenseMatrix
   use fsunlinsol_dense_mod, only: FSUNLinSol_Dense
   use fsunnonlinsol_fixedpoint_mod, only: FSUNNonlinSol_FixedPoint
@@ -25,25 +25,14 @@ module mech9_sundials_multistep
   private
   public :: multistep_type, new_multistep
 
-  !> Failures of one step, by the error test or by a trial that went too far, before it is given up.
-  !> Each makes it a quarter or a fifth.
-  integer(c_int), parameter :: most_failures = 20
-
   !> A multistep method at work.
-  type, extends(stepper_type) :: multistep_type
+  type, extends(sundials_stepper_type) :: multistep_type
     private
-    type(system_box_type), pointer :: box => null()
-    type(c_ptr) :: context = c_null_ptr
-    type(c_ptr) :: memory = c_null_ptr
-    type(N_Vector), pointer :: vector => null()       !< where steps end
-    real(c_double), pointer :: values(:) => null()    !< of the vector
-    real(c_double), pointer :: history(:) => null()   !< y at the last step, as the method goes on from it
-    type(SUNMatrix), pointer :: matrix => null()
-    type(SUNLinearSolver), pointer :: linear => null()
-    type(SUNNonlinearSolver), pointer :: nonlinear => null()
-    type(stepper_counts_type) :: earlier   !< counted before the last restart
-    real(wp) :: t = 0.0_wp                 !< where it stands [s]
-    real(wp) :: last_step = 0.0_wp         !< 0 before the first one since a restart [s]
+    real(c_double), pointer :: history(:) => null()            !< y at the last step, as the method goes on from it
+    type(SUNMatrix), pointer :: matrix => null()               !< of Newton's method
+    type(SUNLinearSolver), pointer :: linear => null()         !< of Newton's method
+    type(SUNNonlinearSolver), pointer :: nonlinear => null()   !< of Adams' methods
+    type(stepper_counts_type) :: earlier                       !< counted before the last restart
   contains
     procedure :: advance
     procedure :: interpolate
@@ -68,19 +57,14 @@ contains
     type(multistep_type), intent(inout) :: stepper        !< the method at work
     integer, intent(out) :: outcome                       !< `stepped`, or why it failed
     integer(c_int) :: flag
+    logical :: opened
 
     outcome = out_of_memory
-    stepper%box => box
-    stepper%t = t
-    call open_context(stepper%context, flag)
-    if (flag /= 0) return
-    stepper%vector => FN_VNew_Serial(int(size(y), index_kind), stepper%context)
-    if (.not. associated(stepper%vector)) return
-    stepper%values => FN_VGetArrayPointer(stepper%vector)
+    call stepper%open_steps(box, t, y, opened)
+    if (.not. opened) return
     stepper%memory = FCVodeCreate(merge(CV_ADAMS, CV_BDF, method%name == 'adams'), stepper%context)
     if (.not. c_associated(stepper%memory)) return
     call silence_cvode(stepper%memory, flag)
-    stepper%values = y
     if (flag == 0) flag = FCVodeInit(stepper%memory, c_funloc(evaluate_rate), t, stepper%vector)
     if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
     if (flag == 0) call set_solver(stepper, method, flag)
@@ -96,13 +80,10 @@ contains
     real(wp), intent(in) :: absolute_tolerance(:)   !< of each variable, in its unit
     integer(c_int), intent(out) :: flag             !< 0 when all is well
     type(N_Vector), pointer :: absolute
-    real(c_double), pointer :: values(:)
 
     flag = CV_MEM_FAIL
-    absolute => FN_VNew_Serial(size(absolute_tolerance, kind=index_kind), self%context)
+    absolute => self%new_vector(absolute_tolerance)
     if (.not. associated(absolute)) return
-    values => FN_VGetArrayPointer(absolute)
-    values = absolute_tolerance
     flag = FCVodeSVtolerances(self%memory, relative_tolerance, absolute)   ! which keeps a copy
     call FN_VDestroy(absolute)
   end subroutine set_tolerances
@@ -182,10 +163,7 @@ contains
     if (flag == 0) flag = FCVode(self%memory, t_stop, self%vector, t_reached, CV_ONE_STEP)
     outcome = meaning(flag)
     if (outcome /= stepped) return
-    t = t_reached(1)
-    y = self%values
-    self%last_step = t - self%t
-    self%t = t
+    call self%note_step(t_reached(1), t, y)
     if (self%box%broken) then
       outcome = evaluation_failed
       return
@@ -322,15 +300,10 @@ contains
     if (associated(self%linear)) flag = FSUNLinSolFree(self%linear)
     if (associated(self%matrix)) call FSUNMatDestroy(self%matrix)
     if (associated(self%nonlinear)) flag = FSUNNonlinSolFree(self%nonlinear)
-    if (associated(self%vector)) call FN_VDestroy(self%vector)
-    if (c_associated(self%context)) call close_context(self%context)
-    self%memory = c_null_ptr
-    self%context = c_null_ptr
     self%linear => null()
     self%matrix => null()
     self%nonlinear => null()
-    self%vector => null()
-    self%values => null()
     self%history => null()
+    call self%close_steps()
   end subroutine close_multistep
 end module mech9_sundials_multistep

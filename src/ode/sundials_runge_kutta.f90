@@ -6,10 +6,10 @@ module mech9_sundials_runge_kutta
     fehlberg_table, kutta_merson_table
   use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand
   use mech9_step_choice, only: next_step_length, safety
-  use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
+  use mech9_stepper, only: stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     too_accurate, out_of_memory, refused
-  use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, index_kind, last_stage_mistaken, &
-    open_context, close_context, silence_erkstep, form_own_sums
+  use mech9_sundials, only: N_Vector, FN_VDestroy, last_stage_mistaken, silence_erkstep, form_own_sums
+  use mech9_sundials_stepper, only: sundials_stepper_type, most_failures
   use mech9_sundials_system, only: system_box_type, evaluate_rate, settle_step
   use farkode_mod, only: FARKodeButcherTable_Create, FARKodeButcherTable_Free, ARK_SUCCESS, ARK_TSTOP_RETURN, &
     ARK_ONE_STEP, ARK_ERR_FAILURE, ARK_TOO_MUCH_ACC, ARK_RHSFUNC_FAIL, ARK_FIRST_RHSFUNC_ERR, ARK_REPTD_RHSFUNC_ERR, &
@@ -20,25 +20,15 @@ module mech9_sundials_runge_kutta
     FERKStepSetMaxHnilWarns, FERKStepSetMaxErrTestFails, FERKStepSetPostprocessStepFn, FERKStepSetInitStep, &
     FERKStepSetErrorBias, FERKStepSetSafetyFactor, FERKStepSetAdaptivityFn, &
     FERKStepSetMaxStep, FERKStepSetStopTime, FERKStepGetCurrentStep, FERKStepGetLastStep, FERKStepGetNumErrTestFails
-  use fnvector_serial_mod, only: FN_VNew_Serial, FN_VEnableFusedOps_Serial
+  use fnvector_serial_mod, only: FN_VEnableFusedOps_Serial
   implicit none
   private
   public :: runge_kutta_type, new_runge_kutta
 
-  !> Failures of the error test in one step before it is given up: each makes it a third at most.
-  integer(c_int), parameter :: most_failures = 20
-
   !> A Runge-Kutta method at work.
-  type, extends(stepper_type) :: runge_kutta_type
+  type, extends(sundials_stepper_type) :: runge_kutta_type
     private
-    type(system_box_type), pointer :: box => null()
-    type(c_ptr) :: context = c_null_ptr
-    type(c_ptr) :: memory = c_null_ptr
-    type(N_Vector), pointer :: vector => null()      !< where steps end
-    real(c_double), pointer :: values(:) => null()   !< of the vector
-    integer :: order = 0
-    real(wp) :: t = 0.0_wp           !< where it stands [s]
-    real(wp) :: last_step = 0.0_wp   !< 0 before the first one [s]
+    integer :: order = 0   !< of the method
   contains
     procedure :: advance
     procedure :: interpolate
@@ -63,20 +53,15 @@ contains
     type(runge_kutta_type), intent(inout) :: stepper      !< the method at work
     integer, intent(out) :: outcome                       !< `stepped`, or why it failed
     integer(c_int) :: flag
+    logical :: opened
 
     outcome = out_of_memory
-    stepper%box => box
     stepper%order = method%order
-    stepper%t = t
-    call open_context(stepper%context, flag)
-    if (flag /= 0) return
-    stepper%vector => FN_VNew_Serial(int(size(y), index_kind), stepper%context)
-    if (.not. associated(stepper%vector)) return
+    call stepper%open_steps(box, t, y, opened)
+    if (.not. opened) return
     flag = FN_VEnableFusedOps_Serial(stepper%vector, 1_c_int)   ! a tenth to a fifth faster
     if (flag /= 0) return
     call form_own_sums(stepper%vector)
-    stepper%values => FN_VGetArrayPointer(stepper%vector)
-    stepper%values = y
     stepper%memory = FERKStepCreate(c_funloc(evaluate_rate), t, stepper%vector, stepper%context)
     if (.not. c_associated(stepper%memory)) return
     call silence_erkstep(stepper%memory, flag)
@@ -93,13 +78,10 @@ contains
     real(wp), intent(in) :: absolute_tolerance(:)   !< of each variable, in its unit
     integer(c_int), intent(out) :: flag             !< 0 when all is well
     type(N_Vector), pointer :: absolute
-    real(c_double), pointer :: values(:)
 
     flag = ARK_MEM_FAIL
-    absolute => FN_VNew_Serial(size(absolute_tolerance, kind=index_kind), self%context)
+    absolute => self%new_vector(absolute_tolerance)
     if (.not. associated(absolute)) return
-    values => FN_VGetArrayPointer(absolute)
-    values = absolute_tolerance
     flag = FERKStepSVtolerances(self%memory, relative_tolerance, absolute)   ! which keeps a copy
     call FN_VDestroy(absolute)
   end subroutine set_tolerances
@@ -205,10 +187,7 @@ contains
     if (flag == 0) flag = FERKStepEvolve(self%memory, t_stop, self%vector, t_reached, ARK_ONE_STEP)
     outcome = meaning(flag)
     if (outcome /= stepped) return
-    t = t_reached(1)
-    y = self%values
-    self%last_step = t - self%t
-    self%t = t
+    call self%note_step(t_reached(1), t, y)
   end subroutine advance
 
   !> ERKStep accepts no stop against the direction of its last step. The first step back is therefore set to half of the
@@ -325,11 +304,6 @@ contains
     class(runge_kutta_type), intent(inout) :: self   !< the method at work
 
     if (c_associated(self%memory)) call FERKStepFree(self%memory)
-    if (associated(self%vector)) call FN_VDestroy(self%vector)
-    if (c_associated(self%context)) call close_context(self%context)
-    self%memory = c_null_ptr
-    self%context = c_null_ptr
-    self%vector => null()
-    self%values => null()
+    call self%close_steps()
   end subroutine close_runge_kutta
 end module mech9_sundials_runge_kutta
