@@ -48,7 +48,7 @@ class Mechanism:
 
     def text(self):
         loops, lines = self.loops, [f"&mechanism title='{self.family} {self.member}', links={self.loops.links.max()}, "
-                                    f'coordinates={len(self.loops.links)}, data_tolerance={self.data_tolerance!r} /',
+                                    f'coordinates={len(self.loops.links)}, data_tolerance={float(self.data_tolerance)!r} /',
                                     '&structure cq=' + ','.join(str(k + 1) for k in self.loops.inputs) + ' /']
         for k, (reference, moving) in enumerate(loops.links):
             turns, slides = loops.turns[0, k], loops.slides[0, k]
