@@ -1,8 +1,9 @@
 !> The methods of integration by name.
 module mech9_integration_methods
+  use mech9_kinds, only: wp
   implicit none
   private
-  public :: integration_method_type, integration_methods, method_index
+  public :: integration_method_type, integration_methods, method_index, tolerance_share
   public :: runge_kutta, multistep
   public :: no_table, prince_dormand_table, dormand_prince_table, verner_table, fehlberg_table, kutta_merson_table
 
@@ -26,23 +27,38 @@ module mech9_integration_methods
     integer :: order         !< of its error; the highest one where it varies
     integer :: stages        !< evaluations of the rate in a step; 0 where their number varies
     logical :: reuses_last   !< the last stage is the first one of the next step
+    !> Part of the tolerances by which its steps are judged. Multistep methods make many steps, whose errors have one sign. With
+    !> these parts their error at the end of each motion in docs/accuracy.md is at most three times that of prince-dormand, or
+    !> a hundred tolerances where that is more.
+    real(wp) :: share
     character(len=64) :: help
   end type integration_method_type
 
   !> All methods, in the order in which they are listed for users.
   type(integration_method_type), parameter :: integration_methods(*) = [ &
-    integration_method_type('prince-dormand', runge_kutta, prince_dormand_table, 8, 13, .false., &
+    integration_method_type('prince-dormand', runge_kutta, prince_dormand_table, 8, 13, .false., 1.0_wp, &
                             'Prince-Dormand 8(7), Runge-Kutta'), &
-    integration_method_type('dormand-prince', runge_kutta, dormand_prince_table, 5, 7, .true., &
+    integration_method_type('dormand-prince', runge_kutta, dormand_prince_table, 5, 7, .true., 1.0_wp, &
                             'Dormand-Prince 5(4), Runge-Kutta'), &
-    integration_method_type('verner', runge_kutta, verner_table, 6, 8, .false., 'Verner 6(5), Runge-Kutta'), &
-    integration_method_type('fehlberg', runge_kutta, fehlberg_table, 8, 13, .false., &
+    integration_method_type('verner', runge_kutta, verner_table, 6, 8, .false., 1.0_wp, 'Verner 6(5), Runge-Kutta'), &
+    integration_method_type('fehlberg', runge_kutta, fehlberg_table, 8, 13, .false., 1.0_wp, &
                             'Fehlberg 8(7); its error estimate misses forces of time alone'), &
-    integration_method_type('merson', runge_kutta, kutta_merson_table, 4, 5, .false., 'Kutta-Merson 4(3), the MERSOL of 1995'), &
-    integration_method_type('adams', multistep, no_table, 12, 0, .false., 'Adams-Moulton, orders 1 to 12'), &
-    integration_method_type('bdf', multistep, no_table, 5, 0, .false., 'backward differences, orders 1 to 5; for stiff motions')]
+    integration_method_type('merson', runge_kutta, kutta_merson_table, 4, 5, .false., 1.0_wp, &
+                            'Kutta-Merson 4(3), the MERSOL of 1995'), &
+    integration_method_type('adams', multistep, no_table, 12, 0, .false., 1.0e-3_wp, 'Adams-Moulton, orders 1 to 12'), &
+    integration_method_type('bdf', multistep, no_table, 5, 0, .false., 3.0e-4_wp, &
+                            'backward differences, orders 1 to 5; for stiff motions')]
 
 contains
+
+  !> Part of the tolerances by which the steps of a method are judged; larger where round-off would decide otherwise.
+  pure real(wp) function tolerance_share(method, relative_tolerance)
+    type(integration_method_type), intent(in) :: method   !< the method
+    real(wp), intent(in) :: relative_tolerance            !< that the user gave
+    real(wp), parameter :: least = 1.0e-14_wp   ! relative tolerance at which an error still stands above round-off
+
+    tolerance_share = max(method%share, min(1.0_wp, least/relative_tolerance))
+  end function tolerance_share
 
   !> Place of a name in the list; 0 where it is not there.
   pure integer function method_index(name)

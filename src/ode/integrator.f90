@@ -6,7 +6,7 @@ module mech9_integrator
     failure_absolute_tolerance, failure_many_steps, failure_inaccurate_step, failure_unsolved_step, failure_accurate_step, &
     failure_step_memory, failure_step_settings, failure_short_step
   use mech9_ode_system, only: ode_system_type
-  use mech9_integration_methods, only: integration_methods, method_index, runge_kutta
+  use mech9_integration_methods, only: integration_methods, method_index, tolerance_share, runge_kutta
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     not_convergent, too_accurate, out_of_memory
   use mech9_sundials_system, only: system_box_type
@@ -70,6 +70,7 @@ contains
     real(wp), intent(in) :: t                           !< [s]
     real(wp), intent(in) :: y(:)   !< initial values, one for each variable
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: share
     integer :: index, outcome
 
     call self%destroy()
@@ -83,6 +84,7 @@ contains
     self%t_stop = t
     self%y = y
     self%trial = y
+    share = tolerance_share(integration_methods(index), relative_tolerance)
     if (integration_methods(index)%family == runge_kutta) then
       allocate (runge_kutta_type :: self%stepper)
     else
@@ -90,11 +92,11 @@ contains
     end if
     select type (stepper => self%stepper)
     type is (runge_kutta_type)
-      call new_runge_kutta(integration_methods(index), self%box, relative_tolerance, absolute_tolerance, t, y, &
-                           stepper, outcome)
+      call new_runge_kutta(integration_methods(index), self%box, share*relative_tolerance, &
+                           share*absolute_tolerance, t, y, stepper, outcome)
     type is (multistep_type)
-      call new_multistep(integration_methods(index), self%box, relative_tolerance, absolute_tolerance, t, y, &
-                         stepper, outcome)
+      call new_multistep(integration_methods(index), self%box, share*relative_tolerance, &
+                         share*absolute_tolerance, t, y, stepper, outcome)
     end select
     if (outcome /= stepped) call fail(self, outcome, err)
   end subroutine create

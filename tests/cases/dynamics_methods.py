@@ -7,6 +7,9 @@ The order is that of the error against the number of steps, from the tolerance 1
 of coarser ones the error is not yet a power of the step. Steps are chosen by tolerance, not halved, so that the error
 lies above or below its trend as steps happen to end: three quarters of the order must be reached, and a steeper fall
 is no fault. (test_integrator holds the methods to their orders with equal steps.)
+
+adams and bdf, whose steps are many, must be as good as their tolerance promises with prince-dormand: three times its error
+or a hundred tolerances at most, on the smooth, long and sensitive motions of docs/accuracy.md.
 """
 import math
 import os
@@ -15,11 +18,14 @@ import sys
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
+import tolerance_factors
 from mech9_cases import REFERENCE, Checks, table_and_report
 
 ORDERS = {'merson': 4, 'dormand-prince': 5, 'verner': 6, 'fehlberg': 8, 'prince-dormand': 8}
 TOLERANCES = [10.0 ** -k for k in range(4, 13)]
 DATA = os.path.join(REFERENCE, 'dynamics_fig1.nml')
+# those on which the errors of all steps add up most
+HARD_MOTIONS = ('Andrews, 0.03 s', 'open spatial chain, 5 s', 'five-bar, whirling, 1 s', 'spatial slider-crank, 100 s')
 
 
 def end_of(mech9d, method, tolerance):
@@ -31,9 +37,24 @@ def end_of(mech9d, method, tolerance):
     return np.array([table[name][-1] for name in names]), report['steps'], report['jacobian_evaluations']
 
 
+def check_multistep(checks, mech9d, name):
+    """Errors of adams and bdf at the end of a motion, against those of prince-dormand at the same tolerance."""
+    data, end = tolerance_factors.MOTIONS[name]
+    truth = tolerance_factors.end_of(mech9d, data, end, 'prince-dormand', 1e-14)
+    for tolerance in (1e-4, 1e-5, 1e-6, 1e-7):
+        error = {method: tolerance_factors.error(tolerance_factors.end_of(mech9d, data, end, method, tolerance), truth)
+                 for method in ('prince-dormand', 'adams', 'bdf')}
+        print(f'{name}, {tolerance:g}:', {method: f'{number / tolerance:.2g} tolerances' for method, number in error.items()})
+        for method in ('adams', 'bdf'):
+            checks.true(error[method] <= max(3 * error['prince-dormand'], 100 * tolerance),
+                        f'{name}, {method}, {tolerance:g}: the error is that of its tolerance', error)
+
+
 def main():
     mech9d = sys.argv[1]
     checks = Checks()
+    for name in HARD_MOTIONS:
+        check_multistep(checks, mech9d, name)
     ends = {method: [end_of(mech9d, method, tolerance) for tolerance in TOLERANCES]
             for method in [*ORDERS, 'adams', 'bdf']}
     # where two methods of different kind agree best is the motion itself

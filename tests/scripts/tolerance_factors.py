@@ -73,4 +73,5 @@ def main():
         print(f'| {name} ({doubt:.0e}) | ' + ' | '.join(cells) + ' |', flush=True)
 
 
-main()
+if __name__ == '__main__':
+    main()
