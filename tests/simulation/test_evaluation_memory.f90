@@ -1,0 +1,91 @@
+!> Dynamics with closed chains allocates nothing: neither an evaluation of the rates, as an integrator asks for it, nor the
+!> closing of chains after a step.
+program test_evaluation_memory
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_loaded_mechanisms, only: loaded_fig1, five_bar, loaded_loop, two_loops
+  use mech9_testing, only: tester_type
+  use mech9_counted_memory, only: calls
+  implicit none
+  type(tester_type) :: test
+  type(mechanism_type) :: mechanism
+
+  call loaded_fig1(5, mechanism)
+  call count_calls(mechanism, 2, 'planar chains, one after the other')
+  call loaded_fig1(1, mechanism)
+  call count_calls(mechanism, 1, 'planar chains that are solved together')
+  call five_bar(mechanism)
+  call count_calls(mechanism, 1, 'a planar chain of two degrees of freedom')
+  call loaded_loop(mechanism)
+  call count_calls(mechanism, 1, 'a spatial chain')
+  call two_loops([1, 5], mechanism)
+  call count_calls(mechanism, 2, 'spatial chains, one after the other, and an open branch')
+  call two_loops([1, 9], mechanism)
+  call count_calls(mechanism, 1, 'spatial chains that are solved together')
+  call test%finish()
+
+contains
+
+  !> Small steps by Euler's method, as good as any here, each with two evaluations and the closing of the chains.
+  subroutine count_calls(mechanism, blocks, why)
+    type(mechanism_type), intent(in) :: mechanism   !< with closed chains, bodies and loads of all kinds
+    integer, intent(in) :: blocks                   !< number of its blocks with closed chains
+    character(len=*), intent(in) :: why             !< what it is, printed where a check fails
+    type(motion_system_type) :: system
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: y(:), ydot(:)
+    integer :: i, before
+
+    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call test%no_error(err, why//': there is a plan')
+    if (allocated(err)) return
+    call test%is_true(count(plan%blocks%last_closure >= plan%blocks%first_closure) == blocks, why//': the chains are blocks')
+    state%dq(plan%independent) = [(0.5_wp*cos(2.0_wp*i), i=1, size(plan%independent))]
+    call set_motion_system(mechanism, plan, state, system, err)
+    call test%no_error(err, why//': there is a system')
+    if (allocated(err)) return
+    y = system%vector()
+    allocate (ydot, source=y)
+    ! room for the two evaluations from which rates are extrapolated is made where they are first kept, after the first steps
+    do i = -2, 0
+      call step_on(system, 1.0e-3_wp*i, y, ydot, err)
+      call test%no_error(err, why//': the first steps succeed')
+    end do
+    before = calls
+    call test%is_true(before > 0, 'the counter counts')
+    do i = 1, 10
+      call step_on(system, 1.0e-3_wp*i, y, ydot, err)
+      if (allocated(err)) exit
+    end do
+    call test%is_true(calls == before, why//': ten steps of evaluations and closing allocate nothing')
+    call test%no_error(err, why//': the steps succeed')
+  end subroutine count_calls
+
+  !> One step of a thousandth of a second to time t.
+  subroutine step_on(system, t, y, ydot, err)
+    type(motion_system_type), intent(inout) :: system   !< gives the rates
+    real(wp), intent(in) :: t                           !< time at the end of the step [s]
+    real(wp), intent(inout) :: y(:)                     !< the vector, at the start of the step in, at its end out
+    real(wp), intent(inout) :: ydot(:)                  !< scratch
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer :: i
+
+    call system%rate(t - 1.0e-3_wp, y, ydot, err)
+    if (allocated(err)) return
+    do i = 1, size(y)
+      y(i) = y(i) + 1.0e-3_wp*ydot(i)
+    end do
+    call system%rate(t, y, ydot, err)
+    if (allocated(err)) return
+    call system%settle(t, y, err)
+    if (allocated(err)) return
+    call system%present(err)
+  end subroutine step_on
+end program test_evaluation_memory
