@@ -4,7 +4,6 @@ usage: bench.py FOLDER     (with the bench programs)
 """
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -83,7 +82,7 @@ with tempfile.TemporaryDirectory() as folder:
             check_precision(heading, tables[heading])
         check_growth(tables['Growth'])
         pictures = re.findall(r'\((pictures/\S+\.svg)\)', page)
-        if shutil.which('gnuplot'):
+        if checks.has('gnuplot', 'gnuplot-nox'):
             checks.equal(len(pictures), 7, 'a picture for each problem and one of the growth')
         for picture in pictures:
             xml.parse(os.path.join(folder, picture))

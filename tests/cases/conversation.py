@@ -395,7 +395,7 @@ def main():
         at_a_terminal(talks)
         interrupted_at_a_terminal(talks)
     else:
-        print('skipped: no pseudo-terminals here')
+        talks.checks.left_out('there are no pseudo-terminals here')
     talks.checks.finish()
 
 

@@ -7,7 +7,6 @@ it says; '...' stands for anything within a line, or for any lines where it stan
 the tree, one block after the other in the folder where the one before left off, with the programs on PATH and in
 build/release/bin. Above a block may stand
     <!-- not run: why -->
-    <!-- not run without PROGRAM: why -->
 """
 import os
 import re
@@ -19,7 +18,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 from mech9_cases import TREE, Checks
 
-BLOCK = re.compile(r'^(?:<!-- not run(?: without (?P<needs>[\w-]+))?: [^\n]* -->\n)?'
+BLOCK = re.compile(r'^(?P<not_run><!-- not run: [^\n]* -->\n)?'
                    r'(?P<indent> *)```(?P<kind>\w*)\n(?P<text>.*?)^ *```$', re.M | re.S)
 LINK = re.compile(r'\[[^\]]*\]\((?!https?:)([^)#\s]*)(#[^)\s]*)?\)')
 PLACE = re.compile(r'`((?:src|tests|user_procs|cmake|examples|docs)/[\w/.-]+)`(?:: ((?:`\w+`(?:, )?)+))?')
@@ -29,9 +28,7 @@ COPIED = ('cmake', 'docs', 'examples', 'src', 'tests', 'user_procs')
 def blocks_of(text):
     """Kind and text of each block that is to be run."""
     for found in BLOCK.finditer(text):
-        marked = found.group(0).startswith('<!--')
-        needs = found.group('needs')
-        if found.group('kind') in ('sh', 'console') and (not marked or (needs and shutil.which(needs))):
+        if found.group('kind') in ('sh', 'console') and not found.group('not_run'):
             indent = len(found.group('indent'))
             yield found.group('kind'), ''.join(line[indent:] for line in found.group('text').splitlines(True))
 

@@ -138,6 +138,8 @@ def check_rows(checks, program, data, settings, folder, number):
 def main():
     mech9k, mech9d, endless = map(os.path.abspath, sys.argv[1:4])
     checks = Checks()
+    if not h5py:
+        checks.left_out('h5py is not installed (Debian: python3-h5py): no HDF5 file is read')
     with tempfile.TemporaryDirectory() as folder:
         for number in SIGNALS:
             check_rows(checks, mech9k, FIG1, ['--set', 'time.intervals=' + MANY], folder, number)

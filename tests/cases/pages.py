@@ -4,7 +4,6 @@ usage: pages.py FOLDER MECH9K MECH9D    (the folder of the pages)
 """
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -34,11 +33,9 @@ def data_names(program):
 
 def test_manual(name, program):
     page = os.path.join(FOLDER, f'{name}.1')
-    groff = shutil.which('groff')
-    if not groff:
-        print('no groff here: the manual pages were not set')
+    if not checks.has('groff', 'groff-base'):
         return
-    done = subprocess.run([groff, '-man', '-Tutf8', '-ww', '-rLL=200n', '-P-c', page], capture_output=True, timeout=60)
+    done = subprocess.run(['groff', '-man', '-Tutf8', '-ww', '-rLL=200n', '-P-c', page], capture_output=True, timeout=60)
     text = re.sub('.\b', '', done.stdout.decode())
     checks.true(done.returncode == 0 and not done.stderr, f'{name}.1 is set without a warning', done.stderr.decode())
     for option, rest in options_of(program).items():

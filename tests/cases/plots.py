@@ -138,7 +138,7 @@ def test_no_place(folder):
     """A picture that cannot be opened, and one on a full disk: gnuplot itself takes both for done."""
     os.mkdir(os.path.join(folder, 'folder.svg'))
     targets = {'folder.svg': 'Is a directory'}
-    if os.path.exists('/dev/full'):
+    if checks.has_full_disk():
         for ending in ('svg', 'png', 'pdf'):
             os.symlink('/dev/full', os.path.join(folder, 'full.' + ending))
             targets['full.' + ending] = 'disk full'
@@ -308,11 +308,9 @@ def test_without_gnuplot(folder):
 
 
 tests = [test_refusals, test_without_gnuplot]
-if shutil.which('gnuplot'):
+if checks.has('gnuplot', 'gnuplot-nox'):
     tests += [test_beside_table, test_without_table, test_dynamics, test_no_place, test_hostile, test_titles, test_long_title,
               test_terminal]
-else:
-    print('gnuplot is not here: only what is said without it is checked')
 for test in tests:
     with tempfile.TemporaryDirectory() as folder:
         os.mkdir(os.path.join(folder, 'work'))

@@ -5,7 +5,6 @@ usage: structure_graph.py MECH9K MECH9D
 import os
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -109,11 +108,9 @@ def test_failures(folder):
 
 with tempfile.TemporaryDirectory() as folder:
     test_failures(folder)
-    if shutil.which('dot'):
+    if checks.has('dot', 'graphviz'):
         for where in ('kinematics_fig1', 'kinematics_fig1_driven_at_q1', 'kinematics_spatial_slider_crank', 'kinematics_bennett'):
             check_graph(mech9k, os.path.join(TREE, 'tests', 'reference', where + '.nml'), folder)
         check_graph(mech9d, os.path.join(TREE, 'tests', 'reference', 'dynamics_open_chain.nml'), folder)
         test_pictures(folder)
-    else:
-        print('dot is not here: only what is said without it is checked')
 checks.finish()

@@ -5,7 +5,6 @@ usage: table_readers.py MECH9K
 All must see the same numbers, to the last bit: 17 digits are enough for that.
 """
 import os
-import shutil
 import sys
 import tempfile
 
@@ -38,7 +37,7 @@ def test_pandas(checks, table, plain, commas):
     try:
         import pandas
     except ImportError:
-        print('left out: pandas is not installed (Debian: python3-pandas)')
+        checks.left_out('pandas is not installed (Debian: python3-pandas)')
         return
     for path, how in ((plain, {'comment': '#', 'sep': r'\s+'}), (commas, {})):
         # the quick conversion of pandas is wrong in the last bit
@@ -49,8 +48,7 @@ def test_pandas(checks, table, plain, commas):
 
 
 def test_gnuplot(checks, table, plain, commas, folder):
-    if not shutil.which('gnuplot'):
-        print('left out: gnuplot is not installed (Debian: gnuplot-nox)')
+    if not checks.has('gnuplot', 'gnuplot-nox'):
         return
     for path, before in ((plain, ''), (commas, "set datafile separator ','\n")):
         script = os.path.join(folder, 'points.gp')

@@ -5,6 +5,7 @@ Needs numpy only. A script makes a Checks, checks, and leaves through its finish
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -21,12 +22,18 @@ REFERENCE = os.path.join(TESTS, 'reference')
 POSITION, VELOCITY, ACCELERATION = 1e-12, 1e-11, 1e-10
 
 
+# The exit code that ctest takes for a test that was not run, or not the whole of it.
+SKIPPED = 77
+
+
 class Checks:
-    """Counts checks, prints those that fail, ends the script with 1 if any did."""
+    """Counts checks, prints those that fail, ends the script with 1 if any did. A script that could not test all that it
+    should says so by left_out, and ends with SKIPPED, so that it is counted among those that were not run."""
 
     def __init__(self):
         self.passed = 0
         self.failed = 0
+        self.missing = []
 
     def true(self, condition, why, more=''):
         if condition:
@@ -52,15 +59,38 @@ class Checks:
                          f'scaled error {error.flat[worst]:.3e} in entry {worst}: got {values.flat[worst]!r}, '
                          f'expected {expected.flat[worst]!r}, tolerance {tolerance:.0e}')
 
+    def left_out(self, why):
+        """A part of the script cannot be tested here."""
+        if why not in self.missing:
+            self.missing.append(why)
+
+    def has(self, program, package):
+        """Whether a program is here; without it, what it would have tested counts as left out."""
+        if shutil.which(program):
+            return True
+        self.left_out(f'{program} is not installed (Debian: {package})')
+        return False
+
+    def has_full_disk(self):
+        """Whether there is /dev/full, which stands for a full disk; without it, what it would have tested counts as left out."""
+        if os.path.exists('/dev/full'):
+            return True
+        self.left_out('there is no /dev/full here')
+        return False
+
     def finish(self):
         print(f'{self.passed} checks passed, {self.failed} failed')
-        sys.exit(1 if self.failed or not self.passed else 0)
+        for why in self.missing:
+            print(f'LEFT OUT: {why}')
+        if self.failed or not (self.passed or self.missing):
+            sys.exit(1)
+        sys.exit(SKIPPED if self.missing else 0)
 
 
 def skip(why):
     """Leave a script that cannot test anything here, by the exit code that ctest takes for a test not run."""
-    print(why)
-    sys.exit(77)
+    print(f'LEFT OUT: {why}')
+    sys.exit(SKIPPED)
 
 
 def run(program, *arguments, folder=None, stdin='', timeout=120):

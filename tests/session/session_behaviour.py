@@ -11,16 +11,16 @@ import tempfile
 import threading
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks
+from terminal import available
+
 probe = sys.argv[1]
-checks = failures = 0
+checks = Checks()
 
 
 def check(condition, why, seen=""):
-    global checks, failures
-    checks += 1
-    if not condition:
-        failures += 1
-        print("FAILED:", why, seen)
+    checks.true(condition, why, seen)
 
 
 def started(*words, **options):
@@ -95,21 +95,10 @@ def on_terminal(*words):
     return got.decode()
 
 
-def has_terminals():
-    """Whether the system gives pseudo-terminals; some containers have none."""
-    try:
-        master, slave = pty.openpty()
-    except OSError as error:
-        print(f"no pseudo-terminal here ({error}): what is shown on terminals is not checked")
-        return False
-    os.close(master)
-    os.close(slave)
-    return True
-
-
 def test_progress():
     check(run("progress", "2").stderr == b"", "nothing where standard error is no terminal")
-    if not has_terminals():
+    if not available():
+        checks.left_out('there are no pseudo-terminals here')
         return
     got = on_terminal("progress", "3")
     lines = got.split("\r")
@@ -183,5 +172,4 @@ test_exit()
 test_signals()
 test_progress()
 test_table()
-print(f"{checks} checks, {failures} failed")
-sys.exit(failures > 0)
+checks.finish()

@@ -174,8 +174,10 @@ if available():
         test_completion()
         test_hostile_keys()
         test_stopped()
+    else:
+        checks.left_out('the programs are built without libedit, so that lines cannot be edited')
     test_ends()
     test_simple_terminal()
 else:
-    print('no pseudo-terminals here: nothing was tested on a terminal')
+    checks.left_out('there are no pseudo-terminals here')
 checks.finish()
