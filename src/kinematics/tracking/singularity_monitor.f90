@@ -86,6 +86,29 @@ contains
 
   ! The procedures below work on arrays of explicit shape: the compiler needs neither descriptors nor strides.
 
+  !> The difference of two vectors.
+  pure subroutine subtract(n, a, b, difference)
+    integer, intent(in) :: n                !< number of elements
+    real(wp), intent(in) :: a(n)            !< the first vector
+    real(wp), intent(in) :: b(n)            !< the second one
+    real(wp), intent(out) :: difference(n)  !< the first less the second
+
+    difference = a - b
+  end subroutine subtract
+
+  !> Root of the sum of squares of a matrix.
+  pure real(wp) function length(n, a)
+    integer, intent(in) :: n       !< number of elements
+    real(wp), intent(in) :: a(n)   !< the matrix, element by element
+    integer :: i
+
+    length = 0.0_wp
+    do i = 1, n
+      length = length + a(i)**2
+    end do
+    length = sqrt(length)
+  end function length
+
   !> Root of the sum of squares of the differences between two matrices.
   pure real(wp) function distance(n, a, b)
     integer, intent(in) :: n   !< number of elements
@@ -114,17 +137,17 @@ contains
   real(wp) function relative_change(work, monitor) result(change)
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
     type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
-    integer :: j
+    integer :: j, n
 
     change = unbounded_excess
-    if (work%equations%rank() < work%equations%n) return
-    do j = 1, work%equations%n
-      work%right = work%jacobian(:, j) - monitor%jacobian(:, j)
-      call work%equations%solve(work%right, work%change)
-      monitor%change(:, j) = work%change
+    n = work%equations%n
+    if (work%equations%rank() < n) return
+    do j = 1, n
+      call subtract(work%equations%m, work%jacobian(:, j), monitor%jacobian(:, j), work%right)
+      call work%equations%solve(work%right, monitor%change(:, j))
     end do
-    call balance(monitor%change)
-    change = norm2(monitor%change)
+    call balance(n, monitor%change)
+    change = length(n*n, monitor%change)
   end function relative_change
 
   !> The step is accepted: the Jacobians at its end are those at the start of the next one.
