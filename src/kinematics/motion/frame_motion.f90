@@ -59,11 +59,15 @@ contains
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of all frames out
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
-    integer :: b
+    integer :: b, last
 
-    do b = 1, size(plan%blocks)
-      call place_frames(plan, plan%blocks(b), state, err)
+    b = 1
+    do while (b <= size(plan%blocks))
+      last = end_of_run(plan, b)
+      call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%place(plan, plan%blocks(b)%first_step, &
+                                                                  plan%blocks(last)%last_step, state, err)
       if (allocated(err)) return
+      b = last + 1
     end do
   end subroutine place_all
 
@@ -71,10 +75,14 @@ contains
   pure subroutine spread_all_velocities(plan, state)
     type(plan_type), intent(in) :: plan        !< the plan of the mechanism
     type(state_type), intent(inout) :: state   !< rates in; velocities of all frames out
-    integer :: b
+    integer :: b, last
 
-    do b = 1, size(plan%blocks)
-      call spread_velocities(plan, plan%blocks(b), state)
+    b = 1
+    do while (b <= size(plan%blocks))
+      last = end_of_run(plan, b)
+      call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%spread_velocities(plan, plan%blocks(b)%first_step, &
+                                                                              plan%blocks(last)%last_step, state)
+      b = last + 1
     end do
   end subroutine spread_all_velocities
 
@@ -82,12 +90,29 @@ contains
   pure subroutine spread_all_accelerations(plan, state)
     type(plan_type), intent(in) :: plan        !< the plan of the mechanism
     type(state_type), intent(inout) :: state   !< rates and accelerations in; accelerations of all frames out
-    integer :: b
+    integer :: b, last
 
-    do b = 1, size(plan%blocks)
-      call spread_accelerations(plan, plan%blocks(b), plan%blocks(b)%last_step, state)
+    b = 1
+    do while (b <= size(plan%blocks))
+      last = end_of_run(plan, b)
+      call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%spread_accelerations(plan, plan%blocks(b)%first_step, &
+                                                                                 plan%blocks(last)%last_step, state)
+      b = last + 1
     end do
   end subroutine spread_all_accelerations
+
+  !> The last of the blocks from b on whose steps follow each other in one arithmetic, so that one call serves them all.
+  pure integer function end_of_run(plan, b) result(last)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: b              !< number of the first block
+
+    last = b
+    do while (last < size(plan%blocks))
+      if (plan%blocks(last + 1)%arithmetic /= plan%blocks(b)%arithmetic .or. &
+          plan%blocks(last + 1)%first_step /= plan%blocks(last)%last_step + 1) return
+      last = last + 1
+    end do
+  end function end_of_run
 
   !> A link's own system, its angular velocity and the velocity of its origin, in the system of link 1.
   pure subroutine link_motion(plan, state, link, r, p, omega, v)
