@@ -14,8 +14,8 @@ module mech9_driven_motion
   use mech9_singularity_monitor, only: factorize_trial, is_near
   use mech9_branch_stepping, only: branch_stepper_type, new_branch_stepper, accept_start, step_towards, set_inputs, &
     restore_last_position, add_accelerations
-  use mech9_special_position, only: finding_type, look_ahead, find_escape, nothing_special, dead_point, branch_point, &
-    uncertain, escape
+  use mech9_special_position, only: finding_type, look_ahead, find_escape, has_slides, nothing_special, dead_point, &
+    branch_point, uncertain, escape
   use mech9_special_start, only: starting_rates_type, find_starting_rates, start_crossing
   use mech9_branch_crossing, only: branch_crossing_type, build_crossing, position_within
   use mech9_frame_motion, only: spread_velocities
@@ -29,6 +29,7 @@ module mech9_driven_motion
   type, extends(branch_stepper_type) :: driven_motion_type
     type(finding_type) :: ahead                   !< the special position ahead, if one was found
     type(branch_crossing_type) :: crossing        !< the motion through a crossing ahead
+    logical, allocatable :: slides(:)             !< (blocks) a dependent coordinate of the block slides
     real(wp), allocatable :: clear_until(:)       !< (blocks) time up to which no special position was found [s]
     integer(long) :: positions = 0                !< number of outputs
     integer(long) :: crossings = 0                !< number of crossings that were passed
@@ -55,6 +56,7 @@ contains
     starts_singular = .false.
     driven%branch_stepper_type = new_branch_stepper(mechanism, plan, assembled)
     if (present(with_accelerations)) driven%with_accelerations = with_accelerations
+    driven%slides = has_slides(plan%blocks, plan)
     driven%state%t = t
     call set_inputs(mechanism, t, driven%state%q, driven%state%dq, driven%state%ddq, err)
     if (allocated(err)) return
@@ -209,7 +211,7 @@ contains
     do b = 1, size(plan%blocks)
       if (size(plan%blocks(b)%unknowns) == 0) cycle
       ahead%kind = nothing_special
-      call find_escape(plan, driven%branch_stepper_type, b, .false., ahead)
+      if (driven%slides(b)) call find_escape(plan, driven%branch_stepper_type, b, .false., ahead)
       if (ahead%kind == escape) then
         driven%ahead = ahead
         call fail_at_end(mechanism, plan, driven, err)

@@ -65,9 +65,11 @@ contains
 
     h = state%t - predictor%t
     if (complete) then
-      do k = 1, size(predictor%q)
-        predictor%ddq(k) = acceleration_of(predictor, k)
-      end do
+      if (.not. predictor%complete) then
+        do k = 1, size(predictor%q)
+          predictor%ddq(k) = acceleration_from_past(predictor%past, k)
+        end do
+      end if
       call clear_past(predictor%past)
       call fit_polynomial(size(state%q), h, unit_of, state%q, state%dq, state%ddq, predictor%q, predictor%dq, predictor%ddq, &
                           predictor%higher)

@@ -11,12 +11,12 @@ module mech9_special_position
     escaping_speed, far_slide, last_pivot, longest_growth, probe_move, stuck_pivot
   use mech9_error, only: error_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type
+  use mech9_plan, only: plan_type, block_type
   use mech9_predictor, only: acceleration_of
   use mech9_branch_stepping, only: branch_stepper_type, step_towards
   implicit none
   private
-  public :: finding_type, look_ahead, find_escape
+  public :: finding_type, look_ahead, find_escape, has_slides
   public :: nothing_special, dead_point, branch_point, uncertain, escape
 
   integer, parameter :: nothing_special = 0   !< there is no singular position near
@@ -111,7 +111,7 @@ contains
     real(wp) :: speed, usual
     integer :: k
 
-    ! this runs for every block at every step: the cheapest test comes first
+    ! this runs at every step for every block that has slides: the cheapest test comes first
     if (.not. slides_far(plan, stepper, b)) return
     usual = 0.0_wp
     call find_speeds(plan, stepper, b, speed, usual)
@@ -123,6 +123,16 @@ contains
       finding = finding_type(escape, b, stepper%predictor%t + 1.0_wp/(ddq/dq - dq/q), k)
     end associate
   end subroutine find_escape
+
+  !> Whether a dependent coordinate of a block slides, so that it could escape.
+  pure elemental logical function has_slides(block, plan)
+    type(block_type), intent(in) :: block   !< the block
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+
+    associate (steps => plan%steps(block%unknowns))
+      has_slides = any(steps%is_screw .and. .not. abs(steps%turn) > 0.0_wp)
+    end associate
+  end function has_slides
 
   !> Whether a dependent coordinate of a block slides and is far.
   pure logical function slides_far(plan, stepper, b)
