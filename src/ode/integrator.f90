@@ -19,6 +19,9 @@ module mech9_integrator
   !> Trials that the system refused, in a row, before the integration is given up; each makes the step
   !> a quarter at most, so that all of them together make it 1e-24 of what it was.
   integer, parameter :: most_refusals = 40
+  !> Steps from a start during which the time of the caller need not change: methods begin with steps of 1e-15 s and less, which
+  !> grow by 20 and more from one to the next.
+  integer, parameter :: most_first_steps = 30
 
   !> The work of an integration, from its creation on.
   type :: integration_statistics_type
@@ -33,11 +36,15 @@ module mech9_integrator
   end type integration_statistics_type
 
   !> An integration under way. It must not be copied; `destroy` frees its memory.
+  !>
+  !> Its method counts time from where the integration began (the origin of the box), because steps are short beside a large
+  !> time: sums of them would lose digits there, and SUNDIALS takes times for equal that differ by 1e-14 of their size.
   type :: integrator_type
     private
     type(system_box_type), pointer :: box => null()
     class(stepper_type), allocatable :: stepper
-    real(wp) :: t = 0.0_wp               !< of the last accepted step [s]
+    real(wp) :: t = 0.0_wp               !< of the last accepted step, from the origin [s]
+    real(wp) :: t_given_out = 0.0_wp     !< the same as the caller knows it [s]
     real(wp), allocatable :: y(:)        !< values at t
     real(wp), allocatable :: trial(:)    !< values at the end of the step being made
     logical :: fresh = .true.            !< no step since the creation or the last restart
@@ -45,6 +52,7 @@ module mech9_integrator
     real(wp) :: t_stop = 0.0_wp          !< of the last call [s]
     integer :: maximum_steps = 1000000   !< to one stop
     integer :: steps_to_stop = 0         !< accepted since the last stop was set
+    integer :: steps_from_start = 0      !< accepted since the creation or the last restart, 30 at most
     integer(long) :: steps = 0           !< accepted since the creation
   contains
     procedure :: create
@@ -80,7 +88,9 @@ contains
     if (allocated(err)) return
     allocate (self%box)
     self%box%system => system
-    self%t = t
+    self%box%origin = t
+    self%t = 0.0_wp
+    self%t_given_out = t
     self%t_stop = t
     self%y = y
     self%trial = y
@@ -93,10 +103,10 @@ contains
     select type (stepper => self%stepper)
     type is (runge_kutta_type)
       call new_runge_kutta(integration_methods(index), self%box, share*relative_tolerance, &
-                           share*absolute_tolerance, t, y, stepper, outcome)
+                           share*absolute_tolerance, 0.0_wp, y, stepper, outcome)
     type is (multistep_type)
       call new_multistep(integration_methods(index), self%box, share*relative_tolerance, &
-                         share*absolute_tolerance, t, y, stepper, outcome)
+                         share*absolute_tolerance, 0.0_wp, y, stepper, outcome)
     end select
     if (outcome /= stepped) call fail(self, outcome, err)
   end subroutine create
@@ -132,8 +142,8 @@ contains
     end if
   end subroutine check_tolerances
 
-  !> Make one accepted step towards t_stop and never beyond; the last one
-  !> ends exactly there. With `farthest` a step may go on beyond t_stop, to there at most. On failure t and y are
+  !> Make one accepted step towards t_stop and never beyond, or more where t is so large that one does not change it; the last
+  !> one ends exactly there. With `farthest` a step may go on beyond t_stop, to there at most. On failure t and y are
   !> those of the last accepted step.
   subroutine step(self, t_stop, t, y, err, farthest)
     class(integrator_type), intent(inout) :: self       !< the integrator
@@ -142,23 +152,21 @@ contains
     real(wp), intent(inout) :: y(:)                     !< values there
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), intent(in), optional :: farthest          !< in the same direction [s]
-    real(wp) :: t_new, t_last
+    real(wp) :: t_last
 
-    t = self%t
-    y = self%y
-    if (.not. abs(t_stop - self%t) > 0.0_wp) return
     t_last = t_stop
     if (present(farthest)) t_last = farthest
-    call count_steps(self, t_stop, err)
-    if (.not. allocated(err)) call take_step(self, t_last, t_new, err)
-    if (allocated(err)) return
-    self%t = t_new
-    self%y = self%trial
-    self%fresh = .false.
-    self%stopped = abs(t_new - t_last) <= 0.0_wp
-    self%steps = self%steps + 1
-    self%steps_to_stop = self%steps_to_stop + 1
-    t = self%t
+    ! a stop that is the present time but for round-off is reached
+    if (.not. abs(t_stop - self%box%origin - self%t) > 0.0_wp) self%t_given_out = t_stop
+    t = self%t_given_out
+    y = self%y
+    if (.not. abs(t_stop - t) > 0.0_wp) return
+    do while (.not. abs(self%t_given_out - t) > 0.0_wp)
+      call count_steps(self, t_stop, err)
+      if (.not. allocated(err)) call take_step(self, t_last, err)
+      if (allocated(err)) exit
+    end do
+    t = self%t_given_out
     y = self%y
   end subroutine step
 
@@ -169,7 +177,7 @@ contains
     real(wp), intent(out) :: y(:)                   !< values at t
     logical, intent(out) :: found                   !< whether the method can tell them; else y has no meaning
 
-    call self%stepper%interpolate(t, y, found)
+    call self%stepper%interpolate(t - self%box%origin, y, found)
   end subroutine interpolate
 
   !> Count the steps to each stop. Fails when there were too many.
@@ -184,31 +192,31 @@ contains
     end if
     if (self%steps_to_stop < self%maximum_steps) return
     call raise(err, exit_integrator, failure_many_steps)
-    err%failure%t = self%t
+    err%failure%t = self%t_given_out
     err%failure%t_stop = t_stop
     err%failure%limit = self%maximum_steps
     err%failure%step = abs(self%stepper%next_step())
   end subroutine count_steps
 
-  !> Make one accepted step and keep its end in `trial`. A step that the system refuses is made again, shorter.
-  subroutine take_step(self, t_stop, t_new, err)
+  !> Make one accepted step. A step that the system refuses is made again, shorter.
+  subroutine take_step(self, t_last, err)
     class(integrator_type), intent(inout) :: self       !< the integrator
-    real(wp), intent(in) :: t_stop                      !< where the steps are to end [s]
-    real(wp), intent(out) :: t_new                      !< end of the step [s]
+    real(wp), intent(in) :: t_last                      !< where the step ends at the latest [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: reach
+    real(wp) :: t_stop, t_new, reach
     integer :: outcome, trials
 
     self%box%broken = .false.
+    t_stop = t_last - self%box%origin
     do trials = 1, most_refusals
       call self%stepper%advance(next_stop(self, t_stop), t_new, self%trial, outcome)
       if (outcome == stepped) then
-        if (.not. abs(t_new - self%t) > 0.0_wp) call fail_by_vanishing_step(self, err)
+        call accept_step(self, t_new, abs(t_new - t_stop) <= 0.0_wp, t_last, err)
         return
       end if
       if (outcome /= evaluation_failed .or. self%box%broken .or. .not. self%box%has_cause()) exit
       reach = self%box%t_failed - self%t
-      if (abs(reach) < 16.0_wp*spacing(self%t)) exit   ! it fails here, whatever the step
+      if (abs(reach) < 16.0_wp*spacing(self%t_given_out)) exit   ! it fails here, whatever the step
       call self%stepper%restart(self%t, self%y, 0.25_wp*reach, outcome)
       if (outcome /= stepped) exit
       self%fresh = .true.
@@ -216,11 +224,36 @@ contains
     call fail(self, outcome, err)
   end subroutine take_step
 
+  !> Go on to the end of a step, whose values are in `trial`. Fails if it does not change the time.
+  subroutine accept_step(self, t_new, stopped, t_last, err)
+    class(integrator_type), intent(inout) :: self       !< the integrator
+    real(wp), intent(in) :: t_new                       !< end of the step, from the origin [s]
+    logical, intent(in) :: stopped                      !< the step ended at its stop
+    real(wp), intent(in) :: t_last                      !< the stop [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: t
+
+    t = merge(t_last, self%box%origin + t_new, stopped)
+    self%steps_from_start = min(self%steps_from_start + 1, most_first_steps)
+    if (.not. abs(t_new - self%t) > 0.0_wp .or. &
+        (self%steps_from_start == most_first_steps .and. .not. abs(t - self%t_given_out) > 0.0_wp)) then
+      call fail_by_vanishing_step(self, err)
+      return
+    end if
+    self%t = t_new
+    self%t_given_out = t
+    self%y = self%trial
+    self%fresh = .false.
+    self%stopped = stopped
+    self%steps = self%steps + 1
+    self%steps_to_stop = self%steps_to_stop + 1
+  end subroutine accept_step
+
   !> The stop that is given to the method: t_stop itself, or half the way where one step and a short rest would
   !> remain, because the methods need many steps to recover from a very short one.
   real(wp) function next_stop(self, t_stop)
     class(integrator_type), intent(inout) :: self   !< the integrator
-    real(wp), intent(in) :: t_stop                  !< where the steps are to end [s]
+    real(wp), intent(in) :: t_stop                  !< where the steps are to end, from the origin [s]
     real(wp) :: h, rest, half, enough
 
     next_stop = t_stop
@@ -264,8 +297,11 @@ contains
 
     h = 0.0_wp
     if (present(first_step)) h = first_step
-    call self%stepper%restart(t, y, h, outcome)
-    self%t = t
+    self%box%origin = t
+    self%t = 0.0_wp
+    self%t_given_out = t
+    self%steps_from_start = 0
+    call self%stepper%restart(self%t, y, h, outcome)
     self%y = y
     self%fresh = .true.
     if (outcome /= stepped) call fail(self, outcome, err)
@@ -327,7 +363,7 @@ contains
     case default
       call raise(err, exit_internal, failure_step_settings)
     end select
-    err%failure%t = self%t
+    err%failure%t = self%t_given_out
   end subroutine fail
 
   !> The failure of the system, which keeps its code, and the times of the integration.
@@ -337,8 +373,8 @@ contains
 
     err = self%box%failure
     allocate (err%stopped)
-    err%stopped%t = self%t
-    err%stopped%t_failed = self%box%t_failed
+    err%stopped%t = self%t_given_out
+    err%stopped%t_failed = self%box%origin + self%box%t_failed
   end subroutine fail_by_system
 
   !> The failure where a step has become too short to change the time.
@@ -351,7 +387,7 @@ contains
       return
     end if
     call raise(err, exit_integrator, failure_short_step)
-    err%failure%t = self%t
+    err%failure%t = self%t_given_out
   end subroutine fail_by_vanishing_step
 
   !> Free the memory of the integration. An integrator can then be created again.
@@ -368,6 +404,7 @@ contains
     if (allocated(self%trial)) deallocate (self%trial)
     self%steps = 0
     self%steps_to_stop = 0
+    self%steps_from_start = 0
     self%maximum_steps = 1000000
     self%fresh = .true.
   end subroutine destroy

@@ -15,9 +15,10 @@ module mech9_sundials_system
   !> The box that is passed through C: the system, and the outcomes of its evaluations.
   type :: system_box_type
     class(ode_system_type), pointer :: system => null()
+    real(wp) :: origin = 0.0_wp                !< time of the system at which that of SUNDIALS is 0 [s]
     type(error_type), allocatable :: err       !< of the last evaluation
     type(error_type), allocatable :: failure   !< the last failure of all evaluations
-    real(wp) :: t_failed = 0.0_wp              !< time of this failure [s]
+    real(wp) :: t_failed = 0.0_wp              !< time of this failure, counted from the origin [s]
     logical :: broken = .false.                !< no smaller step helps against this failure
     integer(long) :: failed_at = 0             !< rate evaluations up to this failure
     integer(long) :: rate_evaluations = 0      !< in all
@@ -35,7 +36,7 @@ contains
 
   !> SUNDIALS calls this function for y' = f(t, y). It answers 0; 1 if a smaller step may help; -1 if nothing helps.
   integer(c_int) function evaluate_rate(t, y, ydot, context) bind(c) result(answer)
-    real(c_double), value :: t       !< [s]
+    real(c_double), value :: t       !< time from the origin [s]
     type(N_Vector), target :: y      !< values at t
     type(N_Vector), target :: ydot   !< gets the derivatives of y in time
     type(c_ptr), value :: context    !< address of the box
@@ -58,7 +59,7 @@ contains
     end if
     box%last_rate => ydot_values
     box%rate_evaluations = box%rate_evaluations + 1
-    call box%system%rate(t, y_values, ydot_values, box%err)
+    call box%system%rate(box%origin + t, y_values, ydot_values, box%err)
     if (.not. allocated(box%err)) call must_be_finite(ydot_values, failure_infinite_rate, box%err)
     answer = answer_to(box, t)
   end function evaluate_rate
@@ -66,7 +67,7 @@ contains
   !> SUNDIALS calls this function after a step that passed its error test, to let the system settle. It answers as
   !> evaluate_rate.
   integer(c_int) function settle_step(t, y, context) bind(c) result(answer)
-    real(c_double), value :: t      !< [s]
+    real(c_double), value :: t      !< time from the origin [s]
     type(N_Vector), target :: y     !< values at t; the settled ones afterwards
     type(c_ptr), value :: context   !< address of the box
     type(system_box_type), pointer :: box
@@ -82,7 +83,7 @@ contains
 
   !> SUNDIALS calls this function for the derivatives of f in y. It answers as evaluate_rate.
   integer(c_int) function evaluate_jacobian(t, y, ydot, jac, context, work1, work2, work3) bind(c) result(answer)
-    real(c_double), value :: t        !< [s]
+    real(c_double), value :: t        !< time from the origin [s]
     type(N_Vector), target :: y       !< values at t
     type(N_Vector), target :: ydot    !< derivatives of y in time at t
     type(SUNMatrix), target :: jac    !< gets the derivatives of ydot in y, a dense matrix
@@ -102,7 +103,7 @@ contains
     ! SUNDIALS 6 gives the first entry only
     call c_f_pointer(c_loc(entries(1)), columns, [n, n])
     call c_f_pointer(c_loc(columns(1, 1)), entries, [n*n])
-    call box%system%jacobian(t, y_values, ydot_values, columns, box%err)
+    call box%system%jacobian(box%origin + t, y_values, ydot_values, columns, box%err)
     if (.not. allocated(box%err)) call must_be_finite(entries, failure_infinite_jacobian, box%err)
     answer = answer_to(box, t)
   end function evaluate_jacobian
@@ -110,13 +111,13 @@ contains
   !> Let the system settle after a step, if it is one that settles.
   subroutine settle(self, t, y, settled)
     class(system_box_type), intent(inout) :: self   !< the box
-    real(wp), intent(in) :: t                       !< [s]
+    real(wp), intent(in) :: t                       !< time from the origin [s]
     real(wp), intent(inout) :: y(:)                 !< values at t; the settled ones afterwards
     logical, intent(out) :: settled                 !< false: the step must be made again
 
     settled = .true.
     if (.not. self%system%settles) return
-    call self%system%settle(t, y, self%err)
+    call self%system%settle(self%origin + t, y, self%err)
     settled = answer_to(self, t) == 0
   end subroutine settle
 
@@ -148,7 +149,7 @@ contains
   !> The answer to SUNDIALS after an evaluation at time t. Failures are kept in the box.
   integer(c_int) function answer_to(box, t) result(answer)
     type(system_box_type), intent(inout) :: box   !< keeps the failure of the evaluation, if it failed
-    real(wp), intent(in) :: t                     !< time of the evaluation [s]
+    real(wp), intent(in) :: t                     !< time of the evaluation, from the origin [s]
 
     answer = 0
     if (.not. allocated(box%err)) return

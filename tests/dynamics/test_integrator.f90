@@ -4,7 +4,7 @@ program test_integrator
   use mech9_error, only: error_type
   use mech9_ode_system, only: ode_system_type
   use mech9_integration_methods, only: integration_methods, runge_kutta, multistep
-  use mech9_integrator, only: integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_integration_problems, only: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, &
     swing_type, push_type, stiff_type, integrate
   use mech9_testing, only: tester_type
@@ -17,6 +17,7 @@ program test_integrator
     call check_tolerances(test, i)
     call check_pendulum(test, i)
     call check_push(test, i)
+    call check_late(test, i)
   end do
   call check_agreement(test)
   call check_stiff(test)
@@ -57,8 +58,51 @@ contains
     end associate
   end subroutine check_order
 
+  !> An orbit does not depend on the time at which it begins: from 0 and from 2**36 s, where times have five digits left behind the
+  !> point, it has the same end after as many steps.
+  subroutine check_late(test, method)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: method              !< its number among all methods
+    real(wp) :: early(4), late(4)
+    integer :: early_steps, late_steps
+
+    associate (m => integration_methods(method))
+      call orbit_from(test, m%name, 0.0_wp, early, early_steps)
+      call orbit_from(test, m%name, 2.0_wp**36, late, late_steps)
+      call test%is_true(maxval(abs(late - early)) <= 0.0_wp, trim(m%name)//': an orbit that begins late')
+      call test%is_true(late_steps == early_steps, trim(m%name)//': an orbit that begins late takes as many steps')
+    end associate
+  end subroutine check_late
+
+  !> Integrate an orbit for eight seconds.
+  subroutine orbit_from(test, name, start, y, steps)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: name       !< of the method
+    real(wp), intent(in) :: start              !< time of the start [s]
+    real(wp), intent(out) :: y(4)              !< the values at the end
+    integer, intent(out) :: steps              !< number of steps
+    type(orbit_type), target :: orbit
+    type(integrator_type) :: integrator
+    type(integration_statistics_type) :: statistics
+    type(error_type), allocatable :: err
+    real(wp) :: t
+
+    t = start
+    y = orbit_start(0.5_wp)
+    call integrator%create(orbit, name, 1.0e-6_wp, spread(1.0e-6_wp, 1, 4), t, y, err)
+    do while (.not. allocated(err) .and. t < start + 8.0_wp)
+      call integrator%step(start + 8.0_wp, t, y, err)
+    end do
+    call test%no_error(err, trim(name)//' makes its steps')
+    call test%is_true(abs(t - (start + 8.0_wp)) <= 0.0_wp, trim(name)//' ends at its stop')
+    statistics = integrator%statistics()
+    steps = int(statistics%steps)
+    call integrator%destroy()
+  end subroutine orbit_from
+
   !> The error at the end of an orbit follows the tolerance, in the mean as its power one, a little unevenly where the order
-  !> varies: down to 1e-12, or 1e-10 of multistep methods, whose steps are judged by a thousandth of it and less. An orbit takes ten to some thousand steps, and makes early
+  !> varies: down to 1e-12, or 1e-10 of multistep methods, whose steps are judged by a thousandth of it and less. An orbit takes
+  !> ten to some thousand steps, and makes early
   !> errors some ten times larger: at 1e-12, below 2e-8.
   subroutine check_tolerances(test, method)
     type(tester_type), intent(inout) :: test   !< counts the checks
