@@ -41,12 +41,15 @@ def errors_of(checks, mech9k, name, path, end, times):
     unit = np.array([1.0 if p.kind == 'prismatic' else float(mechanism.unit) for p in mechanism.pairs])[:, None]
     computed = [np.array([table[f'{head}{k + 1}'] for k in range(count)]) * unit for _, head in QUANTITIES]
     truth, gap = mechanism.follow(table['t'], computed[0])
-    size = max(1.0, *(float(np.abs(p.fixed[1]).max()) for p in mechanism.pairs))
+    size = max(float(np.abs(p.fixed[1]).max()) for p in mechanism.pairs)
     checks.true(gap < 1e-16 * size * 100, f'{name}: the reference closes in extended precision', gap)
     result = []
     for order in range(3):
-        scale = 1.0 if order == 0 else float(np.abs(truth[order]).max())
-        result.append(np.abs(computed[order] - truth[order]).astype(float).ravel() / scale)
+        if order == 0:
+            scale = np.array([[size if p.kind == 'prismatic' else 1.0] for p in mechanism.pairs])
+        else:
+            scale = float(np.abs(truth[order]).max())
+        result.append((np.abs(computed[order] - truth[order]).astype(float) / scale).ravel())
     return result
 
 

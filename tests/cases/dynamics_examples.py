@@ -8,16 +8,17 @@ import sys
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
-from mech9_cases import ACCELERATION, REFERENCE, TREE, Checks, read_csv, table_of
+import data_file
+from mech9_cases import ACCELERATION, POSITION, REFERENCE, TREE, Checks, read_csv, table_and_report, text_of
 
 ANGLES = ('beta', 'theta', 'gamma', 'phi', 'delta', 'omega', 'epsilon')
-# 1e-9 at the end needs 1e-12 where errors grow by some hundreds
 TOLERANCES = (1e-4, 1e-7, 1e-10, 1e-12)
 
 
 class Problem:
     """A data file of examples/, its reference, the table's column for each of the reference's, and how errors grow:
-    an integrator that errs by the tolerance in a step errs by at most tolerance times steps times sensitivity."""
+    an integrator that errs by the tolerance in a step errs by at most tolerance times steps times sensitivity. What the motion
+    keeps does not grow: it errs by at most tolerance times steps, energies by twice that, as they are squares of rates."""
 
     def __init__(self, example, reference, columns, growth, tolerances=TOLERANCES, also=None):
         self.data = os.path.join(TREE, 'examples', example + '.nml')
@@ -25,17 +26,22 @@ class Problem:
         self.columns, self.growth, self.tolerances, self.also = columns, growth, tolerances, also
 
     def error(self, table):
-        """The largest scaled error of any column at any time."""
+        """The largest error of any column at any time, over its value there or, where that is smaller, over 1 or the largest
+        value of the column."""
         rows = len(table['t'])
-        return max(np.max(np.abs(table[mine] - self.expected[theirs][:rows])
-                          / np.maximum(1.0, np.abs(self.expected[theirs][:rows]))) for mine, theirs in self.columns)
+        worst = 0.0
+        for mine, theirs in self.columns:
+            expected = self.expected[theirs][:rows]
+            scale = np.maximum(min(1.0, np.max(np.abs(expected))), np.abs(expected))
+            worst = max(worst, np.max(np.abs(table[mine] - expected) / scale))
+        return worst
 
 
-def check_pendulum(checks, table):
-    checks.near(table['E.total'], 0.0, 1e-9, 'nothing is lost')
+def check_pendulum(checks, table, kept, grown):
+    checks.true(np.max(np.abs(table['E.total'])) <= 2 * kept * np.max(table['E.kinetic']), 'nothing is lost')
 
 
-def check_andrews(checks, table):
+def check_andrews(checks, table, kept, grown):
     """Accelerations at the start, as published, and at the end; the work of the torque."""
     beta2, theta2 = 14222.4439199541138705911625887, -10666.8329399655854029433719415
     for k, value in enumerate((beta2, theta2, 0.0, 0.0, 0.0, 0.0, 0.0), 1):
@@ -43,26 +49,27 @@ def check_andrews(checks, table):
     last = read_csv(os.path.join(REFERENCE, 'a03_andrews_t003.csv'))['ours']
     for k in range(1, 8):
         # accelerations grow with the square of rates, and with positions 30 times faster
-        checks.near(table[f'ddq{k}'][-1], last[13 + k], 1e-7, f'the acceleration {k} at t = 0.03 s')
-    check_work(checks, table)
+        checks.near(table[f'ddq{k}'][-1], last[13 + k], 30 * grown, f'the acceleration {k} at t = 0.03 s')
+    check_work(checks, table, kept, grown)
 
 
-def check_work(checks, table):
+def check_work(checks, table, kept, grown):
     work = 0.033 * (table['q1'] - table['q1'][0])
-    checks.near(table['E.total'] - table['E.total'][0], work, 1e-9, 'the energy grows by the work of the torque')
+    checks.near(table['E.total'] - table['E.total'][0], work, 2 * kept, 'the energy grows by the work of the torque')
 
 
-def check_flyball(checks, table):
+def check_flyball(checks, table, kept, grown):
     """Both sides move alike, and the moment of momentum about the shaft is kept."""
-    checks.near(table['q3'], table['q4'], 1e-10, 'both rods are at the same angle')
+    # both chains are closed to round-off
+    checks.near(table['q3'], table['q4'], POSITION, 'both rods are at the same angle')
     mass, centre, along, across = 5.3, (0.3 * 0.5 + 5.0) / 5.3, 5e-6, 0.09575721698113208
     c, s = np.cos(table['q3']), np.sin(table['q3'])
     turning = 5e-6 + 0.005 + 2 * (mass * (0.05 + centre * c) ** 2 + across * c ** 2 + along * s ** 2)
-    checks.near(turning * table['dq1'] / (turning[0] * 2 * np.pi), 1.0, 1e-9, 'the moment of momentum is kept')
-    checks.true(np.all(np.diff(table['E.total']) <= 1e-9 * np.max(table['E.kinetic'])), 'the dampers only take energy')
+    checks.near(turning * table['dq1'] / (turning[0] * 2 * np.pi), 1.0, kept, 'the moment of momentum is kept')
+    checks.true(np.all(np.diff(table['E.total']) <= 2 * kept * np.max(table['E.kinetic'])), 'the dampers only take energy')
 
 
-def check_slider_crank(checks, table):
+def check_slider_crank(checks, table, kept, grown):
     """Five digits are published at the end."""
     for column, value in (('q1', 1.2757), ('q4', 1.0236), ('q3', -0.49881)):
         checks.near(table[column][-1], value, 5e-5, f'{column} as published')
@@ -97,23 +104,26 @@ def main():
     checks = Checks()
     errors = []
     for tolerance in problem.tolerances:
-        table = table_of(mech9d, problem.data, '--set', f'solver.relative_tolerance={tolerance}',
-                         '--set', f'solver.absolute_tolerance={tolerance}')
+        table, report = table_and_report(mech9d, problem.data, '--set', f'solver.relative_tolerance={tolerance}',
+                                         '--set', f'solver.absolute_tolerance={tolerance}')
         checks.near(table['t'], problem.expected['t'][:len(table['t'])], 1e-15, 'the times of the reference')
         errors.append(problem.error(table))
         checks.true(errors[-1] <= problem.growth * tolerance,
                     f'{name}: the error follows the tolerance {tolerance:.0e}', f'it is {errors[-1]:.3e}')
         # closure is round-off, whatever the tolerance
-        checks.true(np.max(table['closure']) <= 1e-13, f'{name}: the chains are closed in every row')
+        checks.true(np.max(table['closure']) <= 1e-13 * report['size'], f'{name}: the chains are closed in every row')
     print(name, ' '.join(f'{tolerance:.0e}: {error:.2e}' for tolerance, error in zip(problem.tolerances, errors)))
     # coarse tolerances may all be met by steps from output to output; then the errors are alike
     checks.true(all(after <= 1.5 * before for before, after in zip(errors, errors[1:])), f'{name}: errors fall', errors)
     checks.true(errors[-1] <= max(1e-2 * errors[0], 1e-12), f'{name}: the last error is far below the first', errors)
+    # nine digits are asked of the least tolerance, of which the references have more
     checks.true(errors[-1] <= 1e-9, f'{name}: the error falls below 1e-9', errors)
-    problem.also(checks, table)
+    problem.also(checks, table, report['steps'] * tolerance, problem.growth * tolerance)
 
-    as_it_stands = table_of(mech9d, problem.data)
-    checks.true(problem.error(as_it_stands) <= 1e-5, f'{name}: right with the tolerance of its own data file')
+    own = dict(data_file.parse(text_of(problem.data)))['solver']['relative_tolerance'][0]
+    as_it_stands, _ = table_and_report(mech9d, problem.data)
+    checks.true(problem.error(as_it_stands) <= problem.growth * float(own),
+                f'{name}: right with the tolerance of its own data file', problem.error(as_it_stands))
     checks.finish()
 
 

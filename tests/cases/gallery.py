@@ -6,10 +6,11 @@ usage: gallery.py NAME BIN SAMPLES      BIN holds mech9k and mech9d, SAMPLES the
 A line of expected.txt is one of
     # a comment
     let name = expression
-    where | left | right | tolerance | why      |left - right| <= tolerance max(1, |right|)
+    where | left | right | tolerance | why      |left - right| <= tolerance max(scale, |right|)
     --option | line | why                       the program, run with this option alone, prints this line
 where is `every row`, `first`, `last` or `t = number`. Expressions are of columns (q1, dq4, P.x), of points as wholes
-(distance(A, B)), numbers, + - * / **, functions of numpy, rad() and deg(), first(): the value of the first row.
+(distance(A, B)), numbers, + - * / **, functions of numpy, rad() and deg(), first(): the value of the first row. The scale is the
+largest value of `left` in any row, but at most 1; where that is below the tolerance, 1.
 """
 import os
 import re
@@ -56,8 +57,10 @@ def rows_of(where, t):
 def check_values(checks, table, known, where, left, right, tolerance, why):
     rows = rows_of(where, table['t'])
     count = len(table['t'])
-    values, expected = (np.broadcast_to(value_of(side, known), (count,))[rows] for side in (left, right))
-    checks.near(values, expected, float(tolerance), f'{where}: {left} = {right} ({why})')
+    values, expected = (np.broadcast_to(value_of(side, known), (count,)) for side in (left, right))
+    largest = np.max(np.abs(values))
+    checks.near(values[rows], expected[rows], float(tolerance), f'{where}: {left} = {right} ({why})',
+                scale=min(1.0, largest) if largest > float(tolerance) else 1.0)
 
 
 def program_of(example, folder, samples):

@@ -148,8 +148,10 @@ class Units:
                 return
             # beside a singular position each solution loses as much as its matrix is ill conditioned
             lost = max(1.0, 0.01 / least) ** (1 + column.count('d'))
-            scale = max(1.0, np.max(np.abs(values)))
-            self.checks.near(found / scale, values / scale, tolerance_of(column) * lost, f'{why}: {column}')
+            # relative to the largest number of the column, unless they all are zeros but for round-off
+            largest = np.max(np.abs(values))
+            self.checks.near(found, values, tolerance_of(column) * lost, f'{why}: {column}',
+                             scale=largest if largest > tolerance_of(column) else 1.0)
 
     def file(self, program, path, *options):
         """A data file in three units of length, and in degrees."""

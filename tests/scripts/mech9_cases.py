@@ -48,12 +48,17 @@ class Checks:
     def equal(self, value, expected, why):
         return self.true(value == expected, why, f'got {value!r}, expected {expected!r}')
 
-    def near(self, values, expected, tolerance, why):
-        """Scaled error |difference| / max(1, |expected|) of whole arrays."""
+    def near(self, values, expected, tolerance, why, scale=None):
+        """Scaled error |difference| / max(scale, |expected|) of whole arrays. Unless it is given, the scale is the largest
+        expected value, but at most 1: lengths of a mechanism of some millimetres count in parts of themselves. Where all
+        expected values lie below the tolerance, they are zeros but for round-off, and it is 1."""
         values, expected = np.broadcast_arrays(np.asarray(values, float), np.asarray(expected, float))
         if not self.true(values.size > 0, f'{why}: there are values'):
             return False
-        error = np.abs(values - expected) / np.maximum(1.0, np.abs(expected))
+        if scale is None:
+            largest = float(np.max(np.abs(expected)))
+            scale = min(1.0, largest) if largest > tolerance else 1.0
+        error = np.abs(values - expected) / np.maximum(scale, np.abs(expected))
         worst = int(np.argmax(np.where(np.isfinite(error), error, np.inf)))
         return self.true(bool(np.all(error <= tolerance)), why,
                          f'scaled error {error.flat[worst]:.3e} in entry {worst}: got {values.flat[worst]!r}, '

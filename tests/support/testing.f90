@@ -46,7 +46,8 @@ contains
     end if
   end subroutine is_true
 
-  !> Check |value - expected| <= tol*max(1, |expected|).
+  !> Check |value - expected| <= tol*max(1, |expected|). The mechanisms of unit tests are of order one; smaller quantities are
+  !> divided by their size before they are compared.
   subroutine near(self, value, expected, tol, why)
     class(tester_type), intent(inout) :: self   !< counts the checks
     real(wp), intent(in) :: value               !< that is checked
