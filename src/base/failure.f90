@@ -84,7 +84,8 @@ module mech9_failure
   integer, parameter :: failure_step_memory = 33
   integer, parameter :: failure_step_settings = 34
   integer, parameter :: failure_short_step = 35
-  !> A rate of change, or an entry of its Jacobian, is not finite: number (its place).
+  !> A rate of change, or an entry of its Jacobian, is not finite: number (its place); of a motion, coordinates (the one that
+  !> moves so).
   integer, parameter :: failure_infinite_rate = 36
   integer, parameter :: failure_infinite_jacobian = 37
 

@@ -4,7 +4,8 @@ module mech9_free_simulation
   use mech9_kinds, only: wp
   use mech9_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
-  use mech9_failure, only: failure_no_initial_position, failure_singular_block, failure_singular_start_block
+  use mech9_failure, only: failure_no_initial_position, failure_singular_block, failure_singular_start_block, &
+    failure_infinite_rate
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -169,8 +170,23 @@ contains
       call self%change_coordinates(changed, err)
       if (changed .or. allocated(err)) return
     end if
+    call name_coordinate(self%motion%system%plan, failure)
     call move_alloc(failure, err)
   end subroutine step
+
+  !> Name the coordinate whose motion is not finite: the integrated vector holds the coordinates, then the rates of the
+  !> independent ones.
+  pure subroutine name_coordinate(plan, failure)
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(error_type), intent(inout) :: failure      !< of an integration; gets the coordinate, if it is of this kind
+    integer :: k
+
+    if (.not. allocated(failure%failure)) return
+    if (failure%failure%kind /= failure_infinite_rate) return
+    k = failure%failure%number
+    if (k > plan%n_coordinates) k = plan%independent(k - plan%n_coordinates)
+    failure%failure%coordinates = [k]
+  end subroutine name_coordinate
 
   !> Go on in better conditioned independent coordinates, if there are any; that is an event.
   subroutine change_coordinates(self, changed, err)

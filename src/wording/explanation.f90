@@ -74,9 +74,10 @@ contains
              to_text(failure%limit)//' can be; take independent coordinates (cq) nearer to link 1'
     case (failure_undetermined_block)
       text = chain_names(failure%chains)//' cannot determine all dependent coordinates from the independent ones near the '// &
-             'start: it is singular there'
+             'start: it is singular there; take other independent coordinates (cq), or other guesses (&initial)'
     case (failure_contradictory_inputs)
-      text = 'the independent coordinates cannot all move freely: '//chain_names(failure%chains)//' would not stay closed'
+      text = 'the independent coordinates cannot all move freely: '//chain_names(failure%chains)//' would not stay closed; '// &
+             'take one of its coordinates off the independent ones (cq)'
     end select
   end subroutine explain_assembly
 
@@ -140,7 +141,7 @@ contains
     case (failure_start_unclear)
       reason = ', where it is not certain how it goes on; start a little beside it'
     case (failure_start_locked)
-      reason = ', which it cannot leave'
+      reason = ', which it cannot leave as it is driven; drive it another way, or start a little beside it'
     case (failure_start_not_left)
       text = 'the mechanism starts in a singular position and cannot be followed off it with certainty; start a little '// &
              'beside it'
@@ -211,23 +212,33 @@ contains
     case (failure_singular_block, failure_singular_start_block)
       text = words_of_block(failure%chains, failure%coordinates)// &
              ' is in a singular position for these independent coordinates'
-      if (failure%kind == failure_singular_start_block) &
+      if (failure%kind == failure_singular_start_block) then
         text = text//'; choose other independent coordinates, or start a little beside it'
+      else
+        text = text//'; others may pass it (cq), unless branches meet there'
+      end if
     case (failure_no_inertia)
       text = 'independent coordinate '//to_text(failure%coordinates)//' has no inertia: no link with mass moves with it '// &
              '(apart from those that the independent coordinates before it move already); give a &body'
     case (failure_singular_step)
-      text = 'the step comes too near to a singular position of its independent coordinates'
+      text = 'a singular position for these independent coordinates is too near; others may pass it (cq), or smaller tolerances'
     case (failure_unclosed_step)
-      text = chain_names(failure%chains)//' cannot be closed near the position at t = '//to_text(failure%t, 10)//' s'
+      text = chain_names(failure%chains)//' cannot be closed near the position at t = '//to_text(failure%t, 10)// &
+             ' s; lower the tolerances'
     case (failure_other_branch)
       text = 'with other independent coordinates the chains close on another branch: coordinate '// &
              to_text(failure%coordinates)//' would jump'
     case (failure_infinite_rate)
-      text = 'rate of change number '//to_text(failure%number)// &
-             ' is not finite: the motion, or a force, grows beyond all bounds'
+      if (allocated(failure%coordinates)) then
+        text = 'the motion of coordinate '//to_text(failure%coordinates)
+      else
+        text = 'the rate of change of variable '//to_text(failure%number)
+      end if
+      text = text//' is not finite: this motion, or a force, grows beyond all bounds. Look for a spring, a damper or a force '// &
+             'of your own that drives instead of holding back'
     case (failure_infinite_jacobian)
-      text = 'Jacobian number '//to_text(failure%number)//' is not finite: the motion, or a force, grows beyond all bounds'
+      text = 'entry '//to_text(failure%number)//' of the Jacobian, column by column, is not finite: the motion, or a force, '// &
+             'grows beyond all bounds'
     end select
   end subroutine explain_equations
 
@@ -267,7 +278,7 @@ contains
       text = 'points must have increasing abscissae; point '//to_text(failure%number + 1)// &
              ' does not come after point '//to_text(failure%number)
     case (failure_no_spline)
-      text = 'no smooth curve runs through these points'
+      text = 'no smooth curve runs through these points: some are too close together; leave those out'
     end select
   end subroutine explain_points
 

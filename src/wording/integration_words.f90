@@ -44,7 +44,11 @@ contains
       names = names//', '//trim(integration_methods(i)%name)
     end do
     hint = nearest_name(method, integration_methods%name)
-    if (hint /= '') hint = '; did you mean '''//hint//'''?'
+    if (hint /= '') then
+      hint = '; did you mean '''//hint//'''?'
+    else
+      hint = '.'
+    end if
     text = 'unknown method of integration '''//trim(method)//''''//hint//' There are: '//names
   end subroutine explain_method
 
@@ -74,7 +78,8 @@ contains
       reason = 'its settings do not fit together'
     case (failure_short_step)
       reason = 'the steps have become too short for time to advance.'// &
-               ' The motion becomes infinitely fast there, or comes to a position that it cannot pass'
+               ' The motion becomes infinitely fast there, or comes to a position that it cannot pass;'// &
+               ' or times are so large that they should begin at 0'
     case default
       return
     end select

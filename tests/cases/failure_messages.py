@@ -2,46 +2,309 @@
 
 usage: failure_messages.py MECH9K MECH9D
 
+Each kind of failure of src/base/failure.f90 is provoked here by a data file, or it is named in UNREACHABLE with the reason why
+no data file leads to it; tests/wording/test_explanation.f90 then has its sentence.
+
 The closed forms behind the numbers are those of four-bars: a chain of three bars in one line is at its dead point.
 """
 import math
 import os
+import re
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks, run
+from mech9_cases import TREE, Checks, run, text_of
 
-DATA, STRUCTURE, ASSEMBLY, SINGULAR, INTEGRATOR = 3, 4, 5, 6, 7
+DONE, DATA, STRUCTURE, ASSEMBLY, SINGULAR, INTEGRATOR = 0, 3, 4, 5, 6, 7
 
-FOUR_BAR = """&mechanism links=4, coordinates=4, angle_unit='deg' /
-&structure cq={cq} /
-&pair coordinate=1, links=1,2, kind='revolute', point=0,0,0, axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point={bars[1]},0,0, moving_point=0,0,0, axis=0,0,1 /
-&pair coordinate=3, links=3,4, kind='revolute', point={bars[2]},0,0, moving_point={bars[3]},0,0, axis=0,0,1 /
-&pair coordinate=4, links=1,4, kind='revolute', point={bars[0]},0,0, moving_point=0,0,0, axis=0,0,1 /
-&time start=0, end={end}, intervals=10 /
-"""
-DRIVE = "&drive coordinate={}, kind='polynomial', coefficients={} /\n"
-INITIAL = '&initial coordinate=1, position={}, velocity=10 /\n'
-BODY = '&body link=2, mass=1, centre=0.1,0,0 /\n'
+# kind: the reason why no data file leads to it
+UNREACHABLE = {
+    'other_branch': 'a motion then goes on in its present coordinates',
+    'unknown_method': 'the reader refuses the name with its place',
+    'relative_tolerance': 'the reader refuses the number with its place',
+    'absolute_tolerance': 'the reader refuses the number with its place',
+    'tolerance_count': 'motions give each variable its tolerance',
+    'no_jacobian': 'only systems that have a Jacobian are asked for it',
+    'infinite_jacobian': 'motions have no Jacobian of their own',
+    'step_memory': 'the memory of an integration is small beside that of the mechanism',
+    'step_settings': 'an error of the program itself',
+    'few_points': 'the reader of tables refuses the file',
+    'points_order': 'the reader of tables refuses the line with its place',
+    'not_started': 'the programs start each motion',
+    'backwards': 'the times of a data file are in order',
+    'interrupted': 'a signal leads to it: interrupted_run.py',
+}
+
+
+# --- mechanisms -----------------------------------------------------------------------------------------------------
+
+def revolute(k, links, point='0,0,0', moving_point='0,0,0', axis='0,0,1'):
+    return (f"&pair coordinate={k}, links={links[0]},{links[1]}, kind='revolute', point={point}, moving_point={moving_point}, "
+            f'axis={axis} /\n')
+
+
+def drive(k, coefficients='0'):
+    return f"&drive coordinate={k}, kind='polynomial', coefficients={coefficients} /\n"
+
+
+def initial(k, position, more=''):
+    return f'&initial coordinate={k}, position={position!r}{more} /\n'
+
+
+def structure(*independent):
+    return f'&structure cq={",".join(map(str, independent))} /\n'
+
+
 ROCKER = (1.2, 0.7, 0.9, 0.4)        # ground, crank, coupler, rocker; the crank cannot turn round
 FLAT = (1.0, 0.4, 1.0, 0.4)          # a parallelogram, in one line at 0 degrees
-TABLE = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&drive coordinate=1, kind='table', file='short.dat' /
-&time start=0, end=1, intervals=3 /
-"""
+BODY = '&body link=2, mass=1, centre=0.1,0,0 /\n'
+START = initial(1, 40, ', velocity=10')
 
 
-def four_bar(bars, *groups, cq='1', end=1):
-    return FOUR_BAR.format(bars=bars, cq=cq, end=end) + ''.join(groups)
+def four_bar(bars, *groups, cq=(1,), end=1, offset='0'):
+    """In degrees; `offset` is that of the coupler's first pin along the axes."""
+    ground, crank, coupler, rocker = bars
+    return ("&mechanism links=4, coordinates=4, angle_unit='deg' /\n" + structure(*cq) + revolute(1, (1, 2))
+            + revolute(2, (2, 3), f'{crank},0,{offset}') + revolute(3, (3, 4), f'{coupler},0,0', f'{rocker},0,0')
+            + revolute(4, (1, 4), f'{ground},0,0') + f'&time start=0, end={end}, intervals=10 /\n' + ''.join(groups))
 
 
 def dead_point(bars):
-    """The crank angle in degrees where coupler and rocker are in one line."""
+    """The crank angle in degrees where the coupler and the rocker are in one line."""
     ground, crank, coupler, rocker = bars
     return math.degrees(math.acos((ground ** 2 + crank ** 2 - (coupler + rocker) ** 2) / (2 * ground * crank)))
+
+
+def turned(angle):
+    """The dependent coordinates of FLAT as a parallelogram at a crank angle in degrees."""
+    return initial(2, -angle) + initial(3, angle) + initial(4, angle)
+
+
+def open_chain(first, link, n):
+    """n revolutes in a row from link 1, with the numbers of pairs and links from `first` and `link` on."""
+    return ''.join(revolute(first + i, (1 if i == 0 else link + i - 1, link + i), '0,0,0' if i == 0 else '1,0,0') for i in range(n))
+
+
+# In mechanisms with more than 500 coordinates the mobility of the whole is not worked out. Long open chains beside a closed one
+# bring those messages about that only its own blocks can give.
+LONG = 500
+
+
+def large(independent, coordinates, links, closed_chain):
+    """A closed chain and a long open chain beside it."""
+    independent = [*independent, *range(coordinates + 1, coordinates + LONG + 1)]
+    return (structure(*independent) + closed_chain + open_chain(coordinates + 1, links + 1, LONG)
+            + ''.join(drive(k) for k in independent if f'&drive coordinate={k},' not in closed_chain))
+
+
+def rod_with_balls():
+    """Two cranks and a rod with ball joints of three revolutes: the rod can spin."""
+    axes = ['0,0,1', '1,0,0', '0,1,0', '0,0,1', '1,0,0', '0,1,0', '0,0,1', '1,0,0']
+    points = ['0,0,0', *3 * ['0.2,0,0'], *3 * ['0.3,0.5,0.5'], '0.3,0.5,-0.1']
+    return ''.join(revolute(k, (k, k + 1) if k < 8 else (1, 8), point, point, axis)
+                   for k, (axis, point) in enumerate(zip(axes, points), 1))
+
+
+def three_cranks(angle, shorter='0.0'):
+    """A coupler on three parallel cranks of 0.5 m, or with the third one shorter, in radians. In the first form the third crank
+    repeats the equations of the others; in the other one it does so in the upright position only."""
+    pairs = (((1, 2), '0,0,0', '0,0,0'), ((2, 5), '0.5,0,0', '0,0,0'), ((1, 3), '1,0,0', '0,0,0'), ((3, 5), '0.5,0,0', '1,0,0'),
+             ((1, 4), '2,0,0', '0,0,0'), ((4, 5), f'{0.5 - float(shorter)},0,0', f'2,-{shorter},0'))
+    return (''.join(revolute(k, *pair) for k, pair in enumerate(pairs, 1))
+            + ''.join(drive(k, repr(angle)) + initial(k + 1, -angle) for k in (1, 3)) + initial(5, angle) + initial(6, -angle))
+
+
+def levers(n):
+    """Uprights in a row and a lever on each but the first, joined by rods to both neighbours: each lever relates the angles of three
+    uprights, and no upright can be found without the others."""
+    pairs, links = [], 1
+
+    def link():
+        nonlocal links
+        links += 1
+        return links
+
+    def pair(*rest):
+        pairs.append(revolute(len(pairs) + 1, *rest))
+    uprights = [link() for _ in range(n + 1)]
+    for i, upright in enumerate(uprights):
+        pair((1, upright), f'{i},0,0')
+    for i in range(1, n + 1):
+        lever, before, behind = link(), link(), link()
+        pair((uprights[i], lever), '0.5,0,0')
+        pair((lever, before), '0,0.2,0')
+        pair((before, uprights[i - 1]), '1,0,0', '0.3,0,0')
+        pair((lever, behind), '0,-0.2,0')
+        pair((behind, uprights[i + 1] if i < n else 1), '1,0,0', '0.7,0,0' if i < n else f'{n + 1},0,0')
+    return structure(1) + ''.join(pairs) + drive(1)
+
+
+def bennett(length='1.5', offset='0'):
+    """Bennett's linkage, or one with another length or offset of one link, which does not move exactly."""
+    example = text_of(os.path.join(TREE, 'examples', 'bennett', 'bennett.nml'))
+    return example.replace('dh=1.5, 0.84806207898148101, 0, 0', f'dh={length}, 0.84806207898148101, {offset}, 0', 1)
+
+
+# crank and rod of one length, driven at the slide: where it stands on the axis of the crank, the crank can turn freely
+EQUAL_CRANK = (structure(4) + revolute(1, (1, 2)) + revolute(2, (2, 3), '1,0,0') + revolute(3, (3, 4), '1,0,0')
+               + "&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0 /\n" + initial(1, math.pi / 2) + initial(2, math.pi)
+               + initial(3, -1.5 * math.pi) + '&time start=0, end=1, intervals=10 /\n')
+# a block on a line across and in a slot of the crank: where both are parallel it is nowhere
+SLOT = """&mechanism angle_unit='deg' /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1 /
+&pair coordinate=4, links=1,4, kind='prismatic', point=0,0.3,0, moving_point=0,0,0, axis=1,0,0 /
+&initial coordinate=2, position=0.35 /
+&initial coordinate=3, position=-60 /
+&initial coordinate=4, position=0.17 /
+&drive coordinate=1, kind='polynomial', coefficients=60, 50 /
+&time start=0, end=3, intervals=30 /
+"""
+SLIDES = structure(1) + drive(1) + ''.join(
+    f"&pair coordinate={k}, links={links}, kind='prismatic', axis={axis} /\n"
+    for k, links, axis in ((1, '1,2', '1,0,0'), (2, '2,3', '0,1,0'), (3, '3,4', '0,0,1'), (4, '1,4', '1,1,1')))
+# 1 kg on a spring, 1 m from its rest
+SPRING = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&initial coordinate=1, position=1 /
+&body link=2, mass=1 /
+&load kind='coordinate', coordinate=1, stiffness={}, damping={} /
+&time start={}, end={}, intervals=1 /
+"""
+TABLE = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&drive coordinate=1, kind='table', file='table.dat' /
+&time start=-1, end=1, intervals=2 /
+"""
+
+
+# --- failures -------------------------------------------------------------------------------------------------------
+
+def settings(**values):
+    return [word for name, value in values.items() for word in ('--set', f'solver.{name}={value}')]
+
+
+def driven_cases():
+    """(kind, data file, options, exit code, words) for mech9k."""
+    limit = dead_point(ROCKER)
+    chain = 'closed chain 1 (coordinates 2, 3, 4)'
+    starts = f'the mechanism starts in a singular position of {chain}, '
+    return [
+        ('open_chain', four_bar(ROCKER, drive(1, '120')), (), ASSEMBLY,
+         ['the mechanism cannot be assembled: closed chain 1 (it closes on link 4 through coordinate 3) stays open by ',
+          ' m at best; check its dimensions and the independent coordinates, or give better guesses with &initial']),
+        ('nearly_closed_chain', four_bar((1.0, 0.75, 1.0, 0.4), drive(1, '60'), offset='1e-6'), (), ASSEMBLY,
+         ['case.nml:4:1: the points of its pairs leave the closed chain of pairs 1, 2, 3, 4 open by 1e-6 m along its parallel axes',
+          'stays open by 1e-6 m at best; so small a gap comes from directions or points given with too few digits',
+          'or allow for their error with &mechanism data_tolerance=1e-6\n']),
+        ('wrong_choice', four_bar(ROCKER, drive(1, '40'), drive(2), cq=(1, 2)), (), STRUCTURE,
+         ['the mobility is 1 (4 coordinates, rank 3), and 2 coordinates are independent; take 1 of the coordinates 1, 2 off the '
+          'independent ones (cq); cq = 1 would serve; instead of 1 also 2, 3, 4']),
+        ('undetermined_coordinates', structure(*range(1, LONG + 1)) + open_chain(1, 2, LONG + 1)
+         + ''.join(drive(k) for k in range(1, LONG + 1)), (), STRUCTURE,
+         [f'the independent coordinates cannot determine the others: 1 more must be independent (cq); {LONG + 1} would serve']),
+        ('undetermined_block', large((1, 8), 8, 8, rod_with_balls()), (), STRUCTURE,
+         ['closed chain 1 cannot determine all dependent coordinates from the independent ones near the start: it is singular '
+          'there; take other independent coordinates (cq), or other guesses (&initial)']),
+        ('contradictory_inputs', large((1, 3), 6, 5, three_cranks(1.0)), (), STRUCTURE,
+         ['the independent coordinates cannot all move freely: closed chain 1 would not stay closed; take one of its coordinates '
+          'off the independent ones (cq)']),
+        ('locked_chain', large((1,), 6, 5, three_cranks(math.pi / 2, '0.1').replace(drive(3, repr(math.pi / 2)), '')), (), STRUCTURE,
+         ['closed chain 2 does not move: 1 of its equations follows from the others at the start only; after a displacement of ',
+          ' m; check the points and directions of its pairs, or use pairs with more freedom']),
+        ('nearly_moving_chain', bennett(length='1.500001'), ('--set', 'mechanism.data_tolerance=5e-7'), STRUCTURE,
+         ['closed chain 1 does not move: 3 of its equations follow from the others at the start only; after a displacement of ',
+          'its dimensions are about 5e-7 (rad, or parts of the size) from those of an overconstrained mechanism that moves: give '
+          'points and directions with more digits, or allow for their error with &mechanism data_tolerance=1e-6, or use pairs']),
+        ('open_position', bennett(offset='1e-6'), ('--set', 'mechanism.data_tolerance=5e-7'), SINGULAR,
+         ['the closed chains are open by ', ' m is allowed (5e-7 of the mechanism\'s size): its dimensions let it move near the '
+          'start only; give points and directions with more digits, or a larger &mechanism data_tolerance']),
+        ('large_block', levers(503), (), STRUCTURE,
+         ['3018 coordinates could only be solved for together, and at most 3000 can be; take independent coordinates (cq) nearer '
+          'to link 1']),
+        ('dead_point', four_bar(ROCKER, drive(1, '40, 100'), end=3), (), SINGULAR,
+         [f'the motion cannot go on beyond t = {digits((limit - 40) / 100)}',
+          f' s: {chain} reaches a dead point at q1 = {digits(limit)}', ' and cannot follow farther']),
+        # it comes to its dead point with a rate and an acceleration of 0
+        ('lost_branch', four_bar(ROCKER, drive(1, f'{limit - 60!r}, 180, -180, 60'), end=2), (), SINGULAR,
+         ['the motion cannot go on beyond t = 0.999', f'{chain} reaches a singular position at q1 = 81.7867',
+          ', where it is not certain how the motion goes on']),
+        ('escape', SLOT, (), SINGULAR,
+         ['the motion cannot go on beyond t = 2.4', f'{chain} cannot follow up to q1 = 180, where coordinate ',
+          ' grows beyond all bounds']),
+        ('start_at_dead_point', four_bar(ROCKER, drive(1, f'{limit!r}, -1')), (), SINGULAR,
+         [f'{starts}a dead point, where rates are not finite; start a little beside it']),
+        ('start_on_branches', four_bar(FLAT, drive(1, '0, 240')), (), SINGULAR,
+         [f'{starts}where two branches meet: ', ' (deg/s, m/s); start a little beside it, on the one that is meant']),
+        ('start_unclear', four_bar(FLAT, drive(1)), (), SINGULAR,
+         [f'{starts}where it is not certain how it goes on; start a little beside it']),
+        # from rest at the dead point into the angles that cannot be
+        ('start_locked', four_bar(ROCKER, drive(1, f'{limit!r}, 0, 10')), (), SINGULAR,
+         [f'{starts}which it cannot leave as it is driven; drive it another way, or start a little beside it']),
+        ('start_not_left', EQUAL_CRANK + drive(4, '0, 1, 1e6'), (), SINGULAR,
+         ['the mechanism starts in a singular position and cannot be followed off it with certainty; start a little beside it']),
+        ('no_spline', TABLE, {'table.dat': '-1 0\n0 1\n1e-17 1\n1 4\n'}, DATA,
+         ['case.nml:3:41: no smooth curve runs through these points: some are too close together; leave those out']),
+        # why a mechanism is not planar
+        ('chain_dimensions', text_of(os.path.join(TREE, 'examples', 'double_hooke', 'double_hooke.nml')), ('--plan',), DONE,
+         ['spatial arithmetic: the motions of closed chain 1 have 6 dimensions, not 3\n']),
+        ('nothing_turns', SLIDES, ('--plan',), DONE, ['spatial arithmetic: no pair turns\n']),
+        ('pair_off_plane', four_bar(FLAT, turned(60), drive(1, '60'), drive(5), revolute(5, (2, 5), axis='1,0,0'), cq=(1, 5)).replace(
+            'links=4, coordinates=4', 'links=5, coordinates=5'), ('--plan',), DONE,
+         ["spatial arithmetic: pair 5 neither turns about the plane's normal nor slides across it\n"]),
+        ('chain_off_plane', four_bar(FLAT, turned(60), drive(1, '60'), offset='1e-11'), ('--plan',), DONE,
+         ['spatial arithmetic: closed chain 1 does not close in a plane\n']),
+    ]
+
+
+def free_cases():
+    """The same for mech9d."""
+    chain = 'closed chain 1 (coordinates 2, 3, 4)'
+    stops = 'the integration cannot go on from t = '
+    swings = four_bar(ROCKER, START, BODY)
+    return [
+        ('no_inertia', four_bar(ROCKER, START), (), DATA,
+         ['independent coordinate 1 has no inertia: no link with mass moves with it (apart from those that the independent '
+          'coordinates before it move already); give a &body']),
+        ('no_initial_position', four_bar(ROCKER, BODY), (), DATA,
+         ['case.nml:3:1: the independent coordinate 1 of this pair has no initial position; give &initial coordinate=1, '
+          'position=..., velocity=... /']),
+        ('singular_start_block', four_bar(FLAT, initial(1, 0, ', velocity=10'), BODY), (), SINGULAR,
+         [f'{chain} is in a singular position for these independent coordinates; choose other independent coordinates, or start a '
+          'little beside it']),
+        # with mass on the crank alone it turns evenly: flat after 0.5 s
+        ('singular_block', four_bar(FLAT, initial(1, 60, ', velocity=240'), turned(60), BODY), (), SINGULAR,
+         [f'{stops}0.49999', f': {chain} is in a singular position for these independent coordinates; others may pass it (cq), '
+          'unless branches meet there']),
+        # tolerances with which any step is good
+        ('singular_step', swings, ('--set', 'time.end=1e40', *settings(relative_tolerance=0.9, absolute_tolerance='1e60')), SINGULAR,
+         [f'{stops}4.17', ': a singular position for these independent coordinates is too near; others may pass it (cq), or smaller '
+          'tolerances']),
+        ('unclosed_step', swings, ('--set', 'time.end=1e90', *settings(relative_tolerance=0.9, absolute_tolerance='1e90')), SINGULAR,
+         [f'{stops}0 s: at t = ', 'closed chain 1 cannot be closed near the position at t = ', ' s; lower the tolerances']),
+        ('accurate_step', swings, settings(relative_tolerance='1e-30', absolute_tolerance='1e-30'), INTEGRATOR,
+         [f'{stops}0 s: the tolerances ask for more digits than the numbers have. Raise relative_tolerance or absolute_tolerance']),
+        ('many_steps', SPRING.format(1e6, 0, 0, 1), settings(maximum_steps=30), INTEGRATOR,
+         [stops, ' s: 30 steps were not enough to come to t = 1 s, and they are now ', ' s long. The motion is stiff (try method '
+          "'bdf'), or the tolerances are too small, or maximum_steps is"]),
+        ('short_step', SPRING.format(1e6, 0, 1e15, 1e15 + 1), (), INTEGRATOR,
+         [f'{stops}1e15 s: the steps have become too short for time to advance. The motion becomes infinitely fast there, or comes '
+          'to a position that it cannot pass; or times are so large that they should begin at 0']),
+        # what the spring does at once is more than any step can follow
+        ('inaccurate_step', SPRING.format(1e100, 0, 0, 1), (), INTEGRATOR,
+         [f'{stops}0 s: however short the step, its error stays too large. Look for a force that jumps or grows without limit there; '
+          'or raise the tolerances']),
+        ('unsolved_step', SPRING.format(1e80, 1e80, 0, 1), settings(method="'bdf'"), INTEGRATOR,
+         [f'{stops}0 s: the equations of an implicit step cannot be solved. Look for a force that jumps there; or try another '
+          'method']),
+        # it grows as exp(1000 t), up to 1e308 at 0.71 s
+        ('infinite_rate', SPRING.format(-1e6, 0, 0, 10), (), INTEGRATOR,
+         [stops, ': the motion of coordinate 1 is not finite: this motion, or a force, grows beyond all bounds. Look for a spring, a '
+          'damper or a force of your own that drives instead of holding back']),
+    ]
 
 
 def digits(value):
@@ -49,59 +312,38 @@ def digits(value):
     return f'{math.floor(value * 1e8) / 1e8:.8f}'
 
 
+def check_cases(checks, program, cases):
+    """Run each case, and compare its exit code and what was printed."""
+    for kind, text, options, code, words in cases:
+        files = {'case.nml': text, **(options if isinstance(options, dict) else {})}
+        with tempfile.TemporaryDirectory() as folder:
+            for name, content in files.items():
+                with open(os.path.join(folder, name), 'w', encoding='utf-8') as file:
+                    file.write(content)
+            done = run(program, 'case.nml', '--quiet', '--no-write', *([] if isinstance(options, dict) else options), folder=folder)
+        said = done.stderr if code else done.stdout
+        checks.equal(done.returncode, code, f'{kind}: exit code; {done.stderr}')
+        for part in words:
+            checks.true(part in said, f'{kind}: said: {part}', said)
+        checks.true('failure of kind' not in said, f'{kind}: in words', said)
+
+
+def check_kinds(checks, provoked):
+    """Each kind is provoked once, or has its sentence in the test of the wording."""
+    kinds = re.findall(r'^  integer, parameter :: failure_(\w+) = \d+', text_of(os.path.join(TREE, 'src', 'base', 'failure.f90')), re.M)
+    checks.equal(sorted([*provoked, *UNREACHABLE]), sorted(kinds), 'the kinds of failure in src/base/failure.f90')
+    sentences = text_of(os.path.join(TREE, 'tests', 'wording', 'test_explanation.f90'))
+    for kind in UNREACHABLE:
+        checks.true(re.search(rf'(call raise\(err, \w+,|kind =) failure_{kind}\b', sentences), f'the sentence of {kind} is tested')
+
+
 def main():
     mech9k, mech9d = (os.path.abspath(path) for path in sys.argv[1:3])
     checks = Checks()
-    limit = dead_point(ROCKER)
-    chain = 'closed chain 1 (coordinates 2, 3, 4)'
-    starts = f'the mechanism starts in a singular position of {chain}, '
-    cases = [
-        (mech9k, four_bar(ROCKER, DRIVE.format(1, '120')), (), ASSEMBLY,
-         ['the mechanism cannot be assembled: closed chain 1 (it closes on link 4 through coordinate 3) stays open by ',
-          ' m at best; check its dimensions and the independent coordinates, or give better guesses with &initial']),
-        (mech9k, four_bar(ROCKER, DRIVE.format(1, '40'), DRIVE.format(2, '0'), cq='1,2'), (), STRUCTURE,
-         ['the mobility is 1 (4 coordinates, rank 3), and 2 coordinates are independent; take 1 of the coordinates 1, 2 off the '
-          'independent ones (cq); cq = 1 would serve; instead of 1 also 2, 3, 4']),
-        (mech9k, four_bar(ROCKER, DRIVE.format(1, '40, 100'), end=3), (), SINGULAR,
-         [f'the motion cannot go on beyond t = {digits((limit - 40) / 100)}',
-          f' s: {chain} reaches a dead point at q1 = {digits(limit)}',
-          ' and cannot follow farther']),
-        (mech9k, four_bar(ROCKER, DRIVE.format(1, f'{limit!r}, -1')), (), SINGULAR,
-         [f'{starts}a dead point, where rates are not finite; start a little beside it']),
-        (mech9k, four_bar(FLAT, DRIVE.format(1, '0, 240')), (), SINGULAR,
-         [f'{starts}where two branches meet: ', ' (deg/s, m/s); start a little beside it, on the one that is meant']),
-        (mech9k, four_bar(FLAT, DRIVE.format(1, '0')), (), SINGULAR,
-         [f'{starts}where it is not certain how it goes on; start a little beside it']),
-        (mech9d, four_bar(ROCKER, INITIAL.format(40)), (), DATA,
-         ['independent coordinate 1 has no inertia: no link with mass moves with it (apart from those that the independent '
-          'coordinates before it move already); give a &body']),
-        (mech9d, four_bar(ROCKER, BODY), (), DATA,
-         ['case.nml:3:1: the independent coordinate 1 of this pair has no initial position; give &initial coordinate=1, '
-          'position=..., velocity=... /']),
-        (mech9d, four_bar(FLAT, INITIAL.format(0), BODY), (), SINGULAR,
-         [f'{chain} is in a singular position for these independent coordinates; choose other independent coordinates, or start a '
-          'little beside it']),
-        (mech9d, four_bar(ROCKER, INITIAL.format(40), BODY),
-         ('--set', 'solver.relative_tolerance=1e-30', '--set', 'solver.absolute_tolerance=1e-30'), INTEGRATOR,
-         ['the integration cannot go on from t = 0 s: the tolerances ask for more digits than the numbers have. Raise '
-          'relative_tolerance or absolute_tolerance']),
-    ]
-    with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, 'short.dat'), 'w', encoding='utf-8') as file:
-            file.write('0 0\n1 1\n2 3\n')
-        path = os.path.join(folder, 'case.nml')
-        for program, text, options, code, words in cases + [(mech9k, TABLE, (), DATA, ['a smooth curve needs at least 4 points'])]:
-            with open(path, 'w', encoding='utf-8') as file:
-                file.write(text)
-            done = run(program, path, '--quiet', '--no-write', *options, folder=folder)
-            checks.equal(done.returncode, code, f'{words[0]}: exit code')
-            for part in words:
-                checks.true(part in done.stderr, f'said: {part}', done.stderr)
-            checks.true('failure of kind' not in done.stderr, 'in words', done.stderr)
-    hooke = os.path.join(TREE, 'examples', 'double_hooke', 'double_hooke.nml')
-    done = run(mech9k, hooke, '--plan')
-    checks.true('spatial arithmetic: the motions of closed chain 1 have 6 dimensions, not 3\n' in done.stdout, 'why it is not planar',
-                done.stdout)
+    driven, free = driven_cases(), free_cases()
+    check_cases(checks, mech9k, driven)
+    check_cases(checks, mech9d, free)
+    check_kinds(checks, [case[0] for case in driven + free])
     checks.finish()
 
 

@@ -1,12 +1,17 @@
 !> Sentences from failures in numbers: each kind has one, and it is the one that users know.
 program test_explanation
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, add_place, place_type, exit_integrator, exit_singular, exit_structure
+  use mech9_error, only: error_type, raise, add_place, place_type, exit_data, exit_integrator, exit_interrupted, exit_singular, &
+    exit_structure, exit_usage
   use mech9_failure, only: failure_type, last_failure, failure_wrong_choice, failure_large_block, failure_locked_chain, &
     failure_nearly_moving_chain, failure_undetermined_coordinates, failure_undetermined_block, failure_contradictory_inputs, &
     failure_start_on_branches, failure_start_unclear, failure_start_locked, failure_start_not_left, failure_escape, &
     failure_dead_point, failure_lost_branch, failure_singular_block, failure_singular_start_block, failure_other_branch, &
-    failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_spline, failure_no_inertia
+    failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_inertia, failure_unknown_method, &
+    failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, failure_infinite_rate, &
+    failure_infinite_jacobian, failure_few_points, failure_points_order, failure_not_started, failure_backwards, &
+    failure_interrupted
+  use mech9_integration_methods, only: integration_methods
   use mech9_explanation, only: explain
   use mech9_testing, only: tester_type, message_of
   implicit none
@@ -17,6 +22,8 @@ program test_explanation
   call blocks()
   call motions()
   call stopped_integration()
+  call integrations()
+  call uses_of_the_library()
   call kept_message()
   call test%finish()
 
@@ -103,10 +110,11 @@ contains
     call raise(err, exit_structure, failure_undetermined_block)
     err%failure%chains = [1, 3]
     call says(err, 'closed chains 1, 3 together cannot determine all dependent coordinates from the independent ones near '// &
-              'the start: it is singular there')
+              'the start: it is singular there; take other independent coordinates (cq), or other guesses (&initial)')
     call raise(err, exit_structure, failure_contradictory_inputs)
     err%failure%chains = [2]
-    call says(err, 'the independent coordinates cannot all move freely: closed chain 2 would not stay closed')
+    call says(err, 'the independent coordinates cannot all move freely: closed chain 2 would not stay closed; take one of its '// &
+              'coordinates off the independent ones (cq)')
     call raise(err, exit_structure, failure_locked_chain)
     err%failure%chains = [1]
     err%failure%number = 1
@@ -140,7 +148,8 @@ contains
     call says(err, 'the mechanism starts in a singular position of closed chain 1 (coordinates 2, 4), where it is not certain '// &
               'how it goes on; start a little beside it')
     err%failure%kind = failure_start_locked
-    call says(err, 'the mechanism starts in a singular position of closed chain 1 (coordinates 2, 4), which it cannot leave')
+    call says(err, 'the mechanism starts in a singular position of closed chain 1 (coordinates 2, 4), which it cannot leave '// &
+              'as it is driven; drive it another way, or start a little beside it')
     err%failure%kind = failure_start_not_left
     call says(err, 'the mechanism starts in a singular position and cannot be followed off it with certainty; start a little '// &
               'beside it')
@@ -169,12 +178,13 @@ contains
     call raise(err, exit_singular, failure_singular_block)
     err%failure%chains = [1]
     err%failure%coordinates = [3, 2]
-    call says(err, 'closed chain 1 (coordinates 2, 3) is in a singular position for these independent coordinates')
+    call says(err, 'closed chain 1 (coordinates 2, 3) is in a singular position for these independent coordinates; others may '// &
+              'pass it (cq), unless branches meet there')
     allocate (err%stopped)
     err%stopped%t = 0.5_wp
     err%stopped%t_failed = 0.75_wp
     call says(err, 'the integration cannot go on from t = 0.5 s: at t = 0.75 s: closed chain 1 (coordinates 2, 3) is in a '// &
-              'singular position for these independent coordinates')
+              'singular position for these independent coordinates; others may pass it (cq), unless branches meet there')
     deallocate (err%stopped)
     err%failure%kind = failure_singular_start_block
     call says(err, 'closed chain 1 (coordinates 2, 3) is in a singular position for these independent coordinates; choose '// &
@@ -182,15 +192,6 @@ contains
     call raise(err, exit_singular, failure_other_branch)
     err%failure%coordinates = [7]
     call says(err, 'with other independent coordinates the chains close on another branch: coordinate 7 would jump')
-    call raise(err, exit_integrator, failure_step_memory)
-    err%failure%t = 2.0_wp
-    call says(err, 'the integration cannot go on from t = 2 s: there is not enough memory')
-    call raise(err, exit_integrator, failure_step_settings)
-    call says(err, 'the integration cannot go on from t = 0 s: its settings do not fit together')
-    call raise(err, exit_integrator, failure_no_spline)
-    call says(err, 'no smooth curve runs through these points')
-    call raise(err, exit_integrator, failure_no_jacobian)
-    call says(err, 'a system of equations without Jacobian was asked for it')
     ! a user's procedure has its own message
     call raise(err, exit_integrator, 'the force is not finite')
     allocate (err%stopped)
@@ -198,6 +199,58 @@ contains
     err%stopped%t_failed = 1.5_wp
     call says(err, 'the integration cannot go on from t = 1 s: at t = 1.5 s: the force is not finite')
   end subroutine stopped_integration
+
+  !> Integrations that cannot begin or go on, for reasons that data files do not lead to.
+  subroutine integrations()
+    type(error_type), allocatable :: err
+
+    call raise(err, exit_data, failure_unknown_method)
+    err%failure%name = 'euler'
+    call test%is_true(index(message_of(err), 'unknown method of integration ''euler''. There are: '// &
+                            trim(integration_methods(1)%name)//', ') == 1, 'the methods are named: '//message_of(err))
+    call raise(err, exit_data, failure_relative_tolerance)
+    err%failure%tolerance = 1.5_wp
+    call says(err, 'the relative tolerance must be between 0 and 1; it is 1.5')
+    call raise(err, exit_data, failure_absolute_tolerance)
+    call says(err, 'the absolute tolerance must be greater than 0')
+    call raise(err, exit_integrator, failure_tolerance_count)
+    call says(err, 'an integration needs one absolute tolerance for each of its variables')
+    call raise(err, exit_integrator, failure_no_jacobian)
+    call says(err, 'a system of equations without Jacobian was asked for it')
+    call raise(err, exit_integrator, failure_step_memory)
+    err%failure%t = 2.0_wp
+    call says(err, 'the integration cannot go on from t = 2 s: there is not enough memory')
+    call raise(err, exit_integrator, failure_step_settings)
+    call says(err, 'the integration cannot go on from t = 0 s: its settings do not fit together')
+    call raise(err, exit_integrator, failure_infinite_rate)
+    err%failure%number = 2
+    call says(err, 'the rate of change of variable 2 is not finite: this motion, or a force, grows beyond all bounds. Look for '// &
+              'a spring, a damper or a force of your own that drives instead of holding back')
+    call raise(err, exit_integrator, failure_infinite_jacobian)
+    err%failure%number = 3
+    call says(err, 'entry 3 of the Jacobian, column by column, is not finite: the motion, or a force, grows beyond all bounds')
+  end subroutine integrations
+
+  !> Mistakes of programs that use the library, and requests of theirs.
+  subroutine uses_of_the_library()
+    type(error_type), allocatable :: err
+
+    call raise(err, exit_data, failure_few_points)
+    err%failure%number = 3
+    call says(err, 'a smooth curve needs at least 4 points, and there are 3')
+    call raise(err, exit_data, failure_points_order)
+    err%failure%number = 2
+    call says(err, 'points must have increasing abscissae; point 3 does not come after point 2')
+    call raise(err, exit_usage, failure_not_started)
+    call says(err, 'a motion must be started before it can advance')
+    call raise(err, exit_usage, failure_backwards)
+    err%failure%t = 1.5_wp
+    err%failure%t_stop = 1.0_wp
+    call says(err, 'the motion stands at t = 1.5 s and cannot go back to t = 1 s; start it anew')
+    call raise(err, exit_interrupted, failure_interrupted)
+    err%failure%t = 0.25_wp
+    call says(err, 'interrupted before t = 0.25 s')
+  end subroutine uses_of_the_library
 
   !> An error with a message of its own stays as it is, and so do places.
   subroutine kept_message()
