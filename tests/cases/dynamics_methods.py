@@ -1,6 +1,8 @@
 """All methods of integration on one closed-chain mechanism: as the tolerance is tightened from 1e-4 to 1e-12 they
 come to one motion, those of one step at their theoretical order.
 
+Compares the program with itself: the ends of one motion by all methods of integration.
+
 usage: dynamics_methods.py MECH9D
 
 The order is that of the error against the number of steps, from the tolerance 1e-7 on: with the few dozen steps

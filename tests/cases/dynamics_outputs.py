@@ -1,6 +1,8 @@
 """Outputs inside steps: the steps do not depend on how many outputs there are, and a row inside a step is as accurate as
 the end of one.
 
+Compares the program with itself: a row inside a step and the same row at the end of a run.
+
 usage: dynamics_outputs.py MECH9D
 
 The oracle for a row of a Runge-Kutta method is a run that ends at its time: the last step of a run ends there exactly.

@@ -1,5 +1,7 @@
 """A run killed outright, at any moment, leaves an HDF5 file that opens and holds right rows.
 
+Compares the program with itself in part: the last row of a run that was killed and that row of a whole run.
+
 usage: killed_run.py MECH9K [RUNS]
 
 The run is of Fig. 1, driven through millions of positions. Each file is held against the rows of a run that

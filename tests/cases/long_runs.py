@@ -1,5 +1,7 @@
 """Chains stay closed however long a run is: mech9k over many positions, mech9d over a long time.
 
+Compares the program with itself in part: positions before and after whole turns; closures are round-off by themselves.
+
 usage: long_runs.py MECH9K MECH9D POSITIONS SECONDS
 """
 import os

@@ -1,5 +1,7 @@
 """What --plan says is left out, and that leaving it out changes no result.
 
+Compares the program with itself: one mechanism in two planes, and in planar and spatial arithmetic.
+
 usage: plan_skips.py MECH9D
 """
 import os

@@ -1,5 +1,7 @@
 """A check refuses what the run refuses, with the same exit code, the same words and the same place.
 
+Compares the program with itself: the refusals of a check and of a run.
+
 usage: refusals.py MECH9K MECH9D
 """
 import os

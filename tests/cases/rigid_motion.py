@@ -3,6 +3,8 @@
 The frame's side of every pair at link 1 is moved by a random rotation and shift; everything else in
 the data file stays. Coordinates must stay the same and points must move with the frame.
 
+Compares the program with itself: one mechanism with the system of link 1 in two places.
+
 usage: rigid_motion.py MECH9K NAME SEEDS      (tests/reference/NAME.nml)
 """
 import os

@@ -3,6 +3,8 @@
 The oracle is the same mechanism with whole tensors: n n' I against n n' I + (1 - n n') I/2, whose moment about n is I
 too. Only the moment about n enters the equations of such a link, so that both motions are the same.
 
+Compares the program with itself: links with one moment of inertia and with whole tensors.
+
 usage: single_moments.py MECH9D
 """
 import os

@@ -1,6 +1,9 @@
 """Motions through singular positions, and of an overconstrained mechanism, for ten seconds: the N-four-bar, Bricard's
 mechanism, a four-bar that swings through the dead point of its independent coordinate.
 
+Compares the program with itself in part: a four-bar by its rocker and by its crank, and by several methods; the other
+motions have references.
+
 usage: singular_motion.py MECH9D CASE        CASE: n_four_bar, bricard or pendulum_four_bar
 """
 import os

@@ -1,5 +1,7 @@
 """Dead points, ranges, crossings of branches and conditioning through the whole program, by closed forms.
 
+Compares the program with itself in part: positions with and without accelerations; all else is closed forms.
+
 usage: special_positions.py MECH9K MECH9D
 """
 import json

@@ -4,6 +4,8 @@ same numbers.
 Data files of tests/reference and of the examples, and members of the families of the stress test, among them some that
 end at dead points, cannot be put together or have wrong inputs.
 
+Compares the program with itself: one mechanism in several units of length and angle.
+
 usage: units.py MECH9K MECH9D
 """
 import json

@@ -1,6 +1,9 @@
 """The samples of user_procs: their programs against closed forms, and the two forms of a procedure
 against each other.
 
+Compares the program with itself in part: procedures in Taylor form and in plain reals, which are both held against
+closed forms, too.
+
 usage: user_programs.py FOLDER      FOLDER holds trammel_k, trammel_values_k, cam_follower_k,
                                     cycloidal_drive_k, cycloidal_drive_values_k, air_drag_d
 """

@@ -1,5 +1,7 @@
 """What is left out, by counts of the work done; and that leaving it out changes no result.
 
+Compares the program with itself: results with and without the blocks and derivatives that nothing needs.
+
 usage: work_counts.py MECH9K MECH9D
 """
 import json

@@ -1,5 +1,7 @@
 !> Bodies: the same matter described in other ways moves the same way, what has no mass does not
 !> count, and a coordinate that moves no mass is named. Closed forms of pendulums.
+!>
+!> Compares the program with itself in part: the same matter described in several ways; pendulums have closed forms.
 program test_bodies
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data, exit_integrator

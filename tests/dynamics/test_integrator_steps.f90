@@ -1,4 +1,6 @@
 !> Steps of an integration: stops met exactly, settling and corrections, restarts, limits, no memory per step.
+!>
+!> Compares the program with itself in part: integrations alone and side by side; orbits have closed forms.
 program test_integrator_steps
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,5 +1,8 @@
 !> Articulated bodies give what Lagrange's equations (19) ask for, on random trees with all kinds of pairs and loads, in
 !> space and in the plane; a coordinate without inertia is named as there; an evaluation allocates nothing.
+!>
+!> Compares the program with itself: articulated bodies and Lagrange's equations, which `test_lagrange` holds against the formulas
+!> of the paper.
 program test_open_chains
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data

@@ -1,5 +1,7 @@
 !> Planar arithmetic gives what spatial arithmetic gives, to round-off, whatever the plane; and it is used where
 !> all pairs of a mechanism have one plane, and only there.
+!>
+!> Compares the program with itself: planar and spatial arithmetic.
 program test_planar_arithmetic
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,6 +1,8 @@
 """The programs of examples/library print the numbers that mech9k and mech9d write for the same mechanism, to round-off, and
 docs/library.md shows them as they are.
 
+Compares the program with itself: the numbers of the library and of the programs.
+
 usage: library_examples.py FROM_FILE FROM_VALUES MECH9K MECH9D
 """
 import os

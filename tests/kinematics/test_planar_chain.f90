@@ -1,4 +1,6 @@
 !> A planar chain of three unknowns in arithmetic of its own, against that of any block.
+!>
+!> Compares the program with itself: the arithmetic of a planar chain and that of any block.
 program test_planar_chain
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

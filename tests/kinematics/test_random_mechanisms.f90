@@ -1,6 +1,8 @@
 !> Mechanisms at random: planar, spherical and spatial, with several loops, up to some hundred
 !> coordinates, with as many independent coordinates as the axes allow. Each is assembled at home and
 !> away from it, and its rates are those that its axes give.
+!>
+!> Compares the program with itself in part: mechanisms in other units; rates are held against the axes.
 program test_random_mechanisms
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,5 +1,7 @@
 !> Mechanisms at random, planar, spherical and spatial, some with redundant equations, driven far: few outputs
 !> and many give the same motion, and the same end where there is one.
+!>
+!> Compares the program with itself: motions with few and with many outputs.
 program test_random_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular

@@ -1,5 +1,5 @@
 """The tree as it is handed on: no paths of somebody's machine, no file that holds more than one idea,
-scripts that can be run, and Fortran files with their head.
+scripts that can be run, Fortran files with their head, and tests that say where they compare the program with itself.
 """
 import os
 import re
@@ -33,8 +33,22 @@ def files():
     return names
 
 
+def check_self_comparisons(checks, names):
+    """The tests that say in their heads that they compare the program with itself are those that tests/README.md lists."""
+    said = set()
+    for name in names:
+        if name.startswith('tests/') and name.endswith(('.f90', '.py')) and not name.startswith('tests/scripts/'):
+            with open(os.path.join(TREE, name), encoding='utf-8') as file:
+                if 'Compares the program with itself' in file.read(2000):
+                    said.add(name)
+    with open(os.path.join(TREE, 'tests', 'README.md'), encoding='utf-8') as file:
+        listed = set(re.findall(r'^\| `(tests/\S+)` \|', file.read(), re.M))
+    checks.equal(said, listed, 'tests/README.md lists the tests that compare the program with itself')
+
+
 def main():
     checks = Checks()
+    check_self_comparisons(checks, files())
     for name in files():
         path = os.path.join(TREE, name)
         if 'malformed' in name or not name.endswith(TEXT):

@@ -1,5 +1,7 @@
 !> The interface of simulations: a motion is the same in one go and in pieces, stops where it is interrupted, counts its work, and
 !> refuses times behind it and open chains.
+!>
+!> Compares the program with itself: a motion in one go, in pieces and after an interruption.
 program test_simulation
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_usage, exit_singular, exit_interrupted

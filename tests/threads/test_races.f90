@@ -1,4 +1,6 @@
 !> Eight threads run different mechanisms; built with the thread sanitizer this finds whatever they share.
+!>
+!> Compares the program with itself: runs alone and runs side by side.
 program test_races
   use mech9_testing, only: tester_type
   use many_runs, only: list_runs, carry_out, same, run_type

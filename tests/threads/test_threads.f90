@@ -1,4 +1,6 @@
 !> Different mechanisms run side by side: the same numbers, bit by bit, from 1, 2 and 8 OpenMP threads.
+!>
+!> Compares the program with itself: runs alone and runs side by side.
 program test_threads
   use mech9_text, only: to_text
   use mech9_testing, only: tester_type
