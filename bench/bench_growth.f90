@@ -9,7 +9,7 @@ program bench_growth
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_clock, only: seconds
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
@@ -26,7 +26,7 @@ program bench_growth
 contains
 
   subroutine run()
-    type(mechanism_type) :: mechanism
+    type(model_type), target :: model
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
@@ -46,22 +46,22 @@ contains
       call write_chain(argument(3), n)
     end if
     clock = seconds()
-    call read_data_file(argument(3), argument(1) == 'ladder', mechanism)
+    call read_data_file(argument(3), argument(1) == 'ladder', model)
     reading = seconds() - clock
     clock = seconds()
     if (argument(1) == 'ladder') then
-      call assemble_driven(mechanism, plan, start, err)
+      call assemble_driven(model, plan, start, err)
     else
-      call assemble_free(mechanism, plan, start, err)
+      call assemble_free(model, plan, start, err)
     end if
     planning = seconds() - clock
     call stop_at(err, argument(1))
     position = 0.0_wp
     if (argument(1) == 'ladder') then
-      call time_positions(mechanism, plan, start, position)
-      start%dq(plan%independent) = mechanism%initial_velocity(plan%independent)
+      call time_positions(model, plan, start, position)
+      start%dq(plan%independent) = model%problem%initial%velocity(plan%independent)
     end if
-    call time_evaluations(mechanism, plan, start, evaluation)
+    call time_evaluations(model, plan, start, evaluation)
     print '(2i8,2f12.5,2f14.4,f10.1)', n, plan%n_links, reading, planning, position, evaluation, peak_memory()
   end subroutine run
 
@@ -126,8 +126,8 @@ contains
   end subroutine write_chain
 
   !> Median time of a position with velocities and accelerations [us].
-  subroutine time_positions(mechanism, plan, start, time)
-    type(mechanism_type), intent(in) :: mechanism   !< a ladder
+  subroutine time_positions(model, plan, start, time)
+    type(model_type), intent(in), target :: model   !< a ladder
     type(plan_type), intent(in) :: plan             !< its plan
     type(state_type), intent(in) :: start           !< assembled position at the start
     real(wp), intent(out) :: time                   !< of a position, median of the passes [us]
@@ -139,11 +139,11 @@ contains
     ! a few thousandths of a turn between positions, and work enough for the clock
     positions = max(20, min(300, 100000/plan%n_links))
     do pass = 1, passes
-      call start_driven_motion(mechanism, plan, start, 0.0_wp, driven, err)
+      call start_driven_motion(model%problem%drives, plan, start, 0.0_wp, driven, err)
       call stop_at(err, 'ladder')
       begin = seconds()
       do i = 1, positions
-        call advance(mechanism, plan, driven, 0.003_wp*i, err)
+        call advance(model%problem%drives, plan, driven, 0.003_wp*i, err)
         if (allocated(err)) exit
       end do
       each(pass) = (seconds() - begin)/positions
@@ -153,8 +153,8 @@ contains
   end subroutine time_positions
 
   !> Median time of one evaluation of the motion [us].
-  subroutine time_evaluations(mechanism, plan, start, time)
-    type(mechanism_type), intent(in) :: mechanism   !< a ladder or an open chain
+  subroutine time_evaluations(model, plan, start, time)
+    type(model_type), intent(in), target :: model   !< a ladder or an open chain
     type(plan_type), intent(in) :: plan             !< its plan
     type(state_type), intent(in) :: start           !< assembled position at the start, with the independent rates
     real(wp), intent(out) :: time                   !< of an evaluation, median of the passes [us]
@@ -165,7 +165,7 @@ contains
     integer :: pass, i, evaluations
 
     allocate (system)
-    call set_motion_system(mechanism, plan, start, system, err)
+    call set_motion_system(model, model%problem%partition, plan, start, system, err)
     call stop_at(err, 'the motion')
     y = system%vector()
     allocate (rates(size(y)), source=0.0_wp)

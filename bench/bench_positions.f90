@@ -7,7 +7,7 @@ program bench_positions
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_clock, only: seconds
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type, requested_by_results, leave_out_unrequested
@@ -74,7 +74,7 @@ contains
     integer, intent(in) :: passes          !< repetitions for a median
     integer, intent(in) :: positions       !< in a cycle
     real(wp), intent(in) :: closed(2)      !< times of the closed form: of a position; with derivatives [us]
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan, lean
     type(requested_type) :: requested
     type(state_type) :: start
@@ -82,18 +82,18 @@ contains
     real(wp) :: each(2, passes), error
     integer :: pass
 
-    call read_data_file(path, .true., mechanism)
-    mechanism%time%intervals = positions
-    call assemble_driven(mechanism, plan, start, err)
+    call read_data_file(path, .true., model)
+    model%request%time%intervals = positions
+    call assemble_driven(model, plan, start, err)
     call stop_at(err, name)
     lean = plan
-    requested = requested_by_results(mechanism)
+    requested = requested_by_results(model%mechanism, model%request%output)
     call leave_out_unrequested(plan, requested)
     requested%derivatives = 0
     call leave_out_unrequested(lean, requested)
     do pass = 1, passes
-      call time_positions(mechanism, lean, start, each(1, pass))
-      call time_motion(mechanism, plan, start, name == 'four_bar', each(2, pass), error)
+      call time_positions(model, lean, start, each(1, pass))
+      call time_motion(model, plan, start, name == 'four_bar', each(2, pass), error)
     end do
     each = each/positions*1.0e6_wp
     print '(a,2f12.5,2f10.2,es10.2)', name, median(each(1, :)), median(each(2, :)), median(each(1, :))/closed(1), &
@@ -101,33 +101,33 @@ contains
   end subroutine time_mechanism
 
   !> Time for the positions of all coordinates and of the last point, with all checks of the branch.
-  subroutine time_positions(mechanism, plan, start, time)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine time_positions(model, plan, start, time)
+    type(model_type), intent(in) :: model       !< the model
     type(plan_type), intent(in) :: plan             !< its plan, without the parts that positions do not need
     type(state_type), intent(in) :: start           !< assembled position at the start
     real(wp), intent(out) :: time                   !< of all positions together [s]
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
-    real(wp) :: begin, positions(3, mechanism%time%intervals)
+    real(wp) :: begin, positions(3, model%request%time%intervals)
     integer :: i
 
-    call start_driven_motion(mechanism, plan, start, mechanism%time%start, driven, err, with_accelerations=.false.)
-    call stop_at(err, mechanism%title)
+    call start_driven_motion(model%problem%drives, plan, start, model%request%time%start, driven, err, with_accelerations=.false.)
+    call stop_at(err, model%mechanism%title)
     begin = seconds()
-    do i = 1, mechanism%time%intervals
-      call advance(mechanism, plan, driven, mechanism%time%time(i), err)
+    do i = 1, model%request%time%intervals
+      call advance(model%problem%drives, plan, driven, model%request%time%time(i), err)
       if (allocated(err)) exit
-      associate (point => mechanism%points(size(mechanism%points)))
+      associate (point => model%mechanism%points(size(model%mechanism%points)))
         call point_motion(plan, driven%state, point%link, point%position, positions(:, i))
       end associate
     end do
     time = seconds() - begin
-    call stop_at(err, mechanism%title)
+    call stop_at(err, model%mechanism%title)
   end subroutine time_positions
 
   !> Time for positions, velocities and accelerations of all coordinates and of the last point, with all checks of the branch.
-  subroutine time_motion(mechanism, plan, start, compare, time, error)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine time_motion(model, plan, start, compare, time, error)
+    type(model_type), intent(in) :: model       !< the model
     type(plan_type), intent(in) :: plan             !< its plan
     type(state_type), intent(in) :: start           !< assembled position at the start
     logical, intent(in) :: compare                  !< with the closed form, after the clock has stopped
@@ -135,27 +135,27 @@ contains
     real(wp), intent(out) :: error   !< largest one of the accelerations over the largest acceleration; 0 where not compared
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
-    real(wp) :: begin, motions(3, 3, 0:mechanism%time%intervals), exact(2, 3), largest
+    real(wp) :: begin, motions(3, 3, 0:model%request%time%intervals), exact(2, 3), largest
     integer :: i
 
-    call start_driven_motion(mechanism, plan, start, mechanism%time%start, driven, err)
-    call stop_at(err, mechanism%title)
-    associate (point => mechanism%points(size(mechanism%points)))
+    call start_driven_motion(model%problem%drives, plan, start, model%request%time%start, driven, err)
+    call stop_at(err, model%mechanism%title)
+    associate (point => model%mechanism%points(size(model%mechanism%points)))
       call point_motion(plan, driven%state, point%link, point%position, motions(:, 1, 0), motions(:, 2, 0), motions(:, 3, 0))
       begin = seconds()
-      do i = 1, mechanism%time%intervals
-        call advance(mechanism, plan, driven, mechanism%time%time(i), err)
+      do i = 1, model%request%time%intervals
+        call advance(model%problem%drives, plan, driven, model%request%time%time(i), err)
         if (allocated(err)) exit
         call point_motion(plan, driven%state, point%link, point%position, motions(:, 1, i), motions(:, 2, i), motions(:, 3, i))
       end do
       time = seconds() - begin
     end associate
-    call stop_at(err, mechanism%title)
+    call stop_at(err, model%mechanism%title)
     error = 0.0_wp
     if (.not. compare) return
     largest = 0.0_wp
-    do i = 0, mechanism%time%intervals
-      call four_bar_motion(10.0_wp*mechanism%time%time(i), 10.0_wp, exact(:, 1), exact(:, 2), exact(:, 3))
+    do i = 0, model%request%time%intervals
+      call four_bar_motion(10.0_wp*model%request%time%time(i), 10.0_wp, exact(:, 1), exact(:, 2), exact(:, 3))
       error = max(error, maxval(abs(motions(:2, 3, i) - exact(:, 3))))
       largest = max(largest, maxval(abs(exact(:, 3))))
     end do

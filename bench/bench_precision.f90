@@ -11,7 +11,7 @@ program bench_precision
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_clock, only: seconds
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_integration_methods, only: integration_methods
@@ -49,7 +49,7 @@ program bench_precision
 contains
 
   subroutine run()
-    type(mechanism_type) :: mechanism
+    type(model_type), target :: model
     real(wp), allocatable :: exact(:), other(:)
     integer :: p, m
     logical :: quick
@@ -62,29 +62,29 @@ contains
       stop 1
     end if
     quick = argument(3) == 'quick'
-    call read_data_file(argument(1)//'/'//trim(problems(p)%data_file), .false., mechanism)
-    mechanism%time%end = problems(p)%end
+    call read_data_file(argument(1)//'/'//trim(problems(p)%data_file), .false., model)
+    model%request%time%end = problems(p)%end
     ! the reference holds times from the start on: a quick run ends early
-    if (quick) mechanism%time%end = problems(p)%end/20
+    if (quick) model%request%time%end = problems(p)%end/20
     if (problems(p)%reference /= '') then
-      call read_reference(argument(1)//'/tests/reference/'//trim(problems(p)%reference), mechanism%time%end, exact)
+      call read_reference(argument(1)//'/tests/reference/'//trim(problems(p)%reference), model%request%time%end, exact)
       other = exact
     else
-      call tight_run(mechanism, problems(p), 'prince-dormand', exact)
-      call tight_run(mechanism, problems(p), 'verner', other)
+      call tight_run(model, problems(p), 'prince-dormand', exact)
+      call tight_run(model, problems(p), 'verner', other)
     end if
     print '(a)', 'method tolerance error seconds evaluations steps'
     do m = 1, size(integration_methods)
       if (integration_methods(m)%name == 'prince-dormand') then
-        call time_method(mechanism, problems(p), trim(integration_methods(m)%name), other, quick)
+        call time_method(model, problems(p), trim(integration_methods(m)%name), other, quick)
       else
-        call time_method(mechanism, problems(p), trim(integration_methods(m)%name), exact, quick)
+        call time_method(model, problems(p), trim(integration_methods(m)%name), exact, quick)
       end if
     end do
   end subroutine run
 
-  subroutine tight_run(mechanism, problem, method, values)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism, whose method and tolerances are set
+  subroutine tight_run(model, problem, method, values)
+    type(model_type), intent(inout), target :: model       !< the model, whose method and tolerances are set
     type(problem_type), intent(in) :: problem          !< the motion
     character(len=*), intent(in) :: method             !< name of the method
     real(wp), allocatable, intent(out) :: values(:)    !< columns of the problem at the end [rad, m]
@@ -92,24 +92,24 @@ contains
     type(integration_statistics_type) :: counts
     real(wp) :: time
 
-    call set_method(mechanism, method, 1.0e-13_wp)
-    call integrate(mechanism, problem, values, counts, time, err)
+    call set_method(model, method, 1.0e-13_wp)
+    call integrate(model, problem, values, counts, time, err)
     call stop_at(err, 'the run at 1e-13 by '//method)
   end subroutine tight_run
 
-  subroutine set_method(mechanism, method, tolerance)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism, whose method and tolerances are set
+  subroutine set_method(model, method, tolerance)
+    type(model_type), intent(inout), target :: model       !< the model, whose method and tolerances are set
     character(len=*), intent(in) :: method             !< name of the method
     real(wp), intent(in) :: tolerance                  !< relative, and absolute [rad, m, per s]
 
-    mechanism%solver%method = method
-    mechanism%solver%relative_tolerance = tolerance
-    mechanism%solver%absolute_tolerance = tolerance
+    model%request%solver%method = method
+    model%request%solver%relative_tolerance = tolerance
+    model%request%solver%absolute_tolerance = tolerance
   end subroutine set_method
 
   !> The rows of one method.
-  subroutine time_method(mechanism, problem, method, exact, quick)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism, whose method and tolerances are set
+  subroutine time_method(model, problem, method, exact, quick)
+    type(model_type), intent(inout), target :: model       !< the model, whose method and tolerances are set
     type(problem_type), intent(in) :: problem          !< the motion
     character(len=*), intent(in) :: method             !< name of the method
     real(wp), intent(in) :: exact(:)                   !< columns of the problem at the end [rad, m]
@@ -123,11 +123,11 @@ contains
     spent = 0.0_wp
     do power = 3, 13, merge(5, 1, quick)
       tolerance = 10.0_wp**(-power)
-      call set_method(mechanism, method, tolerance)
+      call set_method(model, method, tolerance)
       n = 0
       do
         n = n + 1
-        call integrate(mechanism, problem, values, counts, times(n), err)
+        call integrate(model, problem, values, counts, times(n), err)
         if (allocated(err) .or. quick .or. n == most_repetitions .or. sum(times(:n)) > long_enough) exit
       end do
       if (allocated(err)) then
@@ -142,8 +142,8 @@ contains
   end subroutine time_method
 
   !> One run from start to end: the values there, and the time it took besides reading and planning.
-  subroutine integrate(mechanism, problem, values, counts, time, err)
-    type(mechanism_type), intent(in) :: mechanism              !< the mechanism, with method and tolerances
+  subroutine integrate(model, problem, values, counts, time, err)
+    type(model_type), intent(in), target :: model                  !< the model, with method and tolerances
     type(problem_type), intent(in) :: problem                  !< the motion
     real(wp), allocatable, intent(out) :: values(:)            !< columns of the problem at the end [rad, m]
     type(integration_statistics_type), intent(out) :: counts   !< work of the integrator
@@ -157,14 +157,14 @@ contains
     real(wp) :: begin
 
     time = 0.0_wp
-    call assemble_free(mechanism, plan, start, err)
-    if (.not. allocated(err)) call new_free_simulation(mechanism, plan, start, simulation, err)
+    call assemble_free(model, plan, start, err)
+    if (.not. allocated(err)) call new_free_simulation(model, plan, start, simulation, err)
     if (.not. allocated(err)) then
-      call new_row_source('mech9d', mechanism, simulation, rows)
+      call new_row_source('mech9d', simulation, rows)
       allocate (row(rows%columns%count), source=0.0_wp)
       begin = seconds()
-      call rows%row_at(mechanism%time%start, row, err)
-      if (.not. allocated(err)) call rows%row_at(mechanism%time%end, row, err)
+      call rows%row_at(model%request%time%start, row, err)
+      if (.not. allocated(err)) call rows%row_at(model%request%time%end, row, err)
       time = seconds() - begin
       call pick(rows%columns%names(:rows%columns%count), row, problem%columns, values)
       counts = simulation%motion%statistics()

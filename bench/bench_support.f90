@@ -3,11 +3,11 @@ module mech9_bench_support
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
-  use mech9_reader, only: read_mechanism
+  use mech9_reader, only: read_model
   implicit none
   private
   public :: read_data_file, stop_at, median, argument
@@ -15,15 +15,15 @@ module mech9_bench_support
 contains
 
   !> A mechanism from its data file; ends the program where something is wrong with it.
-  subroutine read_data_file(path, needs_drives, mechanism)
+  subroutine read_data_file(path, needs_drives, model)
     character(len=*), intent(in) :: path                !< of the data file
     logical, intent(in) :: needs_drives                 !< each independent coordinate must have a drive
-    type(mechanism_type), intent(out) :: mechanism      !< all that the file says, checked
+    type(model_type), intent(out) :: model      !< all that the file says, checked
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
     call read_document(path, document, diagnostics)
-    call read_mechanism(document, needs_drives, mechanism, diagnostics)
+    call read_model(document, needs_drives, model, diagnostics)
     if (.not. diagnostics%failed()) return
     call diagnostics%report(error_unit)
     stop 1

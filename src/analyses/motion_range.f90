@@ -2,7 +2,7 @@
 module mech9_motion_range
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_drive, only: drive_slot_type
   use mech9_polynomial_drive, only: polynomial_drive_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -44,8 +44,7 @@ module mech9_motion_range
 contains
 
   !> Move one independent coordinate in both directions from an assembled start.
-  subroutine find_range(mechanism, plan, start, coordinate, range)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine find_range(plan, start, coordinate, range)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< the assembled start
     integer, intent(in) :: coordinate   !< number of the coordinate that moves
@@ -53,37 +52,35 @@ contains
 
     range%coordinate = coordinate
     range%start = start%q(coordinate)
-    call find_end(mechanism, plan, start, coordinate, 1.0_wp, range%upper)
+    call find_end(plan, start, coordinate, 1.0_wp, range%upper)
     if (range%upper%kind == ends_round) then
       range%lower = range%upper
     else
-      call find_end(mechanism, plan, start, coordinate, -1.0_wp, range%lower)
+      call find_end(plan, start, coordinate, -1.0_wp, range%lower)
     end if
   end subroutine find_range
 
   !> Move a coordinate in one direction, at one unit per second.
-  subroutine find_end(mechanism, plan, start, coordinate, direction, found)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine find_end(plan, start, coordinate, direction, found)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< the assembled start
     integer, intent(in) :: coordinate   !< number of the coordinate that moves
     real(wp), intent(in) :: direction   !< +1 for the upper end, -1 for the lower one
     type(end_type), intent(out) :: found   !< the end of the range
-    type(mechanism_type) :: swept
+    type(drive_slot_type), allocatable :: drives(:)
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     logical :: turns
     integer :: turn
 
-    swept = mechanism
-    call drive_one(plan, start, coordinate, direction, swept)
-    call start_driven_motion(swept, plan, start, 0.0_wp, driven, err)
+    call drive_one(plan, start, coordinate, direction, drives)
+    call start_driven_motion(drives, plan, start, 0.0_wp, driven, err)
     associate (step => plan%steps(plan%step_of(coordinate)))
       turns = step%is_screw .and. .not. abs(step%slide) > 0.0_wp
     end associate
     if (turns) then
       do turn = 1, most_turns
-        if (.not. allocated(err)) call advance(swept, plan, driven, 2.0_wp*pi*turn, err)
+        if (.not. allocated(err)) call advance(drives, plan, driven, 2.0_wp*pi*turn, err)
         if (allocated(err)) exit
         if (.not. has_come_round(plan, start, driven%state, coordinate)) cycle
         found%kind = ends_round
@@ -91,7 +88,7 @@ contains
         return
       end do
     else if (.not. allocated(err)) then
-      call advance(swept, plan, driven, most_lengths, err)
+      call advance(drives, plan, driven, most_lengths, err)
     end if
     found%value = driven%state%q(coordinate)
     if (.not. allocated(err)) return
@@ -104,23 +101,22 @@ contains
   end subroutine find_end
 
   !> Set drives that move one independent coordinate and hold the others.
-  subroutine drive_one(plan, start, coordinate, direction, swept)
+  subroutine drive_one(plan, start, coordinate, direction, drives)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< the assembled start
     integer, intent(in) :: coordinate   !< number of the coordinate that moves
     real(wp), intent(in) :: direction   !< +1 for the upper end, -1 for the lower one
-    type(mechanism_type), intent(inout) :: swept   !< the mechanism; gets the drives
+    type(drive_slot_type), allocatable, intent(out) :: drives(:)   !< of all independent coordinates
     type(polynomial_drive_type) :: drive
     integer :: i, k
 
-    deallocate (swept%drives)
-    allocate (swept%drives(size(plan%independent)))
+    allocate (drives(size(plan%independent)))
     do i = 1, size(plan%independent)
       k = plan%independent(i)
       drive%coordinate = k
       drive%coefficients = [start%q(k), 0.0_wp]
       if (k == coordinate) drive%coefficients(2) = direction*plan%unit_of(k)
-      allocate (swept%drives(i)%drive, source=drive)
+      allocate (drives(i)%drive, source=drive)
     end do
   end subroutine drive_one
 

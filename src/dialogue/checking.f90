@@ -5,7 +5,7 @@ module mech9_checking
   use mech9_error, only: error_type, exit_structure
   use mech9_text, only: to_text
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -49,7 +49,7 @@ contains
       otherwise = 'structure(1).cq'
       if (interview%outline%way == 'vectors') otherwise = 'structure(1).rdw'
       if (interview%outline%structure_known) then
-        call print_sketch(error_unit, interview%structure, interview%vectors)
+        call print_sketch(error_unit, interview%structure, interview%partition)
         call interview%step()
       else
         if (.not. conversation%shown) call conversation%say('The structure is not complete or not right yet:')
@@ -63,7 +63,7 @@ contains
   subroutine judge_start(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: start
     type(draft_text_type) :: written
@@ -72,12 +72,12 @@ contains
     type(error_type), allocatable :: err
     character(len=:), allocatable :: otherwise
 
-    call read_draft(conversation%interview%draft, conversation%draft_path, task%needs_drives, mechanism, written, diagnostics)
+    call read_draft(conversation%interview%draft, conversation%draft_path, task%needs_drives, model, written, diagnostics)
     otherwise = 'guesses'
     if (.not. diagnostics%failed()) then
-      call task%assemble(mechanism, plan, start, err)
+      call task%assemble(model, plan, start, err)
       if (.not. allocated(err)) then
-        call tell_start(conversation, mechanism, plan, start)
+        call tell_start(conversation, model, plan, start)
         call conversation%interview%step()
         return
       end if
@@ -91,9 +91,9 @@ contains
   end subroutine judge_start
 
   !> The user is told the positions of all coordinates, and the mobility by the geometry.
-  subroutine tell_start(conversation, mechanism, plan, start)
+  subroutine tell_start(conversation, model, plan, start)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
-    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(model_type), intent(in) :: model             !< the model
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(state_type), intent(in) :: start                 !< position at the start
     type(mobility_report_type) :: report
@@ -101,14 +101,14 @@ contains
     integer :: k
 
     text = 'Put together at the start with'
-    do k = 1, size(mechanism%pairs)
-      text = text//' q'//to_text(k)//' = '//to_text(start%q(k)/unit_of(mechanism, k))
-      if (k < size(mechanism%pairs)) text = text//','
+    do k = 1, size(model%mechanism%pairs)
+      text = text//' q'//to_text(k)//' = '//to_text(start%q(k)/unit_of(model%mechanism, k))
+      if (k < size(model%mechanism%pairs)) text = text//','
     end do
     text = text//'.'
     if (size(plan%closures) > 0) text = text//' (Another assembly? Go back and give guesses.)'
     call conversation%say(text)
-    call report_mobility(mechanism, plan, start, report)
+    call report_mobility(model%mechanism, plan, start, report)
     call print_mobility_report(error_unit, plan, report)
   end subroutine tell_start
 end module mech9_checking

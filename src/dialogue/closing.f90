@@ -6,7 +6,7 @@ module mech9_closing
   use mech9_path, only: folder_of
   use mech9_same_file, only: same_file
   use mech9_diagnostics, only: diagnostics_type, printable
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_answer, only: yes_or_no
   use mech9_draft, only: draft_type, unquoted
   use mech9_draft_text, only: draft_text_type
@@ -63,7 +63,7 @@ contains
   subroutine show_all(conversation, needs_drives)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     logical, intent(in) :: needs_drives                      !< the program needs a drive for each independent coordinate
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(draft_text_type) :: written
     type(diagnostics_type) :: diagnostics
     type(fault_type), allocatable :: faults(:)
@@ -75,7 +75,7 @@ contains
       end if
       conversation%summed_up = .true.
       conversation%topic = 0
-      call read_draft(draft, conversation%draft_path, needs_drives, mechanism, written, diagnostics)
+      call read_draft(draft, conversation%draft_path, needs_drives, model, written, diagnostics)
     end associate
     call faults_of(diagnostics, written, faults)
     if (size(faults) == 0) return

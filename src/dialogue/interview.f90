@@ -4,7 +4,7 @@ module mech9_interview
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, find_item_rows, rows_of_group
   use mech9_structure, only: structure_type
-  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_partition, only: partition_type
   use mech9_draft, only: draft_type, plain_name
   use mech9_draft_check, only: fault_type, read_draft_structure
   use mech9_topics, only: can_be_left_out
@@ -28,7 +28,7 @@ module mech9_interview
     character(len=:), allocatable :: return_to
     logical :: adding = .false.                    !< during a correction, all questions of one group are asked
     type(structure_type) :: structure              !< structure, if outline%structure_known
-    type(structural_vectors_type) :: vectors
+    type(partition_type) :: partition
     type(fault_type), allocatable :: faults(:)     !< errors of the structure
     character(len=:), allocatable :: dropped       !< names that the last answer made meaningless; empty: none
   contains
@@ -83,10 +83,10 @@ contains
     character(len=*), intent(in) :: label         !< label of the question that is due then; empty: the number of the question stays
     integer :: found
 
-    call read_draft_structure(self%draft, self%outline, self%structure, self%vectors, self%faults)
+    call read_draft_structure(self%draft, self%outline, self%structure, self%partition, self%faults)
     self%outline%structure_known = size(self%faults) == 0 .and. counts_agree(self)
     if (self%outline%structure_known) then
-      self%outline%independent = self%structure%independent
+      self%outline%independent = self%partition%independent()
       self%outline%links = self%structure%links
     end if
     call drop_foreign(self%draft, self%outline, self%dropped)
@@ -244,7 +244,7 @@ contains
     if (.not. trial%outline%structure_known) return
     associate (structure => trial%structure)
       chains = structure%n_coordinates - structure%n_links + 1
-      named = count(structure%independent)
+      named = count(trial%partition%independent())
       most = structure%n_coordinates - chains
       usual = max(1, structure%n_coordinates - 3*chains)
     end associate

@@ -3,6 +3,7 @@ module mech9_structure_sketch
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type
   use mech9_structural_vectors, only: structural_vectors_type, chain_type, chains_of
+  use mech9_partition, only: partition_type
   implicit none
   private
   public :: print_sketch
@@ -14,18 +15,18 @@ contains
 
   !> The chains are drawn in the order of computation, each as links joined by pairs, such as "1 =5= 2 -4- 3", where =5=
   !> is an independent coordinate. The mobility by the count follows.
-  subroutine print_sketch(unit, structure, vectors)
+  subroutine print_sketch(unit, structure, partition)
     integer, intent(in) :: unit                           !< number of the output unit
-    type(structure_type), intent(in) :: structure         !< links of the pairs and independent coordinates
-    type(structural_vectors_type), intent(in) :: vectors  !< the structure as the second set
+    type(structure_type), intent(in) :: structure         !< links of the pairs
+    type(partition_type), intent(in) :: partition         !< kinds of the coordinates, and their order of computation
     type(chain_type), allocatable :: chains(:)
     integer :: i, loops
 
-    chains = chains_of(vectors)
+    chains = chains_of(partition%vectors)
     loops = count(chains%closed)
     write (unit, '(a)') '  The links are connected. Numbers between = = are independent coordinates:'
     do i = 1, min(size(chains), most_chains)
-      call print_chain(unit, vectors, chains(i))
+      call print_chain(unit, partition%vectors, chains(i))
     end do
     if (size(chains) > most_chains) write (unit, '(a)') '  and '//to_text(size(chains) - most_chains)//' chains more'
     if (loops == 0) then
@@ -35,7 +36,7 @@ contains
       write (unit, '(a)') '  Mobility by the count: '//count_text(structure%n_coordinates, loops, 3)//' in a plane, '// &
         count_text(structure%n_coordinates, loops, 6)//' in space;'
       write (unit, '(a)') '  the geometry will tell which holds. Independent now: '// &
-        to_text(count(structure%independent))//'.'
+        to_text(count(partition%independent()))//'.'
     end if
   end subroutine print_sketch
 

@@ -1,13 +1,13 @@
 !> A mechanism as the library's users hold it: read from a data file or a text of the same form, and checked.
 module mech9_checked_mechanism
   use mech9_error, only: error_type, raise, exit_usage
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_explanation, only: explain
   use mech9_source, only: source_type, source_from_text
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document, parse_document
-  use mech9_reader, only: read_mechanism
+  use mech9_reader, only: read_model
   implicit none
   private
   public :: checked_mechanism_type, read_file, read_text
@@ -55,9 +55,9 @@ contains
     type(checked_mechanism_type), intent(inout) :: mechanism    !< with its document
     type(diagnostics_type), intent(inout) :: diagnostics        !< errors of reading the document
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
-    type(mechanism_type) :: unused
+    type(model_type) :: unused
 
-    call read_mechanism(mechanism%document, has_drives(mechanism%document), unused, diagnostics)
+    call read_model(mechanism%document, has_drives(mechanism%document), unused, diagnostics)
     call fail_as(diagnostics, err)
     mechanism%is_read = .not. allocated(err)
   end subroutine check
@@ -74,12 +74,12 @@ contains
     has_drives = .false.
   end function has_drives
 
-  !> The mechanism for a driven or for a free motion, with all coordinates and their derivatives requested. Fails with exit_data
+  !> The model of a driven or of a free motion, with all coordinates and their derivatives requested. Fails with exit_data
   !> where drives are missing for the one, or given for the other.
-  subroutine take(self, driven, mechanism, err)
+  subroutine take(self, driven, model, err)
     class(checked_mechanism_type), intent(in) :: self      !< the mechanism
     logical, intent(in) :: driven                          !< all independent coordinates must have drives
-    type(mechanism_type), intent(out) :: mechanism         !< in m, rad, kg, s
+    type(model_type), intent(out) :: model                 !< in m, rad, kg, s
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(diagnostics_type) :: diagnostics
     integer :: number
@@ -89,11 +89,11 @@ contains
       return
     end if
     call diagnostics%add_source(self%document%source, number)
-    call read_mechanism(self%document, driven, mechanism, diagnostics)
+    call read_model(self%document, driven, model, diagnostics)
     call fail_as(diagnostics, err)
     if (allocated(err)) return
-    if (allocated(mechanism%output%coordinates)) deallocate (mechanism%output%coordinates)
-    mechanism%output%derivatives = 2
+    if (allocated(model%request%output%coordinates)) deallocate (model%request%output%coordinates)
+    model%request%output%derivatives = 2
   end subroutine take
 
   !> Complete the message of an error, with the line of the data file where it knows its place.

@@ -3,7 +3,8 @@ module mech9_motion
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
+  use mech9_point, only: point_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
@@ -20,6 +21,7 @@ module mech9_motion
   !> It must not be copied.
   type :: motion_type
     private
+    type(model_type), pointer :: model => null()            !< owned; the simulation refers to it
     class(simulation_type), allocatable :: simulation
   contains
     procedure :: start_kinematics
@@ -48,16 +50,15 @@ contains
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
     type(driven_simulation_type), allocatable :: simulation
-    type(mechanism_type) :: taken
     type(plan_type) :: plan
     type(state_type) :: assembled
 
     call self%close()
-    allocate (simulation)
-    call mechanism%take(.true., taken, err)
-    if (.not. allocated(err)) call assemble_driven_start(taken, plan, assembled, err)
+    allocate (simulation, self%model)
+    call mechanism%take(.true., self%model, err)
+    if (.not. allocated(err)) call assemble_driven_start(self%model, plan, assembled, err)
     if (.not. allocated(err)) then
-      call new_driven_simulation(taken, plan, assembled, simulation, pictures=.true.)
+      call new_driven_simulation(self%model, plan, assembled, simulation, pictures=.true.)
       call simulation%start(err, interruption)
     end if
     call mechanism%point_at(err)
@@ -72,15 +73,14 @@ contains
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
     type(free_simulation_type), allocatable :: simulation
-    type(mechanism_type) :: taken
     type(plan_type) :: plan
     type(state_type) :: assembled
 
     call self%close()
-    allocate (simulation)
-    call mechanism%take(.false., taken, err)
-    if (.not. allocated(err)) call assemble_free_start(taken, plan, assembled, err)
-    if (.not. allocated(err)) call new_free_simulation(taken, plan, assembled, simulation, err, pictures=.true.)
+    allocate (simulation, self%model)
+    call mechanism%take(.false., self%model, err)
+    if (.not. allocated(err)) call assemble_free_start(self%model, plan, assembled, err)
+    if (.not. allocated(err)) call new_free_simulation(self%model, plan, assembled, simulation, err, pictures=.true.)
     if (.not. allocated(err)) call simulation%start(err, interruption)
     call mechanism%point_at(err)
     if (allocated(err)) then
@@ -117,13 +117,12 @@ contains
   !> Number of coordinates; 0 where no motion is started.
   integer function coordinates(self)
     class(motion_type), intent(in), target :: self   !< the motion
-    type(mechanism_type), pointer :: mechanism
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 
     coordinates = 0
     if (.not. allocated(self%simulation)) return
-    call self%simulation%present(mechanism, plan, state)
+    call self%simulation%present(plan, state)
     coordinates = plan%n_coordinates
   end function coordinates
 
@@ -156,13 +155,12 @@ contains
     class(motion_type), intent(in), target :: self   !< the motion
     integer, intent(in) :: k                 !< number of the coordinate
     integer, intent(in) :: order             !< of the derivative, 0 to 2
-    type(mechanism_type), pointer :: mechanism
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 
     derivative = ieee_value(derivative, ieee_quiet_nan)
     if (.not. allocated(self%simulation)) return
-    call self%simulation%present(mechanism, plan, state)
+    call self%simulation%present(plan, state)
     if (k < 1 .or. k > plan%n_coordinates) return
     select case (order)
     case (0)
@@ -182,9 +180,9 @@ contains
     real(wp), intent(out), optional :: position(3)         !< [m]
     real(wp), intent(out), optional :: velocity(3)         !< [m/s]
     real(wp), intent(out), optional :: acceleration(3)     !< [m/s^2]
-    type(mechanism_type), pointer :: mechanism
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
+    type(point_type), pointer :: points(:)
     real(wp) :: p(3), v(3), a(3)
     integer :: i
 
@@ -192,14 +190,15 @@ contains
     v = p
     a = p
     if (allocated(self%simulation)) then
-      call self%simulation%present(mechanism, plan, state)
-      do i = 1, size(mechanism%points)
-        if (mechanism%points(i)%name == name) exit
+      call self%simulation%present(plan, state)
+      points => self%model%mechanism%points
+      do i = 1, size(points)
+        if (points(i)%name == name) exit
       end do
-      if (i > size(mechanism%points)) then
+      if (i > size(points)) then
         call raise(err, exit_usage, 'the mechanism has no point '''//name//'''')
       else
-        call point_motion(plan, state, mechanism%points(i)%link, mechanism%points(i)%position, p, v, a)
+        call point_motion(plan, state, points(i)%link, points(i)%position, p, v, a)
       end if
     else
       call raise(err, exit_usage, 'a motion must be started before its points are known')
@@ -252,8 +251,10 @@ contains
   subroutine close_motion(self)
     class(motion_type), intent(inout) :: self   !< the motion
 
-    if (.not. allocated(self%simulation)) return
-    call self%simulation%close()
-    deallocate (self%simulation)
+    if (allocated(self%simulation)) then
+      call self%simulation%close()
+      deallocate (self%simulation)
+    end if
+    if (associated(self%model)) deallocate (self%model)
   end subroutine close_motion
 end module mech9_motion

@@ -5,7 +5,7 @@ module mech9_drive_reader
   use mech9_text, only: string_type, to_text, starts_with
   use mech9_spline, only: build_spline
   use mech9_explanation, only: explain
-  use mech9_structure, only: structure_type
+  use mech9_partition, only: partition_type, driven_coordinate
   use mech9_pair, only: pair_slot_type
   use mech9_drive, only: drive_slot_type
   use mech9_polynomial_drive, only: polynomial_drive_type
@@ -24,9 +24,10 @@ module mech9_drive_reader
 contains
 
   !> Make the drives of all sound groups.
-  subroutine read_drives(document, structure, pairs, angle_unit, start, parameters, needed, drives, diagnostics)
+  subroutine read_drives(document, partition, pairs, angle_unit, start, parameters, needed, drives, diagnostics)
     type(document_type), intent(in) :: document                   !< the data file as groups and items
-    type(structure_type), intent(in) :: structure                 !< the structure; without coordinates where it is not known
+    type(partition_type), intent(inout) :: partition              !< kinds of the coordinates, none where the structure is unknown;
+                                                                  !< those with drives become driven ones
     type(pair_slot_type), intent(in) :: pairs(:)  !< (M) pairs by coordinate; a slot is empty where its group has an error
     real(wp), intent(in) :: angle_unit                            !< unit of angles in the file [rad]
     real(wp), intent(in) :: start                                 !< time of the first result [s]
@@ -44,7 +45,7 @@ contains
       associate (group => document%groups(numbers(i)), slot => drives(n + 1))
         call read_drive(document, group, angle_unit, unit_of_coordinate(group, pairs, angle_unit), start, parameters, &
                         slot, diagnostics)
-        call check_coordinate(group, structure, diagnostics)
+        call check_coordinate(group, partition, diagnostics)
         if (.not. allocated(slot%drive)) cycle
         k = get_integer(group, 'coordinate')
         slot%drive%coordinate = k
@@ -53,10 +54,15 @@ contains
       end associate
     end do
     if (.not. needed) then
-      call refuse_all(document, structure, diagnostics)
+      call refuse_all(document, partition, diagnostics)
     else if (.not. has_unsound(document, 'drive')) then
-      call check_complete(document, structure, diagnostics)
+      call check_complete(document, partition, diagnostics)
     end if
+    do i = 1, n
+      k = drives(i)%drive%coordinate
+      if (k < 1 .or. k > size(partition%kind)) cycle
+      if (partition%is_independent(k)) partition%kind(k) = driven_coordinate
+    end do
   end subroutine read_drives
 
   !> The factor that turns a number of a group about a coordinate into rad or m.
@@ -74,18 +80,18 @@ contains
   end function unit_of_coordinate
 
   !> Report a drive of a coordinate that does not exist or is dependent.
-  pure subroutine check_coordinate(group, structure, diagnostics)
+  pure subroutine check_coordinate(group, partition, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(structure_type), intent(in) :: structure         !< links and coordinates of the mechanism; none where it is unknown
+    type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: k
 
-    if (structure%n_coordinates == 0) return
+    if (size(partition%kind) == 0) return
     k = get_integer(group, 'coordinate')
-    if (k > structure%n_coordinates) then
+    if (k > size(partition%kind)) then
       call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(k)//'; they are 1 to '// &
-                           to_text(structure%n_coordinates))
-    else if (.not. structure%independent(k)) then
+                           to_text(size(partition%kind)))
+    else if (.not. partition%is_independent(k)) then
       call diagnostics%add(span_of(group, 'coordinate', 1), 'coordinate '//to_text(k)//' is dependent and cannot be '// &
                            'driven; drive an independent one (see cq)')
     end if
@@ -93,9 +99,9 @@ contains
 
   !> Report the drives of independent coordinates where the motion follows from forces: to ignore them silently
   !> would give another motion than the one that the file describes.
-  pure subroutine refuse_all(document, structure, diagnostics)
+  pure subroutine refuse_all(document, partition, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    type(structure_type), intent(in) :: structure         !< the structure; without coordinates where it is not known
+    type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: numbers(:)
     integer :: i, k
@@ -103,8 +109,8 @@ contains
     numbers = groups_named(document, 'drive')
     do i = 1, size(numbers)
       k = get_integer(document%groups(numbers(i)), 'coordinate')
-      if (k < 1 .or. k > structure%n_coordinates) cycle
-      if (.not. structure%independent(k)) cycle
+      if (k < 1 .or. k > size(partition%kind)) cycle
+      if (.not. partition%is_independent(k)) cycle
       call diagnostics%add(document%groups(numbers(i))%span, 'in dynamics the independent coordinate '//to_text(k)// &
                            ' moves as the forces make it and cannot be driven; take this &drive away and give &initial '// &
                            'coordinate='//to_text(k)//', position=..., velocity=... /, or let mech9k compute the driven motion')
@@ -112,13 +118,13 @@ contains
   end subroutine refuse_all
 
   !> Report independent coordinates without a drive.
-  pure subroutine check_complete(document, structure, diagnostics)
+  pure subroutine check_complete(document, partition, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    type(structure_type), intent(in) :: structure         !< links and coordinates of the mechanism; none where it is unknown
+    type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: numbers(:), cq(:)
     type(span_type) :: span
-    logical :: driven(structure%n_coordinates)
+    logical :: driven(size(partition%kind))
     integer :: i, k
 
     driven = .false.
@@ -128,8 +134,8 @@ contains
       if (k <= size(driven)) driven(k) = .true.
     end do
     numbers = groups_named(document, 'structure')
-    do k = 1, structure%n_coordinates
-      if (driven(k) .or. .not. structure%independent(k)) cycle
+    do k = 1, size(partition%kind)
+      if (driven(k) .or. .not. partition%is_independent(k)) cycle
       if (size(numbers) > 0) then
         cq = get_integers(document%groups(numbers(1)), 'cq')
         span = span_of(document%groups(numbers(1)), 'cq', findloc(cq, k, dim=1))

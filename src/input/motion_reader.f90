@@ -2,22 +2,17 @@
 module mech9_motion_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
-  use mech9_structure, only: structure_type
+  use mech9_partition, only: partition_type
   use mech9_pair, only: pair_slot_type
   use mech9_point, only: point_type
+  use mech9_problem, only: initial_type
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_reals, get_text, span_of
   use mech9_drive_reader, only: unit_of_coordinate
   use mech9_diagnostics, only: diagnostics_type, printable
   implicit none
   private
-  public :: initial_type, read_initial, read_points, check_link
-
-  !> Coordinates and rates at the start [rad, m, per s], and whether they were given.
-  type :: initial_type
-    real(wp), allocatable :: position(:), velocity(:)
-    logical, allocatable :: position_given(:), velocity_given(:)
-  end type initial_type
+  public :: read_initial, read_points, check_link
 
   character(len=*), parameter :: name_letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
   integer, parameter :: longest_name = 40
@@ -25,31 +20,31 @@ module mech9_motion_reader
 contains
 
   !> All groups &initial: positions and velocities that are given, in rad and m.
-  pure subroutine read_initial(document, structure, pairs, angle_unit, initial, diagnostics)
+  pure subroutine read_initial(document, partition, pairs, angle_unit, initial, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    type(structure_type), intent(in) :: structure         !< the structure; without coordinates where it is not known
+    type(partition_type), intent(in) :: partition         !< the kinds of the coordinates; none where the structure is unknown
     type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     type(initial_type), intent(out) :: initial            !< positions and velocities at the start; zero where not given
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: numbers(:)
     real(wp) :: unit
-    integer :: i, k
+    integer :: i, k, m
 
-    allocate (initial%position(structure%n_coordinates), initial%velocity(structure%n_coordinates), source=0.0_wp)
-    allocate (initial%position_given(structure%n_coordinates), &
-              initial%velocity_given(structure%n_coordinates), source=.false.)
-    if (structure%n_coordinates == 0) return
+    m = size(partition%kind)
+    allocate (initial%position(m), initial%velocity(m), source=0.0_wp)
+    allocate (initial%position_given(m), initial%velocity_given(m), source=.false.)
+    if (m == 0) return
     numbers = groups_named(document, 'initial')
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)))
         k = get_integer(group, 'coordinate')
-        if (k > structure%n_coordinates) then
+        if (k > m) then
           call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(k)// &
-                               '; they are 1 to '//to_text(structure%n_coordinates))
+                               '; they are 1 to '//to_text(m))
           cycle
         end if
-        if (has_name(group, 'velocity') .and. .not. structure%independent(k)) &
+        if (has_name(group, 'velocity') .and. .not. partition%is_independent(k)) &
           call diagnostics%add(span_of(group, 'velocity'), 'coordinate '//to_text(k)//' is dependent: its velocity '// &
                                'follows from the others; leave it out')
         unit = unit_of_coordinate(group, pairs, angle_unit)

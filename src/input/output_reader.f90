@@ -1,7 +1,7 @@
 !> Settings of the group &output, checked.
 module mech9_output_reader
   use mech9_text, only: to_text
-  use mech9_settings, only: output_settings_type
+  use mech9_request, only: output_settings_type
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: group_or_empty, get_integer, get_integers, get_logical, get_text, span_of
   use mech9_diagnostics, only: diagnostics_type

@@ -2,23 +2,25 @@
 module mech9_reader
   use mech9_kinds, only: wp, radians_per_degree
   use mech9_structure, only: structure_type
-  use mech9_structural_vectors, only: structural_vectors_type
-  use mech9_settings, only: time_grid_type
+  use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_problem, only: problem_type
+  use mech9_request, only: request_type, time_grid_type
+  use mech9_model, only: model_type
   use mech9_document, only: document_type, group_type
   use mech9_checker, only: check_document
   use mech9_lookup, only: groups_named, group_or_empty, has_group, has_name, get_integer, get_real, get_reals, get_text, span_of
   use mech9_structure_reader, only: read_structure
   use mech9_pair_reader, only: read_pairs
   use mech9_drive_reader, only: read_drives
-  use mech9_motion_reader, only: initial_type, read_initial, read_points
+  use mech9_motion_reader, only: read_initial, read_points
   use mech9_body_reader, only: read_bodies, read_gravity
   use mech9_load_reader, only: read_loads
   use mech9_output_reader, only: read_output
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_structure_only, read_mechanism
+  public :: read_structure_only, read_model
 
   !> Largest data_tolerance [rad, parts of the mechanism's size]; a chain that stays open by more is not closed.
   real(wp), parameter :: largest_data_tolerance = 1.0e-3_wp
@@ -27,10 +29,10 @@ contains
 
   !> The structure alone. The mechanism's geometry need not be given; whatever is given is checked
   !> against the grammar. Of use only where the diagnostics are without errors afterwards.
-  pure subroutine read_structure_only(document, structure, vectors, diagnostics)
+  pure subroutine read_structure_only(document, structure, partition, diagnostics)
     type(document_type), intent(in) :: document            !< the data file as groups and items
     type(structure_type), intent(out) :: structure         !< links and coordinates; of use only without errors
-    type(structural_vectors_type), intent(out) :: vectors  !< structural vectors; of use only without errors
+    type(partition_type), intent(out) :: partition         !< kinds of coordinates and their order; of use only without errors
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(document_type) :: checked
     logical :: known
@@ -38,15 +40,15 @@ contains
     if (size(document%groups) == 0) return          ! the reason was reported when the file was read
     checked = document
     call check_document(checked, diagnostics)
-    call read_structure(checked, structure, vectors, known, diagnostics)
+    call read_structure(checked, structure, partition, known, diagnostics)
   end subroutine read_structure_only
 
-  !> The mechanism, in m, rad, kg, s. All errors are collected in the diagnostics, which may hold some from
-  !> reading the document already; the mechanism is of use only where there are none.
-  subroutine read_mechanism(document, needs_drives, mechanism, diagnostics)
+  !> The model, in m, rad, kg, s. All errors are collected in the diagnostics, which may hold some from
+  !> reading the document already; the model is of use only where there are none.
+  subroutine read_model(document, needs_drives, model, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
-    type(mechanism_type), intent(out) :: mechanism        !< the mechanism
+    type(model_type), intent(out) :: model                !< the mechanism, its problem, and the request for results
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(document_type) :: checked
     logical :: known
@@ -54,41 +56,40 @@ contains
     if (size(document%groups) == 0) return          ! the reason was reported when the file was read
     checked = document
     call check_document(checked, diagnostics)
-    call read_settings(checked, mechanism, diagnostics)
-    call read_structure(checked, mechanism%structure, mechanism%vectors, known, diagnostics)
-    if (.not. known) call forget(mechanism%structure)
-    call read_parts(checked, needs_drives, mechanism, diagnostics)
-  end subroutine read_mechanism
+    call read_settings(checked, model%mechanism, diagnostics)
+    call read_request(checked, model%request, diagnostics)
+    call read_structure(checked, model%mechanism%structure, model%problem%partition, known, diagnostics)
+    if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
+    call read_parts(checked, needs_drives, model%mechanism, model%problem, model%request, diagnostics)
+  end subroutine read_model
 
-  !> Set a structure to the form that means unknown: no links and no coordinates.
-  pure subroutine forget(structure)
+  !> Set a structure and its partition to the form that means unknown: no links and no coordinates.
+  pure subroutine forget(structure, partition)
     type(structure_type), intent(out) :: structure  !< gets no links and no coordinates
+    type(partition_type), intent(out) :: partition  !< gets no coordinates
 
-    allocate (structure%links(2, 0), structure%independent(0))
+    allocate (structure%links(2, 0), partition%kind(0))
   end subroutine forget
 
   !> Read the groups whose numbers refer to the structure.
-  subroutine read_parts(document, needs_drives, mechanism, diagnostics)
+  subroutine read_parts(document, needs_drives, mechanism, problem, request, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     logical, intent(in) :: needs_drives                   !< whether independent coordinates must have drives (mech9k)
-    type(mechanism_type), intent(inout) :: mechanism      !< the mechanism
+    type(mechanism_type), intent(inout) :: mechanism      !< the mechanism, with its structure
+    type(problem_type), intent(inout) :: problem          !< the problem, with its partition
+    type(request_type), intent(inout) :: request          !< the request for results, with its times
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    type(initial_type) :: initial
 
     associate (m => mechanism, n_links => mechanism%structure%n_links, n_coordinates => mechanism%structure%n_coordinates)
       call read_pairs(document, n_coordinates, m%angle_unit, m%parameters, m%pairs, diagnostics)
-      call read_initial(document, m%structure, m%pairs, m%angle_unit, initial, diagnostics)
-      call move_alloc(initial%position, m%initial_position)
-      call move_alloc(initial%velocity, m%initial_velocity)
-      call move_alloc(initial%position_given, m%position_given)
-      call move_alloc(initial%velocity_given, m%velocity_given)
+      call read_initial(document, problem%partition, m%pairs, m%angle_unit, problem%initial, diagnostics)
       call read_points(document, n_links, m%points, diagnostics)
-      call read_drives(document, m%structure, m%pairs, m%angle_unit, m%time%start, m%parameters, needs_drives, &
-                       m%drives, diagnostics)
+      call read_drives(document, problem%partition, m%pairs, m%angle_unit, request%time%start, m%parameters, needs_drives, &
+                       problem%drives, diagnostics)
       call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
       call read_loads(document, n_links, m%pairs, m%angle_unit, m%parameters, m%loads, diagnostics)
-      call read_output(document, n_coordinates, m%output, diagnostics)
+      call read_output(document, n_coordinates, request%output, diagnostics)
       call check_pairs_given(document, m, diagnostics)
     end associate
   end subroutine read_parts
@@ -106,7 +107,8 @@ contains
                          '(--structure shows the structure alone)')
   end subroutine check_pairs_given
 
-  !> Read the settings that do not refer to the structure: title, units, time, tolerances and methods.
+  !> Read the settings of the mechanism that do not refer to its structure: title, unit of angles, tolerance, and numbers of
+  !> the user.
   pure subroutine read_settings(document, mechanism, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(mechanism_type), intent(inout) :: mechanism      !< the mechanism
@@ -122,13 +124,22 @@ contains
                            'are not closed')
     group = group_or_empty(document, 'user')
     mechanism%parameters = get_reals(group, 'parameters')
-    group = group_or_empty(document, 'solver')
-    mechanism%solver%method = get_text(group, 'method')
-    mechanism%solver%relative_tolerance = get_real(group, 'relative_tolerance')
-    mechanism%solver%absolute_tolerance = get_real(group, 'absolute_tolerance')
-    mechanism%solver%maximum_steps = get_integer(group, 'maximum_steps')
-    call read_time(group_or_empty(document, 'time'), mechanism%time, diagnostics)
   end subroutine read_settings
+
+  !> Read the times of the results, and the settings of the solver.
+  pure subroutine read_request(document, request, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(request_type), intent(inout) :: request          !< the request for results
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(group_type) :: group
+
+    group = group_or_empty(document, 'solver')
+    request%solver%method = get_text(group, 'method')
+    request%solver%relative_tolerance = get_real(group, 'relative_tolerance')
+    request%solver%absolute_tolerance = get_real(group, 'absolute_tolerance')
+    request%solver%maximum_steps = get_integer(group, 'maximum_steps')
+    call read_time(group_or_empty(document, 'time'), request%time, diagnostics)
+  end subroutine read_request
 
   !> Read the times of the results.
   pure subroutine read_time(group, time, diagnostics)

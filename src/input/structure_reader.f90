@@ -8,6 +8,7 @@ module mech9_structure_reader
   use mech9_structure, only: structure_type, structure_from_pairs, structure_from_matrix, check_pair_links
   use mech9_structural_vectors, only: structural_vectors_type, structure_from_vectors
   use mech9_transformation, only: transform
+  use mech9_partition, only: partition_type, free_coordinate, dependent_coordinate
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_unsound, has_name, get_integer, get_integers, span_of, find_item
   use mech9_matrix_items, only: matrix_type, read_matrix
@@ -33,13 +34,14 @@ contains
 
   !> Read the structure and the order of computation; where the file does not give the order, it is computed.
   !> `known` is false where an error was reported that leaves the structure unknown.
-  pure subroutine read_structure(document, structure, vectors, known, diagnostics)
+  pure subroutine read_structure(document, structure, partition, known, diagnostics)
     type(document_type), intent(in) :: document            !< the checked document
-    type(structure_type), intent(out) :: structure         !< links of each coordinate, and which are independent
-    type(structural_vectors_type), intent(out) :: vectors  !< structural vectors: links in the order of computation, and so on
+    type(structure_type), intent(out) :: structure         !< links of each coordinate
+    type(partition_type), intent(out) :: partition         !< kinds of the coordinates, none driven, and the order of computation
     logical, intent(out) :: known                          !< whether no error leaves the structure unknown
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(source_data_type) :: data
+    logical, allocatable :: independent(:)
     integer :: found
     logical :: has_vectors
 
@@ -53,17 +55,19 @@ contains
       call diagnostics%add(data%structure%span, 'the independent coordinates are missing: give &structure cq = ... '// &
                            '(or nrg, nws and rdw)')
     if (has_name(data%structure, 'c')) then
-      call from_matrix(document, data, structure, diagnostics)
+      call from_matrix(document, data, structure, independent, diagnostics)
     else if (.not. has_vectors) then
-      call from_pairs(document, data, structure, known, diagnostics)
+      call from_pairs(document, data, structure, independent, known, diagnostics)
       if (.not. known) return
     end if
-    if (has_vectors) call from_vectors(document, data, structure, vectors, diagnostics)
+    if (has_vectors) call from_vectors(document, data, structure, independent, partition%vectors, diagnostics)
     known = diagnostics%count == found
     if (.not. known) return
     call compare_with_pairs(document, data, structure, diagnostics)
     known = diagnostics%count == found
-    if (known .and. .not. has_vectors) call transform(structure, vectors)
+    if (.not. known) return
+    if (.not. has_vectors) call transform(structure, independent, partition%vectors)
+    partition%kind = merge(free_coordinate, dependent_coordinate, independent)
   end subroutine read_structure
 
   !> Collect the data on the structure from all groups.
@@ -90,10 +94,11 @@ contains
   end subroutine gather
 
   !> Make the structure from the coincidence matrix.
-  pure subroutine from_matrix(document, data, structure, diagnostics)
+  pure subroutine from_matrix(document, data, structure, independent, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
-    type(structure_type), intent(inout) :: structure      !< links of each coordinate, and which are independent
+    type(structure_type), intent(inout) :: structure      !< links of each coordinate
+    logical, allocatable, intent(inout) :: independent(:) !< (M) the coordinate is independent
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: m, n
@@ -109,15 +114,16 @@ contains
                            to_text(n*(n - 1)/2)//' coordinates, not '//to_text(m), exit_structure)
       return
     end if
-    call structure_from_matrix(data%matrix%c, m, cq_of(data), structure, findings)
+    call structure_from_matrix(data%matrix%c, m, cq_of(data), structure, independent, findings)
     call report(findings, document, data, diagnostics)
   end subroutine from_matrix
 
   !> Make the structure from the links of the pairs.
-  pure subroutine from_pairs(document, data, structure, known, diagnostics)
+  pure subroutine from_pairs(document, data, structure, independent, known, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
-    type(structure_type), intent(inout) :: structure      !< links of each coordinate, and which are independent
+    type(structure_type), intent(inout) :: structure      !< links of each coordinate
+    logical, allocatable, intent(inout) :: independent(:) !< (M) the coordinate is independent
     logical, intent(out) :: known                         !< whether no error leaves the structure unknown
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
@@ -135,19 +141,21 @@ contains
     if (.not. data%all_pairs .or. any(data%group_of_pair == 0)) return
     n = data%n_links
     if (n == 0) n = min(maxval(data%links), size(data%links, 2) + 1)
-    call structure_from_pairs(n, data%links, cq_of(data), structure, findings)
+    call structure_from_pairs(n, data%links, cq_of(data), structure, independent, findings)
     call report(findings, document, data, diagnostics)
     known = size(findings) == 0
   end subroutine from_pairs
 
   !> Make the structure from the structural vectors, and compare it with the other data.
-  pure subroutine from_vectors(document, data, structure, vectors, diagnostics)
+  pure subroutine from_vectors(document, data, structure, independent, vectors, diagnostics)
     type(document_type), intent(in) :: document              !< the data file as groups and items
     type(source_data_type), intent(in) :: data               !< the data on the structure, gathered from all groups
     type(structure_type), intent(inout) :: structure         !< the structure by the first set, where it is given
+    logical, allocatable, intent(inout) :: independent(:)    !< (M) the coordinate is independent
     type(structural_vectors_type), intent(inout) :: vectors  !< structural vectors: links in the order of computation, and so on
     type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
     type(structure_type) :: second
+    logical, allocatable :: by_rdw(:)
     type(finding_type), allocatable :: findings(:)
     integer, allocatable :: n, m      ! not allocated where not given
     logical :: has_first
@@ -159,15 +167,16 @@ contains
     vectors%nrw = get_integers(data%structure, 'nrw')
     if (data%n_links > 0) n = data%n_links
     if (data%n_coordinates > 0) m = data%n_coordinates
-    call structure_from_vectors(vectors, second, findings, n, m)
+    call structure_from_vectors(vectors, second, by_rdw, findings, n, m)
     call report(findings, document, data, diagnostics)
     if (size(findings) > 0) return
     if (has_first) then
-      call compare_sets(data, structure, second, diagnostics)
+      call compare_sets(data, structure, second, by_rdw, diagnostics)
     else
-      call compare_independent(data, cq_of(data), second, diagnostics)
+      call compare_independent(data, cq_of(data), by_rdw, diagnostics)
       structure = second
     end if
+    independent = by_rdw
   end subroutine from_vectors
 
   !> The independent coordinates; none where cq is not given.
@@ -179,10 +188,11 @@ contains
   end function cq_of
 
   !> First and second set must describe the same structure.
-  pure subroutine compare_sets(data, first, second, diagnostics)
+  pure subroutine compare_sets(data, first, second, by_rdw, diagnostics)
     type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
     type(structure_type), intent(in) :: first             !< the structure by the matrix c or the pairs
     type(structure_type), intent(in) :: second            !< the structure by nrg and nws
+    logical, intent(in) :: by_rdw(:)                      !< (M) the coordinate is independent by rdw
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer :: i
@@ -198,7 +208,7 @@ contains
       call diagnostics%add(span_of(data%structure, 'nws', findloc_value(data, findings(i)%index(1))), &
                            'first and second set disagree: '//findings(i)%message, exit_structure)
     end do
-    if (has_name(data%structure, 'cq')) call compare_independent(data, cq_of(data), second, diagnostics)
+    if (has_name(data%structure, 'cq')) call compare_independent(data, cq_of(data), by_rdw, diagnostics)
   end subroutine compare_sets
 
   !> The position of a coordinate in nws.
@@ -210,26 +220,26 @@ contains
   end function findloc_value
 
   !> Report contradictions between cq and the second set about independent coordinates.
-  pure subroutine compare_independent(data, cq, second, diagnostics)
+  pure subroutine compare_independent(data, cq, by_rdw, diagnostics)
     type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
     integer, intent(in) :: cq(:)                          !< numbers of the independent coordinates
-    type(structure_type), intent(in) :: second            !< the structure by nrg and nws
+    logical, intent(in) :: by_rdw(:)                      !< (M) the coordinate is independent by rdw
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer :: k
     logical :: in_cq
 
     if (.not. has_name(data%structure, 'cq')) return
-    do k = 1, second%n_coordinates
+    do k = 1, size(by_rdw)
       in_cq = any(cq == k)
-      if (in_cq .eqv. second%independent(k)) cycle
+      if (in_cq .eqv. by_rdw(k)) cycle
       call diagnostics%add(span_of(data%structure, 'rdw', findloc_value(data, k)), 'cq and rdw disagree about coordinate '// &
                            to_text(k)//': by cq it is '//trim(kind_word(in_cq))//', by rdw '// &
                            trim(kind_word(.not. in_cq)), exit_structure)
     end do
     do k = 1, size(cq)
-      if (cq(k) > second%n_coordinates) &
+      if (cq(k) > size(by_rdw)) &
         call diagnostics%add(span_of(data%structure, 'cq', k), 'cq names coordinate '//to_text(cq(k))// &
-                             '; the coordinates are 1 to '//to_text(second%n_coordinates), exit_structure)
+                             '; the coordinates are 1 to '//to_text(size(by_rdw)), exit_structure)
     end do
   end subroutine compare_independent
 
@@ -238,7 +248,7 @@ contains
   pure subroutine compare_with_pairs(document, data, structure, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
-    type(structure_type), intent(in) :: structure         !< links of each coordinate, and which are independent
+    type(structure_type), intent(in) :: structure         !< links of each coordinate
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
     integer, allocatable :: links(:, :)

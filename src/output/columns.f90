@@ -2,6 +2,7 @@
 module mech9_columns
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
+  use mech9_request, only: output_settings_type
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
@@ -36,8 +37,9 @@ module mech9_columns
 contains
 
   !> The columns that every kinematic run records.
-  function kinematic_columns(mechanism) result(columns)
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+  function kinematic_columns(mechanism, output) result(columns)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(output_settings_type), intent(in) :: output    !< settings of the results
     type(columns_type) :: columns
     character(len=4), parameter :: orders(3) = ['q   ', 'dq  ', 'ddq ']
     character(len=5), parameter :: per_time(3) = ['     ', '/s   ', '/s^2 ']
@@ -45,13 +47,13 @@ contains
     integer :: i, k, n, order
 
     n = size(mechanism%pairs)
-    allocate (columns%coordinates, source=pack([(k, k=1, n)], mechanism%output%recorded(n)))
-    columns%derivatives = mechanism%output%derivatives
+    allocate (columns%coordinates, source=pack([(k, k=1, n)], output%recorded(n)))
+    columns%derivatives = output%derivatives
     n = size(columns%coordinates)
     columns%motion = 1 + (columns%derivatives + 1)*(n + 3*size(mechanism%points))
     allocate (columns%names(columns%motion), columns%units(columns%motion), columns%long_names(columns%motion))
     allocate (columns%factors(n), source=1.0_wp)
-    if (mechanism%output%poses) columns%poses = poses_of(mechanism)
+    if (output%poses) columns%poses = poses_of(mechanism)
     call columns%append('t', 's')
     do order = 1, columns%derivatives + 1
       do i = 1, n

@@ -4,6 +4,7 @@ module mech9_hdf5_sink
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_clock, only: pacer_type
+  use mech9_request, only: request_type
   use mech9_mechanism, only: mechanism_type
   use mech9_poses, only: poses_type
   use mech9_columns, only: columns_type
@@ -43,10 +44,11 @@ module mech9_hdf5_sink
 contains
 
   !> Create the file with all its quantities, without rows.
-  subroutine open_sink(self, path, mechanism, columns, err)
+  subroutine open_sink(self, path, mechanism, request, columns, err)
     class(hdf5_sink_type), intent(inout) :: self       !< the HDF5 sink
     character(len=*), intent(in) :: path               !< path of the file
     type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(request_type), intent(in) :: request          !< the times of the rows, and the compression
     type(columns_type), intent(in) :: columns          !< columns of the rows to come
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: scalars
@@ -55,8 +57,8 @@ contains
     if (allocated(err)) return
     scalars = columns%count - columns%motion
     self%takes_poses = .true.
-    call self%series%start(quantities_of_motion + scalars, columns%width(), mechanism%time%intervals + 1, &
-                           mechanism%output%compression)
+    call self%series%start(quantities_of_motion + scalars, columns%width(), request%time%intervals + 1, &
+                           request%output%compression)
     call add_quantities(self, mechanism, columns, scalars)
     if (columns%poses%n_links > 0) call add_poses(self, columns)
     call self%series%create(self%file)

@@ -4,8 +4,8 @@ module mech9_choice_check
   use mech9_error, only: error_type, exit_structure
   use mech9_document, only: document_type, group_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_reader, only: read_mechanism
-  use mech9_mechanism, only: mechanism_type
+  use mech9_reader, only: read_model
+  use mech9_model, only: model_type
   use mech9_state, only: state_type
   use mech9_plan, only: plan_type
   use mech9_planning, only: make_plan
@@ -23,7 +23,7 @@ contains
     type(diagnostics_type), intent(out) :: wrong       !< without an error where nothing can be said against it
     type(diagnostics_type) :: of_data
     type(document_type) :: bare
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
@@ -31,9 +31,9 @@ contains
     wrong%sources = sources_of%sources
     of_data%sources = sources_of%sources
     call leave_drives_out(document, bare)
-    call read_mechanism(bare, .false., mechanism, of_data)
+    call read_model(bare, .false., model, of_data)
     if (of_data%failed()) return
-    call make_plan(mechanism, mechanism%initial_position, plan, start, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err)
     if (.not. allocated(err)) return
     if (err%code == exit_structure) call wrong%add_error(err)
   end subroutine judge_choice_of

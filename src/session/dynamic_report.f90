@@ -7,7 +7,7 @@ module mech9_dynamic_report
   use mech9_facts, only: facts_type
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_recording, only: recording_outcome_type
   use mech9_integration_methods, only: integration_methods
@@ -38,7 +38,7 @@ contains
       to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
       to_text(counts%rate_evaluations)//' evaluations'//each(outcome%seconds_solving, int(counts%rate_evaluations))
     write (unit, '(a)', advance='no') 'largest closure '//to_text(simulation%worst_closure, 3)//' m'
-    if (simulation%motion%system%mechanism%output%energies) &
+    if (simulation%motion%system%model%request%output%energies) &
       write (unit, '(a)', advance='no') '; largest change of energy '//to_text(simulation%largest_energy_change, 3)//' J'
     write (unit, '(a)') ''
     if (simulation%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
@@ -55,7 +55,7 @@ contains
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
     character(len=:), allocatable :: name
 
-    name = simulation%motion%system%mechanism%solver%method
+    name = simulation%motion%system%model%request%solver%method
     if (name == '') name = trim(integration_methods(1)%name)
   end function method_of
 
@@ -76,8 +76,8 @@ contains
   end subroutine print_coefficients
 
   !> The facts about a run, for reports that programs read.
-  subroutine dynamic_facts(mechanism, plan, outcome, simulation, facts)
-    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+  subroutine dynamic_facts(model, plan, outcome, simulation, facts)
+    type(model_type), intent(in) :: model                 !< the model
     type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
@@ -88,8 +88,8 @@ contains
     counts = simulation%motion%statistics()
     call facts%add('outputs', outcome%rows, 'outputs computed')
     call facts%add('method', method_of(simulation), 'method of integration')
-    call facts%add('relative_tolerance', mechanism%solver%relative_tolerance, 'relative error allowed in a step', '1')
-    call facts%add('absolute_tolerance', mechanism%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
+    call facts%add('relative_tolerance', model%request%solver%relative_tolerance, 'relative error allowed in a step', '1')
+    call facts%add('absolute_tolerance', model%request%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
     call facts%add('steps', counts%steps, 'steps of the integrator')
     call facts%add('evaluations', counts%rate_evaluations, 'evaluations of the accelerations')
     call facts%add('jacobian_evaluations', counts%jacobian_evaluations, &
@@ -100,7 +100,7 @@ contains
     call facts%add('newton_iterations', simulation%motion%iterations(), 'Newton iterations')
     call facts%add('largest_closure', simulation%worst_closure, 'largest error of a closed chain', 'm')
     call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
-    if (mechanism%output%energies) then
+    if (model%request%output%energies) then
       call facts%add('energy_at_start', simulation%energy_at_start, 'kinetic and potential energy at the start', 'J')
       call facts%add('largest_energy_change', simulation%largest_energy_change, 'largest change of that energy', 'J')
     end if
@@ -121,9 +121,9 @@ contains
   end subroutine dynamic_facts
 
   !> Write the report as JSON, with structure, coefficients of motion and events.
-  subroutine save_dynamic_report(path, mechanism, plan, table_path, diagnostics, outcome, simulation, err)
+  subroutine save_dynamic_report(path, model, plan, table_path, diagnostics, outcome, simulation, err)
     character(len=*), intent(in) :: path                      !< of the report
-    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(model_type), intent(in) :: model                 !< the model
     type(plan_type), intent(in) :: plan                       !< at the start
     character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
     type(diagnostics_type), intent(in) :: diagnostics         !< what the program is going to say and answer
@@ -133,12 +133,12 @@ contains
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call begin_report(json, 'mech9d', mechanism, diagnostics, table_path)
-    call dynamic_facts(mechanism, plan, outcome, simulation, facts)
+    call begin_report(json, 'mech9d', model, diagnostics, table_path)
+    call dynamic_facts(model, plan, outcome, simulation, facts)
     call facts%to_json(json)
     call add_coefficients(json, plan, simulation%coefficients)
     call add_events(json, simulation)
-    call add_structure(json, mechanism, plan)
+    call add_structure(json, model, plan)
     call json%end_object()
     call json%save(path, err)
   end subroutine save_dynamic_report

@@ -5,7 +5,7 @@ module mech9_dynamic_task
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -41,21 +41,21 @@ contains
   end function dynamic_task
 
   !> Make the plan and assemble the mechanism at the start.
-  subroutine assemble(self, mechanism, plan, state, err)
+  subroutine assemble(self, model, plan, state, err)
     class(dynamic_task_type), intent(in) :: self        !< the dynamic task
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call assemble_free_start(mechanism, plan, state, err)
+    call assemble_free_start(model, plan, state, err)
   end subroutine assemble
 
   !> Make the plan, assemble the mechanism, compute its state at the start, and run unless only an answer is requested.
-  subroutine work(self, options, mechanism, diagnostics, reported, kept)
+  subroutine work(self, options, model, diagnostics, reported, kept)
     class(dynamic_task_type), intent(in) :: self            !< the dynamic task
     type(command_line_type), intent(in) :: options          !< the command line
-    type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+    type(model_type), intent(in), target :: model               !< the model
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
@@ -66,41 +66,41 @@ contains
     type(error_type), allocatable :: err
 
     reported = .false.
-    call read_picture_requests(options, mechanism, self%program_name, pictures, err)
-    if (.not. allocated(err)) call assemble_free_start(mechanism, plan, start, err)
-    if (.not. allocated(err)) call new_free_simulation(mechanism, plan, start, simulation, err, pictures%any_wanted())
+    call read_picture_requests(options, model, self%program_name, pictures, err)
+    if (.not. allocated(err)) call assemble_free_start(model, plan, start, err)
+    if (.not. allocated(err)) call new_free_simulation(model, plan, start, simulation, err, pictures%any_wanted())
     if (allocated(err)) then
-      if (options%has('check')) call print_given(mechanism, .true.)
+      if (options%has('check')) call print_given(model, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      call print_check(options, pictures, mechanism, plan, simulation%requested, start, diagnostics)
+      call print_check(options, pictures, model, plan, simulation%requested, start, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, simulation%coefficients)
-      if (options%has('check')) call check_motion(mechanism, simulation, err)
+      if (options%has('check')) call check_motion(model, simulation, err)
       if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
+      call carry_out(options, pictures, model, plan, simulation, diagnostics, reported, kept)
     end if
     call simulation%close()
   end subroutine work
 
   !> Fail in a check where a run would fail at its start.
-  subroutine check_motion(mechanism, simulation, err)
-    type(mechanism_type), intent(in) :: mechanism                     !< the mechanism
+  subroutine check_motion(model, simulation, err)
+    type(model_type), intent(in), target :: model                         !< the model
     type(free_simulation_type), intent(inout), target :: simulation   !< is started
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
     type(row_source_type) :: source
     real(wp), allocatable :: row(:)
 
-    call new_row_source('mech9d', mechanism, simulation, source)
+    call new_row_source('mech9d', simulation, source)
     allocate (row(source%columns%width()))
-    call source%row_at(mechanism%time%start, row, err)
+    call source%row_at(model%request%time%start, row, err)
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, plan, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
-    type(mechanism_type), intent(in) :: mechanism                     !< the mechanism
+    type(model_type), intent(in), target :: model                         !< the model
     type(plan_type), intent(in) :: plan                               !< the plan of the mechanism
     type(free_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics              !< gets what is wrong
@@ -114,23 +114,23 @@ contains
     type(error_type), allocatable :: err
     logical :: ready
 
-    call new_row_source('mech9d', mechanism, simulation, source)
-    call begin_run(options, pictures, mechanism, plan, simulation%requested, source, results, diagnostics, ready)
+    call new_row_source('mech9d', simulation, source)
+    call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return
-    call dynamic_facts(mechanism, plan, outcome, simulation, facts)
+    call dynamic_facts(model, plan, outcome, simulation, facts)
     call results%write_facts(facts)
     hdf5 => results%hdf5()
     if (associated(hdf5)) call write_dynamics(hdf5, plan, simulation)
-    call record(source, mechanism, results, options%has('quiet'), outcome, err, kept)
+    call record(source, model, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) call print_dynamic_report(error_unit, results%table_path, outcome, simulation)
     if (allocated(err)) call diagnostics%add_error(err)
-    call dynamic_facts(mechanism, plan, outcome, simulation, facts)
+    call dynamic_facts(model, plan, outcome, simulation, facts)
     call results%write_facts(facts, diagnostics%code())
     if (associated(hdf5)) call write_events(hdf5, simulation)
-    call end_run(options, pictures, mechanism, source, results, diagnostics)
+    call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
-    call save_dynamic_report(options%argument('report'), mechanism, plan, results%table_path, diagnostics, &
+    call save_dynamic_report(options%argument('report'), model, plan, results%table_path, diagnostics, &
                              outcome, simulation, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

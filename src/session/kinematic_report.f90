@@ -6,7 +6,7 @@ module mech9_kinematic_report
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_block_solver, only: work_count_type, work_of
   use mech9_driven_motion, only: driven_motion_type
@@ -20,9 +20,9 @@ module mech9_kinematic_report
 contains
 
   !> The short report of a run.
-  subroutine print_kinematic_report(unit, mechanism, plan, table_path, outcome, driven)
+  subroutine print_kinematic_report(unit, model, plan, table_path, outcome, driven)
     integer, intent(in) :: unit                           !< the output unit
-    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(model_type), intent(in) :: model             !< the model
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
@@ -41,8 +41,8 @@ contains
     if (driven%steps >= outcome%rows) write (unit, '(a)') to_text(driven%steps)//' steps to keep to the branch, and '// &
       to_text(driven%halvings)//' that were too long'
     calls = 0
-    do k = 1, size(mechanism%pairs)
-      if (mechanism%pairs(k)%pair%user_calls() > 1) calls = calls + mechanism%pairs(k)%pair%user_calls()
+    do k = 1, size(model%mechanism%pairs)
+      if (model%mechanism%pairs(k)%pair%user_calls() > 1) calls = calls + model%mechanism%pairs(k)%pair%user_calls()
     end do
     if (calls > 0) write (unit, '(a)') 'user pairs in plain values: '//to_text(calls)// &
       ' calls or more for each evaluation; in Taylor arithmetic it would be one a pair'
@@ -86,9 +86,9 @@ contains
   end subroutine kinematic_facts
 
   !> Write the report as JSON, with the structure.
-  subroutine save_kinematic_report(path, mechanism, plan, table_path, diagnostics, outcome, driven, err)
+  subroutine save_kinematic_report(path, model, plan, table_path, diagnostics, outcome, driven, err)
     character(len=*), intent(in) :: path                  !< of the report
-    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(model_type), intent(in) :: model             !< the model
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
     type(diagnostics_type), intent(in) :: diagnostics     !< what the program is going to say and answer
@@ -98,10 +98,10 @@ contains
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call begin_report(json, 'mech9k', mechanism, diagnostics, table_path)
+    call begin_report(json, 'mech9k', model, diagnostics, table_path)
     call kinematic_facts(plan, outcome, driven, facts)
     call facts%to_json(json)
-    call add_structure(json, mechanism, plan)
+    call add_structure(json, model, plan)
     call json%end_object()
     call json%save(path, err)
   end subroutine save_kinematic_report

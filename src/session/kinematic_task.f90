@@ -5,7 +5,7 @@ module mech9_kinematic_task
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -42,21 +42,21 @@ contains
   end function kinematic_task
 
   !> Make the plan and assemble the mechanism at the start.
-  subroutine assemble(self, mechanism, plan, state, err)
+  subroutine assemble(self, model, plan, state, err)
     class(kinematic_task_type), intent(in) :: self      !< the kinematic task
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call assemble_driven_start(mechanism, plan, state, err)
+    call assemble_driven_start(model, plan, state, err)
   end subroutine assemble
 
   !> Make the plan, assemble the mechanism, and run unless only an answer is requested.
-  subroutine work(self, options, mechanism, diagnostics, reported, kept)
+  subroutine work(self, options, model, diagnostics, reported, kept)
     class(kinematic_task_type), intent(in) :: self          !< the kinematic task
     type(command_line_type), intent(in) :: options          !< the command line
-    type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+    type(model_type), intent(in), target :: model               !< the model
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
@@ -67,49 +67,50 @@ contains
     type(error_type), allocatable :: err
 
     reported = .false.
-    call read_picture_requests(options, mechanism, self%program_name, pictures, err)
-    if (.not. allocated(err)) call assemble_driven_start(mechanism, plan, start, err)
+    call read_picture_requests(options, model, self%program_name, pictures, err)
+    if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err)
     if (allocated(err)) then
-      if (options%has('check')) call print_given(mechanism, .false.)
+      if (options%has('check')) call print_given(model, .false.)
       call diagnostics%add_error(err)
       return
     end if
     if (answers_only(options)) then
-      call print_check(options, pictures, mechanism, plan, requested_by_results(mechanism, pictures%any_wanted()), start, &
+      call print_check(options, pictures, model, plan, &
+                       requested_by_results(model%mechanism, model%request%output, pictures%any_wanted()), start, &
                        diagnostics)
-      if (options%has('range')) call print_ranges(output_unit, mechanism, plan, start)
-      if (options%has('check')) call check_motion(mechanism, plan, start, err)
+      if (options%has('range')) call print_ranges(output_unit, model, plan, start)
+      if (options%has('check')) call check_motion(model, plan, start, err)
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
-    call new_driven_simulation(mechanism, plan, start, simulation, pictures%any_wanted())
-    call carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
+    call new_driven_simulation(model, plan, start, simulation, pictures%any_wanted())
+    call carry_out(options, pictures, model, plan, simulation, diagnostics, reported, kept)
   end subroutine work
 
   !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values
   !> at the end of the time.
-  subroutine check_motion(mechanism, plan, start, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine check_motion(model, plan, start, err)
+    type(model_type), intent(in), target :: model           !< the model
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(state_type), intent(in) :: start               !< assembled position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(driven_simulation_type), target :: simulation
     type(row_source_type) :: source
-    real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
+    real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
     real(wp), allocatable :: row(:)
 
-    call new_driven_simulation(mechanism, plan, start, simulation)
-    call new_row_source('mech9k', mechanism, simulation, source)
+    call new_driven_simulation(model, plan, start, simulation)
+    call new_row_source('mech9k', simulation, source)
     allocate (row(source%columns%width()))
-    call source%row_at(mechanism%time%start, row, err)
-    if (.not. allocated(err)) call set_inputs(mechanism, mechanism%time%end, q, dq, ddq, err)
+    call source%row_at(model%request%time%start, row, err)
+    if (.not. allocated(err)) call set_inputs(model%problem%drives, model%request%time%end, q, dq, ddq, err)
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, mechanism, plan, simulation, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, plan, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                      !< the command line
     type(picture_requests_type), intent(in) :: pictures                 !< the pictures of the mechanism that are requested
-    type(mechanism_type), intent(in) :: mechanism                       !< the mechanism
+    type(model_type), intent(in), target :: model                           !< the model
     type(plan_type), intent(in) :: plan                                 !< the plan of the mechanism
     type(driven_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics                !< gets what is wrong
@@ -122,21 +123,21 @@ contains
     type(error_type), allocatable :: err
     logical :: ready
 
-    call new_row_source('mech9k', mechanism, simulation, source)
-    call begin_run(options, pictures, mechanism, plan, simulation%requested, source, results, diagnostics, ready)
+    call new_row_source('mech9k', simulation, source)
+    call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return
     call kinematic_facts(simulation%plan, outcome, simulation%driven, facts)
     call results%write_facts(facts)
-    call record(source, mechanism, results, options%has('quiet'), outcome, err, kept)
+    call record(source, model, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) &
-      call print_kinematic_report(error_unit, mechanism, simulation%plan, results%table_path, outcome, simulation%driven)
+      call print_kinematic_report(error_unit, model, simulation%plan, results%table_path, outcome, simulation%driven)
     if (allocated(err)) call diagnostics%add_error(err)
     call kinematic_facts(simulation%plan, outcome, simulation%driven, facts)
     call results%write_facts(facts, diagnostics%code())
-    call end_run(options, pictures, mechanism, source, results, diagnostics)
+    call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
-    call save_kinematic_report(options%argument('report'), mechanism, simulation%plan, results%table_path, diagnostics, &
+    call save_kinematic_report(options%argument('report'), model, simulation%plan, results%table_path, diagnostics, &
                                outcome, simulation%driven, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

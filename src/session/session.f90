@@ -12,12 +12,12 @@ module mech9_session
   use mech9_parser, only: read_document
   use mech9_setting, only: apply_setting
   use mech9_drive_reader, only: files_of_drives
-  use mech9_reader, only: read_structure_only, read_mechanism
+  use mech9_reader, only: read_structure_only, read_model
   use mech9_data_help, only: write_data_help
   use mech9_structure, only: structure_type
-  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_partition, only: partition_type
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_structure_text, only: print_structure, print_names_of_vectors
   use mech9_task, only: task_type, answers_only
   use mech9_run_words, only: save_short_report
@@ -84,8 +84,8 @@ contains
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics, choice
     type(structure_type) :: structure
-    type(structural_vectors_type) :: vectors
-    type(mechanism_type) :: mechanism
+    type(partition_type) :: partition
+    type(model_type), target :: model
     type(string_type), allocatable :: settings(:), inputs(:)
     type(error_type), allocatable :: err
     logical :: legible, reported
@@ -108,21 +108,21 @@ contains
     end if
     reported = .false.
     if (options%has('structure')) then
-      if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, mechanism)
-      call read_structure_only(document, structure, vectors, diagnostics)
+      if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, model)
+      call read_structure_only(document, structure, partition, diagnostics)
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_names_of_vectors(error_unit)
-        call print_structure(output_unit, vectors)
+        call print_structure(output_unit, partition%vectors)
       end if
     else
       legible = .not. diagnostics%failed()
-      call read_mechanism(document, task%needs_drives, mechanism, diagnostics)
+      call read_model(document, task%needs_drives, model, diagnostics)
       if (.not. diagnostics%failed()) then
-        if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, mechanism)
-        call refuse_overwriting(options, inputs, err, mechanism%output)
+        if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, model)
+        call refuse_overwriting(options, inputs, err, model%request%output)
         reported = allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
-        if (.not. allocated(err)) call task%work(options, mechanism, diagnostics, reported, kept)
+        if (.not. allocated(err)) call task%work(options, model, diagnostics, reported, kept)
       else if (legible .and. task%needs_drives) then
         call judge_choice_of(document, diagnostics, choice)
       end if
@@ -130,7 +130,7 @@ contains
     code = diagnostics%code()
     if (choice%failed()) code = choice%code()
     if (options%has('report') .and. .not. reported) &
-      call report_briefly(task, options, mechanism, choice, diagnostics, code)
+      call report_briefly(task, options, model, choice, diagnostics, code)
     call choice%report(error_unit)
     call diagnostics%report(error_unit)
   end subroutine run_file
@@ -152,16 +152,16 @@ contains
   end subroutine list_inputs
 
   !> Write the report where no run wrote one. A failure to write it is another error; the first error determines the code.
-  subroutine report_briefly(task, options, mechanism, choice, diagnostics, code)
+  subroutine report_briefly(task, options, model, choice, diagnostics, code)
     class(task_type), intent(in) :: task                   !< the work of this program
     type(command_line_type), intent(in) :: options         !< the command line
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(model_type), intent(in) :: model              !< the model
     type(diagnostics_type), intent(in) :: choice           !< judgement of the choice of independent coordinates
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, intent(inout) :: code                         !< exit code of the program; of the first error
     type(error_type), allocatable :: err
 
-    call save_short_report(options%argument('report'), task%program_name, mechanism, code, choice, diagnostics, err)
+    call save_short_report(options%argument('report'), task%program_name, model, code, choice, diagnostics, err)
     if (.not. allocated(err)) return
     call diagnostics%add_error(err)
     if (code == exit_done) code = err%code

@@ -5,7 +5,7 @@ module mech9_task
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_result_units, only: unit_of
   use mech9_film, only: film_type, new_film
   use mech9_plan, only: plan_type
@@ -36,21 +36,21 @@ module mech9_task
 
   abstract interface
     !> Make the plan and assemble the mechanism at the start.
-    subroutine assemble_interface(self, mechanism, plan, state, err)
-      import :: task_type, mechanism_type, plan_type, state_type, error_type
+    subroutine assemble_interface(self, model, plan, state, err)
+      import :: task_type, model_type, plan_type, state_type, error_type
       class(task_type), intent(in) :: self                !< the task
-      type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+      type(model_type), intent(in) :: model           !< the model
       type(plan_type), intent(out) :: plan                !< the plan of the mechanism
       type(state_type), intent(out) :: state              !< position and motion of the mechanism
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine assemble_interface
 
     !> Carry out the options. Errors are added to `diagnostics`, which knows the places in the data file.
-    subroutine work_interface(self, options, mechanism, diagnostics, reported, kept)
-      import :: task_type, command_line_type, mechanism_type, diagnostics_type, kept_rows_type
+    subroutine work_interface(self, options, model, diagnostics, reported, kept)
+      import :: task_type, command_line_type, model_type, diagnostics_type, kept_rows_type
       class(task_type), intent(in) :: self                    !< the task
       type(command_line_type), intent(in) :: options          !< the command line
-      type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+      type(model_type), intent(in), target :: model           !< the model
       type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
       logical, intent(out) :: reported                        !< a report was asked for, and it is written: there was a run
       type(kept_rows_type), intent(inout), optional :: kept   !< the rows of a run, for who looks at them after it
@@ -68,10 +68,10 @@ contains
   end function answers_only
 
   !> Carry out --check, --plan, --branches and --graph, and --sketch beside them.
-  subroutine print_check(options, pictures, mechanism, plan, requested, start, diagnostics)
+  subroutine print_check(options, pictures, model, plan, requested, start, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(requested_type), intent(in) :: requested          !< the requested part of the motion
     type(state_type), intent(in) :: start                  !< assembled position
@@ -80,57 +80,57 @@ contains
     type(error_type), allocatable :: err
 
     if (options%has('check')) then
-      call report_mobility(mechanism, plan, start, report)
+      call report_mobility(model%mechanism, plan, start, report)
       call print_mobility_report(output_unit, plan, report)
     else if (options%has('plan')) then
       call print_mobility(output_unit, plan)
     end if
-    if (options%has('plan')) call print_plan(output_unit, mechanism, plan, requested)
-    if (options%has('branches')) call print_assemblies(output_unit, mechanism, plan, start, options%number('starts', 100))
-    if (options%has('graph')) call draw_graph(options, mechanism, plan, diagnostics)
+    if (options%has('plan')) call print_plan(output_unit, model%mechanism, plan, requested)
+    if (options%has('branches')) call print_assemblies(output_unit, model%mechanism, plan, start, options%number('starts', 100))
+    if (options%has('graph')) call draw_graph(options, model, plan, diagnostics)
     if (options%has('check')) then
-      call print_given(mechanism, pictures%with_masses)
-      call print_start(mechanism, start)
+      call print_given(model, pictures%with_masses)
+      call print_start(model, start)
     end if
-    if (options%has('sketch')) call pictures%save_start(mechanism, plan, start, err)
+    if (options%has('sketch')) call pictures%save_start(model, plan, start, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine print_check
 
   !> Print the results of a check that need no assembly of the mechanism.
-  subroutine print_given(mechanism, with_masses)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine print_given(model, with_masses)
+    type(model_type), intent(in) :: model       !< the model
     logical, intent(in) :: with_masses              !< bodies count in this program
 
-    call print_dimensions(output_unit, mechanism)
-    call print_notes(output_unit, mechanism, with_masses)
+    call print_dimensions(output_unit, model%mechanism)
+    call print_notes(output_unit, model, with_masses)
   end subroutine print_given
 
   !> Print the coordinates at the start.
-  subroutine print_start(mechanism, start)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine print_start(model, start)
+    type(model_type), intent(in) :: model       !< the model
     type(state_type), intent(in) :: start           !< assembled position
     character(len=16) :: name
     integer :: k
 
     write (output_unit, '(a)') 'assembled at the start:'
-    do k = 1, size(mechanism%pairs)
+    do k = 1, size(model%mechanism%pairs)
       write (name, '(a,i0)') 'q', k
       write (output_unit, '(2x,a8,es24.16)') name, &
-        start%q(k)/unit_of(mechanism, k)
+        start%q(k)/unit_of(model%mechanism, k)
     end do
   end subroutine print_start
 
   !> Carry out --graph.
-  subroutine draw_graph(options, mechanism, plan, diagnostics)
+  subroutine draw_graph(options, model, plan, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
     character(len=:), allocatable :: said
     logical :: drawn
 
-    call save_structure_graph(options%argument('graph'), mechanism, plan, drawn, said, err)
+    call save_structure_graph(options%argument('graph'), model%mechanism, plan, drawn, said, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (.not. (drawn .and. options%has('quiet'))) then
@@ -139,10 +139,10 @@ contains
   end subroutine draw_graph
 
   !> Print the title of the run and open its results. `ready` is false after an error.
-  subroutine begin_run(options, pictures, mechanism, plan, requested, source, results, diagnostics, ready)
+  subroutine begin_run(options, pictures, model, plan, requested, source, results, diagnostics, ready)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(requested_type), intent(in) :: requested          !< the requested part of the motion
     type(row_source_type), intent(inout) :: source         !< computes the rows; gets a film where pictures are wanted
@@ -151,18 +151,20 @@ contains
     logical, intent(out) :: ready                          !< the run can begin
     type(error_type), allocatable :: err
 
-    call announce(options, mechanism, plan, requested)
-    if (pictures%any_wanted()) source%film = new_film(mechanism, mechanism%time%intervals + 1, source%columns)
-    call results%open(options, mechanism, diagnostics%sources(1)%text, source%program_name, source%columns, err)
+    call announce(options, model, plan, requested)
+    if (pictures%any_wanted()) &
+      source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
+                             source%columns)
+    call results%open(options, model, diagnostics%sources(1)%text, source%program_name, source%columns, err)
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)
   end subroutine begin_run
 
   !> Close the results of a run, draw the mechanism, and print which files were written.
-  subroutine end_run(options, pictures, mechanism, source, results, diagnostics)
+  subroutine end_run(options, pictures, model, source, results, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(model_type), intent(in) :: model              !< the model
     type(row_source_type), intent(in) :: source            !< of the rows that were written
     type(results_type), intent(inout) :: results           !< closed on return
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
@@ -173,33 +175,33 @@ contains
     call results%print_words(error_unit, options%has('quiet'))
     ! an interrupted program makes no pictures, which would take too long
     if (asked_to_end()) return
-    if (allocated(source%film)) call draw(options, pictures, mechanism, source%film, diagnostics)
+    if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)
   end subroutine end_run
 
   !> Print the title, and with --verbose the structure and the plan.
-  subroutine announce(options, mechanism, plan, requested)
+  subroutine announce(options, model, plan, requested)
     type(command_line_type), intent(in) :: options   !< the command line
-    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(model_type), intent(in) :: model        !< the model
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism
     type(requested_type), intent(in) :: requested    !< the requested part of the motion
 
-    if (.not. options%has('quiet') .and. mechanism%title /= '') write (error_unit, '(a)') mechanism%title
+    if (.not. options%has('quiet') .and. model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
     if (.not. options%has('verbose')) return
-    call print_structure(error_unit, mechanism%vectors)
+    call print_structure(error_unit, model%problem%partition%vectors)
     call print_mobility(error_unit, plan)
-    call print_plan(error_unit, mechanism, plan, requested)
+    call print_plan(error_unit, model%mechanism, plan, requested)
   end subroutine announce
 
   !> Draw the requested pictures of the mechanism, and print a line about each.
-  subroutine draw(options, pictures, mechanism, film, diagnostics)
+  subroutine draw(options, pictures, model, film, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(model_type), intent(in) :: model              !< the model
     type(film_type), intent(in) :: film                    !< poses and columns at some outputs
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
 
-    call pictures%save(mechanism, film, err)
+    call pictures%save(model, film, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (.not. options%has('quiet')) then

@@ -4,7 +4,7 @@ module mech9_coordinate_choice
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly, exit_singular
   use mech9_failure, only: failure_other_branch
   use mech9_lapack, only: dgeqp3
-  use mech9_transformation, only: transform
+  use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -12,7 +12,7 @@ module mech9_coordinate_choice
   use mech9_planning, only: make_plan
   implicit none
   private
-  public :: best_independent, with_independent
+  public :: best_independent, carry_over
 
 contains
 
@@ -66,23 +66,20 @@ contains
     end associate
   end subroutine add_closure
 
-  !> The same mechanism and state in other independent coordinates. Fails with exit_singular where these cannot serve or the
+  !> The plan and the state in other independent coordinates. Fails with exit_singular where these cannot serve or the
   !> state cannot be carried over, and with the code of the failure where a pair or the program itself fails.
-  subroutine with_independent(mechanism, state, independent, requested, new_mechanism, new_plan, new_state, err)
+  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+    type(partition_type), intent(in) :: partition        !< with the other independent coordinates
+    type(plan_type), intent(in) :: plan                  !< the present plan
     type(state_type), intent(in) :: state                !< closed, with rates of all coordinates
-    logical, intent(in) :: independent(:)                !< (M)
-    type(requested_type), intent(in) :: requested        !< what does not serve them is left out
-    type(mechanism_type), intent(out) :: new_mechanism   !< with the given independent coordinates
-    type(plan_type), intent(out) :: new_plan             !< its plan
+    type(requested_type), intent(in) :: requested        !< requested quantities; blocks that do not serve them are left out
+    type(plan_type), intent(out) :: new_plan             !< the plan in the other coordinates
     type(state_type), intent(out) :: new_state           !< the same position and motion, for the new plan
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     integer :: k
 
-    new_mechanism = mechanism
-    new_mechanism%structure%independent = independent
-    call transform(new_mechanism%structure, new_mechanism%vectors)
-    call make_plan(new_mechanism, state%q, new_plan, new_state, err, requested=requested)
+    call make_plan(mechanism, partition, state%q, new_plan, new_state, err, requested=requested, length=plan%length)
     if (allocated(err)) then
       if (err%code == exit_structure .or. err%code == exit_assembly) err%code = exit_singular
       return
@@ -96,5 +93,5 @@ contains
     end if
     new_state%t = state%t
     new_state%dq = state%dq
-  end subroutine with_independent
+  end subroutine carry_over
 end module mech9_coordinate_choice

@@ -168,7 +168,7 @@ contains
     m = system%plan%n_coordinates
     y(:m) = q
     found = .true.
-    associate (solver => system%mechanism%solver)
+    associate (solver => system%model%request%solver)
       do i = 1, size(system%plan%independent)
         k = system%plan%independent(i)
         y(m + i) = dq(k)

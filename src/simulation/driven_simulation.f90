@@ -2,7 +2,7 @@
 module mech9_driven_simulation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -19,7 +19,6 @@ module mech9_driven_simulation
   public :: driven_simulation_type, new_driven_simulation, assemble_driven
 
   type, extends(simulation_type) :: driven_simulation_type
-    type(mechanism_type) :: mechanism
     type(plan_type) :: plan              !< of the requested part of the motion
     type(state_type) :: assembled        !< the closed position at the start
     type(driven_motion_type) :: driven
@@ -38,34 +37,34 @@ module mech9_driven_simulation
 contains
 
   !> The plan, and the closed position at the start of the motion.
-  subroutine assemble_driven(mechanism, plan, state, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism, with a drive for each independent coordinate
+  subroutine assemble_driven(model, plan, state, err)
+    type(model_type), intent(in) :: model           !< the model, with a drive for each independent coordinate
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< the closed position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
+    real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
 
-    q = mechanism%initial_position
-    call set_inputs(mechanism, mechanism%time%start, q, dq, ddq, err)
+    q = model%problem%initial%position
+    call set_inputs(model%problem%drives, model%request%time%start, q, dq, ddq, err)
     if (allocated(err)) return
-    call make_plan(mechanism, q, plan, state, err)
-    state%t = mechanism%time%start
+    call make_plan(model%mechanism, model%problem%partition, q, plan, state, err)
+    state%t = model%request%time%start
   end subroutine assemble_driven
 
   !> A driven motion from its assembled start.
-  subroutine new_driven_simulation(mechanism, plan, assembled, simulation, pictures)
-    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+  subroutine new_driven_simulation(model, plan, assembled, simulation, pictures)
+    type(model_type), intent(in), target :: model             !< the model; it must outlive the simulation
     type(plan_type), intent(in) :: plan                       !< its plan
     type(state_type), intent(in) :: assembled                 !< its closed position at the start
     type(driven_simulation_type), intent(out) :: simulation   !< to be started
     logical, intent(in), optional :: pictures                 !< the motion of all links is requested; not unless given
 
-    simulation%mechanism = mechanism
+    simulation%model => model
     simulation%plan = plan
-    simulation%requested = requested_by_results(mechanism, pictures)
+    simulation%requested = requested_by_results(model%mechanism, model%request%output, pictures)
     call leave_out_unrequested(simulation%plan, simulation%requested)
     simulation%assembled = assembled
-    simulation%with_conditioning = mechanism%output%conditioning
+    simulation%with_conditioning = model%request%output%conditioning
     allocate (simulation%events(0))
   end subroutine new_driven_simulation
 
@@ -75,7 +74,8 @@ contains
     real(wp), intent(in) :: t                              !< time of the start [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
-    call start_driven_motion(self%mechanism, self%plan, self%assembled, t, self%driven, err, self%requested%derivatives > 1)
+    call start_driven_motion(self%model%problem%drives, self%plan, self%assembled, t, self%driven, err, &
+                             self%requested%derivatives > 1)
   end subroutine begin
 
   !> The position at time t, on the same branch.
@@ -84,17 +84,15 @@ contains
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
-    call advance(self%mechanism, self%plan, self%driven, t, err)
+    call advance(self%model%problem%drives, self%plan, self%driven, t, err)
   end subroutine go_to
 
-  !> The mechanism, its plan and the present state.
-  subroutine present(self, mechanism, plan, state)
+  !> The plan and the present state.
+  subroutine present(self, plan, state)
     class(driven_simulation_type), intent(in), target :: self   !< the simulation
-    type(mechanism_type), pointer, intent(out) :: mechanism     !< the mechanism
     type(plan_type), pointer, intent(out) :: plan               !< the plan that is executed
     type(state_type), pointer, intent(out) :: state             !< the present state; before the start the assembled one
 
-    mechanism => self%mechanism
     plan => self%plan
     state => self%driven%state
     if (.not. self%started) state => self%assembled
@@ -123,13 +121,13 @@ contains
 
     if (.not. allocated(self%dynamics)) then
       allocate (self%dynamics, self%view)
-      call make_dynamics_plan(self%mechanism, self%plan, self%dynamics)
+      call make_dynamics_plan(self%model%mechanism, self%plan, self%dynamics)
       allocate (self%view%links(self%plan%n_links))
       allocate (self%view%q(self%plan%n_coordinates), self%view%dq(self%plan%n_coordinates), source=0.0_wp)
     end if
     call show_state(self%plan, self%dynamics, self%driven%state, self%view)
     kinetic = kinetic_energy(self%dynamics, self%driven%state)
-    potential = potential_energy(self%mechanism, self%plan, self%driven%state, self%view)
+    potential = potential_energy(self%model%mechanism, self%plan, self%driven%state, self%view)
   end subroutine energies
 
   !> Steps of branch stepping, and their work.

@@ -6,7 +6,7 @@ module mech9_free_simulation
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
   use mech9_failure, only: failure_no_initial_position, failure_singular_block, failure_singular_start_block, &
     failure_infinite_rate
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_equations, only: largest_gap
@@ -47,30 +47,30 @@ contains
 
   !> The plan, and the closed position at the start: positions and rates of the independent coordinates as given; those
   !> at rest need no velocity.
-  subroutine assemble_free(mechanism, plan, state, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine assemble_free(model, plan, state, err)
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< the closed position, with the rates of independent coordinates
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: k
 
-    do k = 1, size(mechanism%pairs)
-      if (mechanism%position_given(k) .or. .not. mechanism%structure%independent(k)) cycle
+    do k = 1, size(model%mechanism%pairs)
+      if (model%problem%initial%position_given(k) .or. .not. model%problem%partition%is_independent(k)) cycle
       call raise(err, exit_data, failure_no_initial_position)
       err%failure%coordinates = [k]
-      call add_place(err, place=mechanism%pairs(k)%pair%place)
+      call add_place(err, place=model%mechanism%pairs(k)%pair%place)
       return
     end do
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     if (allocated(err)) return
-    state%t = mechanism%time%start
-    state%dq(plan%independent) = mechanism%initial_velocity(plan%independent)
+    state%t = model%request%time%start
+    state%dq(plan%independent) = model%problem%initial%velocity(plan%independent)
   end subroutine assemble_free
 
   !> A free motion from its assembled start; the accelerations there are worked out. To be closed at the end, also where this
   !> failed.
-  subroutine new_free_simulation(mechanism, plan, assembled, simulation, err, pictures)
-    type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+  subroutine new_free_simulation(model, plan, assembled, simulation, err, pictures)
+    type(model_type), intent(in), target :: model           !< the model; it must outlive the simulation
     type(plan_type), intent(in) :: plan                     !< its plan
     type(state_type), intent(in) :: assembled               !< its closed position, with the rates of independent coordinates
     type(free_simulation_type), intent(out) :: simulation   !< to be started
@@ -78,18 +78,19 @@ contains
     logical, intent(in), optional :: pictures               !< the motion of all links is requested; not unless given
     type(plan_type) :: used
 
-    simulation%with_energies = mechanism%output%energies
-    simulation%with_conditioning = mechanism%output%conditioning
-    simulation%motion%t = mechanism%time%start
-    simulation%end = mechanism%time%end
+    simulation%model => model
+    simulation%with_energies = model%request%output%energies
+    simulation%with_conditioning = model%request%output%conditioning
+    simulation%motion%t = model%request%time%start
+    simulation%end = model%request%time%end
     allocate (simulation%events(0))
-    simulation%requested = requested_by_results(mechanism, pictures)
-    call add_forces(mechanism, simulation%requested)
+    simulation%requested = requested_by_results(model%mechanism, model%request%output, pictures)
+    call add_forces(model%mechanism, simulation%requested)
     used = plan
     call leave_out_unrequested(used, simulation%requested)
     call request_planned(used, simulation%requested)
     allocate (simulation%motion%system)
-    call set_motion_system(mechanism, used, assembled, simulation%motion%system, err)
+    call set_motion_system(model, model%problem%partition, used, assembled, simulation%motion%system, err)
     if (allocated(err)) then
       if (allocated(err%failure)) then
         if (err%failure%kind == failure_singular_block) err%failure%kind = failure_singular_start_block
@@ -119,7 +120,7 @@ contains
     self%steps_onto = .false.
     associate (motion => self%motion)
       do
-        do while ((t - motion%t)*sign(1.0_wp, self%end - motion%system%mechanism%time%start) > 0.0_wp)
+        do while ((t - motion%t)*sign(1.0_wp, self%end - self%model%request%time%start) > 0.0_wp)
           call self%stop_if_interrupted(t, err)
           if (.not. allocated(err)) call self%step(t, err)
           if (allocated(err)) return
@@ -250,14 +251,12 @@ contains
     end associate
   end subroutine look_between
 
-  !> The mechanism and the plan in the present independent coordinates, and the present state.
-  subroutine present(self, mechanism, plan, state)
+  !> The plan in the present independent coordinates, and the present state.
+  subroutine present(self, plan, state)
     class(free_simulation_type), intent(in), target :: self   !< the simulation
-    type(mechanism_type), pointer, intent(out) :: mechanism   !< with the present independent coordinates
     type(plan_type), pointer, intent(out) :: plan             !< the plan that is executed
     type(state_type), pointer, intent(out) :: state           !< the present state
 
-    mechanism => self%motion%system%mechanism
     plan => self%motion%system%plan
     state => self%motion%system%state
   end subroutine present
@@ -289,7 +288,7 @@ contains
 
     associate (system => self%motion%system)
       kinetic = kinetic_energy(system%dynamics, system%state)
-      potential = potential_energy(system%mechanism, system%plan, system%state, system%work%view)
+      potential = potential_energy(self%model%mechanism, system%plan, system%state, system%work%view)
     end associate
   end subroutine energies
 

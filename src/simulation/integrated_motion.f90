@@ -4,7 +4,7 @@ module mech9_integrated_motion
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_partition, only: partition_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: work_count_type, work_of
@@ -12,7 +12,7 @@ module mech9_integrated_motion
   use mech9_expectation, only: expectation_type
   use mech9_ode_system, only: is_recoverable
   use mech9_integrator, only: integrator_type, integration_statistics_type
-  use mech9_coordinate_choice, only: best_independent, with_independent
+  use mech9_coordinate_choice, only: best_independent, carry_over
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_dense_output, only: dense_output_type
   use mech9_side_steps, only: side_steps_type, begin_integration
@@ -67,7 +67,7 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(motion_system_type), allocatable :: other
     type(error_type), allocatable :: failure
-    type(mechanism_type) :: mechanism
+    type(partition_type) :: partition
     type(plan_type) :: plan
     type(state_type) :: state
     logical :: independent(self%system%plan%n_coordinates)
@@ -79,14 +79,15 @@ contains
     if (.not. allocated(failure)) call self%system%present(failure)
     if (gives_up(failure, err)) return
     call best_independent(self%system%plan, self%system%state, independent)
-    if (all(independent .eqv. self%system%mechanism%structure%independent)) then
+    if (all(independent .eqv. self%system%partition%independent())) then
       self%look_below = self%system%conditioning()/worthwhile_improvement
       return
     end if
-    call with_independent(self%system%mechanism, self%system%state, independent, requested, mechanism, plan, state, failure)
+    call self%system%partition%with_independent(self%system%model%mechanism%structure, independent, partition)
+    call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, plan, state, failure)
     if (gives_up(failure, err)) return
     allocate (other)
-    call set_motion_system(mechanism, plan, state, other, failure)
+    call set_motion_system(self%system%model, partition, plan, state, other, failure)
     ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
     if (allocated(failure)) return
     if (other%conditioning() < worthwhile_improvement*self%system%conditioning()) then

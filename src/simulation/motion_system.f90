@@ -8,7 +8,8 @@ module mech9_motion_system
   use mech9_tolerances, only: trusted_between_steps, trusted_closing
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_singular_step, failure_unclosed_step
-  use mech9_mechanism, only: mechanism_type
+  use mech9_partition, only: partition_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: newton_outcome_type, close_block
@@ -26,7 +27,8 @@ module mech9_motion_system
 
 
   type, extends(ode_system_type) :: motion_system_type
-    type(mechanism_type) :: mechanism
+    type(model_type), pointer :: model => null()     !< constant, the same for all systems of a motion
+    type(partition_type) :: partition                !< of the coordinates, as they are now
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
@@ -52,21 +54,24 @@ contains
 
   !> Make the system from an assembled start with the independent rates in `start`. The motion there is found, and
   !> work%coefficients are those of the start.
-  subroutine set_motion_system(mechanism, plan, start, system, err)
-    type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+  subroutine set_motion_system(model, partition, plan, start, system, err)
+    type(model_type), intent(in), target :: model        !< the model; it must outlive the system
+    type(partition_type), intent(in) :: partition        !< of the coordinates
     type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
     type(state_type), intent(in) :: start                !< assembled position, with the independent rates
     class(motion_system_type), intent(inout) :: system   !< the system, at the start
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
     system%settles = .true.
-    system%mechanism = mechanism
+    system%model => model
+    system%partition = partition
     system%plan = plan
-    call make_dynamics_plan(mechanism, plan, system%dynamics)
+    call make_dynamics_plan(model%mechanism, plan, system%dynamics)
     system%work = new_lagrange_work(plan, system%dynamics)
     system%state = start
     ! reports show the coefficients of the start; articulated bodies do without
-    if (system%dynamics%open_chains) call find_equations(mechanism, plan, system%dynamics, system%state, system%work, err)
+    if (system%dynamics%open_chains) &
+      call find_equations(model%mechanism, plan, system%dynamics, system%state, system%work, err)
     if (allocated(err)) return
     call system%present(err)
     if (.not. allocated(err)) call check_inertia(plan, system%dynamics, system%work, err)
@@ -100,7 +105,7 @@ contains
     call take(self, t, y)
     call place_all(self%plan, self%state, err)
     if (allocated(err)) return
-    call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
     if (self%conditioning() < self%refuse_below) then
       call raise(err, exit_singular, failure_singular_step)
@@ -231,7 +236,7 @@ contains
     class(motion_system_type), intent(inout) :: self    !< the motion system
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call find_motion(self%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
     call show_state(self%plan, self%dynamics, self%state, self%work%view)

@@ -33,7 +33,7 @@ contains
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     real(wp) :: absolute(size(y))
 
-    associate (solver => system%mechanism%solver)
+    associate (solver => system%model%request%solver)
       absolute = solver%absolute_tolerance
       call integrator%create(system, solver%method, solver%relative_tolerance, absolute, t, y, err)
       if (.not. allocated(err)) call integrator%limit(err, maximum_steps=solver%maximum_steps)

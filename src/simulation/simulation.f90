@@ -3,7 +3,7 @@ module mech9_simulation
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
   use mech9_failure, only: failure_not_started, failure_backwards, failure_interrupted
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type
@@ -36,6 +36,7 @@ module mech9_simulation
 
   !> A motion. Times are given in order, from the mechanism's start in the direction of its end. It must not be copied.
   type, abstract :: simulation_type
+    type(model_type), pointer :: model => null()   !< constant: the mechanism, its problem, and the request for results
     type(requested_type) :: requested              !< what is worked out of the motion
     logical :: with_energies = .false.             !< the energies are worked out at each time
     logical :: with_conditioning = .false.         !< the conditioning is worked out at each time
@@ -81,11 +82,10 @@ module mech9_simulation
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine position_interface
 
-    !> The present mechanism, plan and state. They change with the next time, and with a change of coordinates.
-    subroutine present_interface(self, mechanism, plan, state)
-      import :: simulation_type, mechanism_type, plan_type, state_type
+    !> The present plan and state. They change with the next time, and with a change of coordinates.
+    subroutine present_interface(self, plan, state)
+      import :: simulation_type, plan_type, state_type
       class(simulation_type), intent(in), target :: self       !< the simulation
-      type(mechanism_type), pointer, intent(out) :: mechanism  !< with the present independent coordinates
       type(plan_type), pointer, intent(out) :: plan            !< the plan that is executed
       type(state_type), pointer, intent(out) :: state          !< the present position, velocities and accelerations
     end subroutine present_interface
@@ -124,17 +124,13 @@ contains
   !> The position at the mechanism's start. With `interruption` the motion can be stopped from outside, by an error with the
   !> code exit_interrupted.
   subroutine start(self, err, interruption)
-    class(simulation_type), intent(inout), target :: self            !< the simulation, as it was made
+    class(simulation_type), intent(inout) :: self                    !< the simulation, as it was made
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
-    type(mechanism_type), pointer :: mechanism
-    type(plan_type), pointer :: plan
-    type(state_type), pointer :: state
 
     if (present(interruption)) allocate (self%interruption, source=interruption)
-    call self%present(mechanism, plan, state)
-    self%direction = sign(1.0_wp, mechanism%time%end - mechanism%time%start)
-    self%t = mechanism%time%start
+    self%direction = sign(1.0_wp, self%model%request%time%end - self%model%request%time%start)
+    self%t = self%model%request%time%start
     call self%stop_if_interrupted(self%t, err)
     if (.not. allocated(err)) call self%begin(self%t, err)
     if (.not. allocated(err)) call arrive(self, self%t, err)
@@ -166,13 +162,12 @@ contains
     class(simulation_type), intent(inout), target :: self   !< the simulation
     real(wp), intent(in) :: t                           !< time of the position [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(mechanism_type), pointer :: mechanism
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 
     self%t = t
     self%closure = self%present_closure()
-    call self%present(mechanism, plan, state)
+    call self%present(plan, state)
     call check_closure(plan, t, self%closure, err)
     if (allocated(err)) return
     self%positions = self%positions + 1

@@ -15,13 +15,15 @@ module mech9_link_graph
     integer, allocatable :: first(:)         !< (N+1) place of the first pair of each link in pair_at
     integer, allocatable :: pair_at(:)       !< (2M) pairs, link by link
     integer, allocatable :: other_at(:)      !< (2M) link at the other end of each of them
-    logical, allocatable :: independent(:)   !< (M) the coordinate of the pair is independent
     logical, allocatable :: is_bridge(:)     !< (M) the pair lies on no closed chain
     integer, allocatable :: outward(:)       !< (N) links in an order in which link 1 is first, and
                                              !< each link comes later than those nearer to it by bridges
-    !> (M) cost of a pair. The cost of a chain is the sum over its pairs; it compares first the number of dependent
-    !> coordinates, then the number of all coordinates.
+    logical, allocatable :: independent(:)   !< (M) the coordinate of the pair is independent; set by `weigh`
+    !> (M) cost of a pair, set by `weigh`. The cost of a chain is the sum over its pairs; it compares first the number of
+    !> dependent coordinates, then the number of all coordinates.
     integer(long), allocatable :: cost(:)
+  contains
+    procedure :: weigh
   end type link_graph_type
 
   !> A walk from links(1) through pairs(1) to links(2), and so on.
@@ -40,9 +42,7 @@ contains
     graph%n_links = structure%n_links
     graph%n_pairs = structure%n_coordinates
     allocate (graph%ends, source=structure%links)
-    allocate (graph%independent, source=structure%independent)
     call collect_pairs(graph)
-    call set_costs(graph)
     call find_bridges(graph)
   end function graph_from_structure
 
@@ -76,13 +76,15 @@ contains
 
   !> One number holds both parts of the cost: `scale` for a dependent coordinate, and one more for
   !> any coordinate. In sums of up to four chains the lower part never reaches `scale`.
-  pure subroutine set_costs(graph)
-    type(link_graph_type), intent(inout) :: graph   !< the graph, with the pairs of each link
+  pure subroutine weigh(graph, independent)
+    class(link_graph_type), intent(inout) :: graph   !< the graph, which gets the costs
+    logical, intent(in) :: independent(:)            !< (M) the coordinate of the pair is independent
     integer(long) :: scale
 
     scale = 4_long*graph%n_pairs + 4_long
-    allocate (graph%cost, source=merge(1_long, scale + 1_long, graph%independent))
-  end subroutine set_costs
+    graph%independent = independent
+    graph%cost = merge(1_long, scale + 1_long, independent)
+  end subroutine weigh
 
   !> Bridges by one depth-first walk from link 1 (Tarjan in docs/bibliography.md): the pair that first reached a link is a
   !> bridge if no other pair leads from that link, or from those reached through it, further back.

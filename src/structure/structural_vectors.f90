@@ -31,9 +31,10 @@ contains
 
   !> Structure from the second set given as data, in any valid order and of any
   !> length. nrw may be absent (not allocated, or of size 0) and is then computed.
-  pure subroutine structure_from_vectors(vectors, structure, findings, n_links, n_coordinates)
+  pure subroutine structure_from_vectors(vectors, structure, independent, findings, n_links, n_coordinates)
     type(structural_vectors_type), intent(inout) :: vectors       !< the second set of data; nrw is computed where it is absent
     type(structure_type), intent(out) :: structure                !< of use only without findings
+    logical, allocatable, intent(out) :: independent(:)           !< (M) the coordinate is independent
     type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
     integer, intent(in), optional :: n_links                      !< N, where known; else the greatest link named
     integer, intent(in), optional :: n_coordinates                !< M, where known; else the greatest coordinate named
@@ -49,9 +50,9 @@ contains
     if (present(n_coordinates)) &
       call take_count('nws', 'coordinates', n_coordinates, structure%n_coordinates, size(vectors%nrg) - 1, list)
     allocate (structure%links(2, structure%n_coordinates), source=0)
-    allocate (structure%independent(structure%n_coordinates), source=.false.)
+    allocate (independent(structure%n_coordinates), source=.false.)
     call check_head(vectors, list)
-    call walk(vectors, structure, list)
+    call walk(vectors, structure, independent, list)
     call check_kinds(vectors, list)
     if (size(vectors%nrw) > 0) then
       call check_closures(vectors, list)
@@ -168,9 +169,10 @@ contains
   end subroutine check_head
 
   !> Run through the chains: take links and kinds of the coordinates, and note errors.
-  pure subroutine walk(vectors, structure, list)
+  pure subroutine walk(vectors, structure, independent, list)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
-    type(structure_type), intent(inout) :: structure       !< gets links and kinds of the coordinates
+    type(structure_type), intent(inout) :: structure       !< gets the links of the coordinates
+    logical, intent(inout) :: independent(:)               !< (M) gets the kinds of the coordinates
     type(finding_list_type), intent(inout) :: list         !< gets the findings
     logical :: known(structure%n_links), used(structure%n_coordinates)
     logical :: may_go_on       ! false after a step that closed its chain
@@ -184,7 +186,7 @@ contains
       if (.not. is_link(vectors%nrg(i), structure%n_links)) then
         call list%add('nrg', [i, 0], 'nrg('//to_text(i)//') = '//to_text(vectors%nrg(i))// &
                       ' is no link; the links are 1 to '//to_text(structure%n_links))
-        if (vectors%nws(i) /= 0) call take_step(vectors, structure, used, i, list)
+        if (vectors%nws(i) /= 0) call take_step(vectors, structure, independent, used, i, list)
         may_go_on = .true.
       else if (vectors%nws(i) == 0) then
         call check_restart(vectors, known, i, list)
@@ -193,7 +195,7 @@ contains
         if (.not. may_go_on) &
           call list%add('nws', [i, 0], 'position '//to_text(i)//' goes on after link '//to_text(vectors%nrg(i - 1))// &
                         ' has closed the chain; restart there with a known link and nws = 0')
-        call take_step(vectors, structure, used, i, list)
+        call take_step(vectors, structure, independent, used, i, list)
         may_go_on = .not. known(vectors%nrg(i))
       end if
       if (is_link(vectors%nrg(i), structure%n_links)) known(vectors%nrg(i)) = .true.
@@ -219,9 +221,10 @@ contains
   end subroutine check_restart
 
   !> Take links and kind of the coordinate of a step, and note an error.
-  pure subroutine take_step(vectors, structure, used, i, list)
+  pure subroutine take_step(vectors, structure, independent, used, i, list)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
-    type(structure_type), intent(inout) :: structure   !< gets links and kinds of the coordinates
+    type(structure_type), intent(inout) :: structure   !< gets the links of the coordinates
+    logical, intent(inout) :: independent(:)        !< (M) gets the kinds of the coordinates
     logical, intent(inout) :: used(:)               !< coordinates met so far
     integer, intent(in) :: i                        !< a position with nws /= 0
     type(finding_list_type), intent(inout) :: list   !< gets the findings
@@ -237,7 +240,7 @@ contains
     else
       used(k) = .true.
       structure%links(:, k) = vectors%nrg(i - 1:i)
-      structure%independent(k) = vectors%rdw(i) == 1
+      independent(k) = vectors%rdw(i) == 1
     end if
     if (vectors%nrg(i) == vectors%nrg(i - 1)) &
       call list%add('nrg', [i, 0], 'position '//to_text(i)//' steps from link '//to_text(vectors%nrg(i))// &

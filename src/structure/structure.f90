@@ -1,5 +1,5 @@
-!> The structure of a mechanism, the paper's first set of data, tells the two links of each pair and the independent
-!> coordinates; (7), (8).
+!> The structure of a mechanism tells the two links of each pair. With the independent coordinates it is the paper's first set
+!> of data; (7), (8).
 !>
 !> It is held sparsely, as two links a pair: the coincidence matrix C itself is only read.
 module mech9_structure
@@ -10,22 +10,22 @@ module mech9_structure
   public :: structure_type, finding_type
   public :: structure_from_pairs, structure_from_matrix, check_pair_links
 
-  !> Links, pairs and independent coordinates. Pair k has coordinate k.
+  !> Links and pairs. Pair k has coordinate k.
   type :: structure_type
     integer :: n_links = 0                   !< N, with link 1 the frame
     integer :: n_coordinates = 0             !< M, as many as pairs
     integer, allocatable :: links(:, :)      !< (2,M) the two links of each pair
-    logical, allocatable :: independent(:)   !< (M) the coordinate is independent
   end type structure_type
 
 contains
 
   !> Structure from the links of each pair. Two pairs may join the same two links.
-  pure subroutine structure_from_pairs(n_links, links, cq, structure, findings)
+  pure subroutine structure_from_pairs(n_links, links, cq, structure, independent, findings)
     integer, intent(in) :: n_links                  !< N
     integer, intent(in) :: links(:, :)              !< (2,M) links of pair k in column k
     integer, intent(in) :: cq(:)                    !< independent coordinates
     type(structure_type), intent(out) :: structure  !< of use only without findings
+    logical, allocatable, intent(out) :: independent(:)           !< (M) the coordinate is independent
     type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
     type(finding_list_type) :: list
 
@@ -35,16 +35,17 @@ contains
     call check_counts(n_links, size(links, 2), 'links', list)
     call check_link_numbers(n_links, links, list)
     call check_connected(n_links, links, 'links', list)
-    call take_independent(cq, structure, list)
+    call take_independent(cq, structure%n_coordinates, independent, list)
     call list%hand_over(findings)
   end subroutine structure_from_pairs
 
   !> Structure from the coincidence matrix (7). It cannot express two pairs between the same links.
-  pure subroutine structure_from_matrix(c, n_coordinates, cq, structure, findings)
+  pure subroutine structure_from_matrix(c, n_coordinates, cq, structure, independent, findings)
     integer, intent(in) :: c(:, :)                  !< c(i,j) = c(j,i) = k where pair k joins links i and j
     integer, intent(in) :: n_coordinates            !< M
     integer, intent(in) :: cq(:)                    !< independent coordinates
     type(structure_type), intent(out) :: structure  !< of use only without findings
+    logical, allocatable, intent(out) :: independent(:)           !< (M) the coordinate is independent
     type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
     type(finding_list_type) :: list
     integer :: n
@@ -63,7 +64,7 @@ contains
       call take_links(c, structure%links, list)
       call check_connected(n, joined_in_matrix(c), 'c', list)
     end if
-    call take_independent(cq, structure, list)
+    call take_independent(cq, structure%n_coordinates, independent, list)
     call list%hand_over(findings)
   end subroutine structure_from_matrix
 
@@ -254,21 +255,22 @@ contains
   end function joined_in_matrix
 
   !> Mark the independent coordinates, and note numbers that do not exist or are repeated.
-  pure subroutine take_independent(cq, structure, list)
-    integer, intent(in) :: cq(:)                       !< independent coordinates
-    type(structure_type), intent(inout) :: structure   !< gets the kinds of the coordinates
-    type(finding_list_type), intent(inout) :: list     !< gets the findings
+  pure subroutine take_independent(cq, n_coordinates, independent, list)
+    integer, intent(in) :: cq(:)                          !< independent coordinates
+    integer, intent(in) :: n_coordinates                  !< M
+    logical, allocatable, intent(out) :: independent(:)   !< (M) the coordinate is independent
+    type(finding_list_type), intent(inout) :: list        !< gets the findings
     integer :: i
 
-    allocate (structure%independent(structure%n_coordinates), source=.false.)
+    allocate (independent(n_coordinates), source=.false.)
     do i = 1, size(cq)
-      if (cq(i) < 1 .or. cq(i) > structure%n_coordinates) then
+      if (cq(i) < 1 .or. cq(i) > n_coordinates) then
         call list%add('cq', [i, 0], 'cq names coordinate '//to_text(cq(i))//'; the coordinates are 1 to '// &
-                      to_text(structure%n_coordinates))
-      else if (structure%independent(cq(i))) then
+                      to_text(n_coordinates))
+      else if (independent(cq(i))) then
         call list%add('cq', [i, 0], 'cq names coordinate '//to_text(cq(i))//' twice; name each one once')
       else
-        structure%independent(cq(i)) = .true.
+        independent(cq(i)) = .true.
       end if
     end do
   end subroutine take_independent

@@ -47,13 +47,15 @@ module mech9_transformation
 contains
 
   !> Second set of structural data from the first one, which must be without findings.
-  pure subroutine transform(structure, vectors, operations)
-    type(structure_type), intent(in) :: structure   !< the first set of data, without findings
+  pure subroutine transform(structure, independent, vectors, operations)
+    type(structure_type), intent(in) :: structure   !< the links of each pair, without findings
+    logical, intent(in) :: independent(:)           !< (M) the coordinate is independent
     type(structural_vectors_type), intent(out) :: vectors   !< the second set of data
     integer(long), intent(out), optional :: operations   !< pairs examined and items queued or taken out: a measure of the work
     type(work_type) :: work
 
     work%graph = graph_from_structure(structure)
+    call work%graph%weigh(independent)
     call work%search%start(work%graph)
     call measure_reach(work%graph, work%reach, work%onward)
     call reserve(work%vectors, 2*structure%n_coordinates + 1)

@@ -6,7 +6,7 @@ program test_drafts
   use mech9_parser, only: parse_document
   use mech9_diagnostics, only: diagnostics_type
   use mech9_grammar, only: item_table
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_draft, only: draft_type, unquoted, integer_of
   use mech9_draft_text, only: draft_text_type, write_draft, locate
   use mech9_draft_source, only: draft_from_document
@@ -98,7 +98,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(draft_type) :: draft
     type(draft_text_type) :: written
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(diagnostics_type) :: diagnostics
     type(fault_type), allocatable :: faults(:)
     integer :: group, entry, i
@@ -112,7 +112,7 @@ contains
     call tester%is_true(draft%groups(group)%entries(entry)%name == 'moving_point', 'the entry of a byte')
     call locate(written, 1, group, entry)
     call tester%is_true(group == 0, 'a comment belongs to none')
-    call read_draft(draft, 'a.nml', .false., mechanism, written, diagnostics)
+    call read_draft(draft, 'a.nml', .false., model, written, diagnostics)
     call faults_of(diagnostics, written, faults)
     found = .false.
     do i = 1, size(faults)

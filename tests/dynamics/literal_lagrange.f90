@@ -9,7 +9,7 @@ module mech9_literal_lagrange
   use mech9_rotation, only: cross
   use mech9_pose, only: pose_type, transformed
   use mech9_inertia, only: second_moments
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_load, only: load_type
   use mech9_force_load, only: force_load_type
   use mech9_spring_load, only: spring_load_type
@@ -41,8 +41,8 @@ module mech9_literal_lagrange
 contains
 
   !> The equations at the closed position in `state`, for its rates of the independent coordinates.
-  subroutine literal_equations(mechanism, plan, state, literal, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine literal_equations(model, plan, state, literal, err)
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(in) :: plan                 !< its plan
     type(state_type), intent(in) :: state               !< a closed position
     type(literal_type), intent(out) :: literal          !< coefficients, velocity terms and forces
@@ -54,18 +54,18 @@ contains
 
     n = size(plan%independent)
     rates = state%dq(plan%independent)
-    call differentiate(mechanism, plan, state, derivatives, err)
+    call differentiate(model, plan, state, derivatives, err)
     if (allocated(err)) return
-    literal%coefficients = coefficients_of(mechanism, derivatives)
-    literal%forces = forces_of(mechanism, snapshot(mechanism, plan, state), derivatives, rates)
+    literal%coefficients = coefficients_of(model, derivatives)
+    literal%forces = forces_of(model, snapshot(model, plan, state), derivatives, rates)
 
     allocate (a(n, n, -half_width:half_width), da(n, n, n), literal%velocity_terms(n))
     do l = 1, n
       call neighbours(plan, state, plan%independent(l), around, err)
       do i = -half_width, half_width
-        if (.not. allocated(err)) call differentiate(mechanism, plan, around(i), derivatives, err)
+        if (.not. allocated(err)) call differentiate(model, plan, around(i), derivatives, err)
         if (allocated(err)) return
-        a(:, :, i) = coefficients_of(mechanism, derivatives)
+        a(:, :, i) = coefficients_of(model, derivatives)
       end do
       do r = 1, n
         do p = 1, n
@@ -132,8 +132,8 @@ contains
   end subroutine close_chains
 
   !> Derivatives of a snapshot with respect to each independent coordinate: (snapshot, I).
-  subroutine differentiate(mechanism, plan, state, derivatives, err)
-    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+  subroutine differentiate(model, plan, state, derivatives, err)
+    type(model_type), intent(in) :: model                 !< the model
     type(plan_type), intent(in) :: plan                       !< its plan
     type(state_type), intent(in) :: state                     !< its state
     real(wp), allocatable, intent(out) :: derivatives(:, :)   !< (snapshot,I) by the independent coordinates
@@ -143,13 +143,13 @@ contains
     real(wp) :: unused, error
     integer :: n, p, i
 
-    n = body_size*size(mechanism%bodies) + load_size*size(mechanism%loads)
+    n = body_size*size(model%mechanism%bodies) + load_size*size(model%mechanism%loads)
     allocate (derivatives(n, size(plan%independent)), values(n, -half_width:half_width))
     do p = 1, size(plan%independent)
       call neighbours(plan, state, plan%independent(p), around, err)
       if (allocated(err)) return
       do i = -half_width, half_width
-        values(:, i) = snapshot(mechanism, plan, around(i))
+        values(:, i) = snapshot(model, plan, around(i))
       end do
       do i = 1, n
         call derivatives_from_stencil(values(i, :), h, derivatives(i, p), unused, error)
@@ -158,23 +158,23 @@ contains
   end subroutine differentiate
 
   !> All numbers that are differentiated: of each body, then of each load.
-  function snapshot(mechanism, plan, state) result(numbers)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  function snapshot(model, plan, state) result(numbers)
+    type(model_type), intent(in) :: model       !< the model
     type(plan_type), intent(in) :: plan             !< its plan
     type(state_type), intent(in) :: state           !< its state
-    real(wp) :: numbers(body_size*size(mechanism%bodies) + load_size*size(mechanism%loads))
+    real(wp) :: numbers(body_size*size(model%mechanism%bodies) + load_size*size(model%mechanism%loads))
     type(pose_type) :: pose
     integer :: i, first
 
-    do i = 1, size(mechanism%bodies)
-      pose = link_pose(plan, state, mechanism%bodies(i)%link)
+    do i = 1, size(model%mechanism%bodies)
+      pose = link_pose(plan, state, model%mechanism%bodies(i)%link)
       first = body_size*(i - 1)
-      numbers(first + 1:first + 3) = transformed(pose, mechanism%bodies(i)%centre)
+      numbers(first + 1:first + 3) = transformed(pose, model%mechanism%bodies(i)%centre)
       numbers(first + 4:first + 12) = reshape(pose%r, [9])
     end do
-    do i = 1, size(mechanism%loads)
-      first = body_size*size(mechanism%bodies) + load_size*(i - 1)
-      numbers(first + 1:first + load_size) = load_snapshot(mechanism%loads(i)%load, plan, state)
+    do i = 1, size(model%mechanism%loads)
+      first = body_size*size(model%mechanism%bodies) + load_size*(i - 1)
+      numbers(first + 1:first + load_size) = load_snapshot(model%mechanism%loads(i)%load, plan, state)
     end do
   end function snapshot
 
@@ -213,22 +213,22 @@ contains
   end function link_pose
 
   !> (21): sum of m du/dq_p . du/dq_r + sum_jkl dA_jk/dq_p dA_jl/dq_r J'_kl.
-  pure function coefficients_of(mechanism, derivatives) result(a)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  pure function coefficients_of(model, derivatives) result(a)
+    type(model_type), intent(in) :: model       !< the model
     real(wp), intent(in) :: derivatives(:, :)       !< (snapshot,I) by the independent coordinates
     real(wp) :: a(size(derivatives, 2), size(derivatives, 2))
     real(wp) :: moments(3, 3), rotation_p(3, 3), rotation_r(3, 3)
     integer :: i, first, p, r, j, k, l
 
     a = 0.0_wp
-    do i = 1, size(mechanism%bodies)
-      moments = second_moments(mechanism%bodies(i)%inertia)
+    do i = 1, size(model%mechanism%bodies)
+      moments = second_moments(model%mechanism%bodies(i)%inertia)
       first = body_size*(i - 1)
       do r = 1, size(a, 2)
         rotation_r = reshape(derivatives(first + 4:first + 12, r), [3, 3])
         do p = 1, size(a, 1)
           rotation_p = reshape(derivatives(first + 4:first + 12, p), [3, 3])
-          a(p, r) = a(p, r) + mechanism%bodies(i)%mass*dot_product(derivatives(first + 1:first + 3, p), &
+          a(p, r) = a(p, r) + model%mechanism%bodies(i)%mass*dot_product(derivatives(first + 1:first + 3, p), &
                                                                    derivatives(first + 1:first + 3, r))
           do l = 1, 3
             do k = 1, 3
@@ -243,8 +243,8 @@ contains
   end function coefficients_of
 
   !> (25): forces and couples on links; springs as -dV/dq, dampers by the rates of their lengths.
-  function forces_of(mechanism, here, derivatives, rates) result(forces)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  function forces_of(model, here, derivatives, rates) result(forces)
+    type(model_type), intent(in) :: model       !< the model
     real(wp), intent(in) :: here(:)                 !< snapshot
     real(wp), intent(in) :: derivatives(:, :)       !< (snapshot,I) by the independent coordinates
     real(wp), intent(in) :: rates(:)                !< of the independent coordinates
@@ -253,15 +253,15 @@ contains
 
     forces = 0.0_wp
     do p = 1, size(rates)
-      do i = 1, size(mechanism%bodies)
+      do i = 1, size(model%mechanism%bodies)
         first = body_size*(i - 1)
-        forces(p) = forces(p) + mechanism%bodies(i)%mass &
-                    *dot_product(mechanism%gravity, derivatives(first + 1:first + 3, p))
+        forces(p) = forces(p) + model%mechanism%bodies(i)%mass &
+                    *dot_product(model%mechanism%gravity, derivatives(first + 1:first + 3, p))
       end do
     end do
-    do i = 1, size(mechanism%loads)
-      first = body_size*size(mechanism%bodies) + load_size*(i - 1)
-      forces = forces + load_forces(mechanism%loads(i)%load, here(first + 1:first + load_size), &
+    do i = 1, size(model%mechanism%loads)
+      first = body_size*size(model%mechanism%bodies) + load_size*(i - 1)
+      forces = forces + load_forces(model%mechanism%loads(i)%load, here(first + 1:first + load_size), &
                                     derivatives(first + 1:first + load_size, :), rates)
     end do
   end function forces_of

@@ -10,7 +10,7 @@ module mech9_loaded_mechanisms
   use mech9_force_load, only: force_load_type
   use mech9_spring_load, only: spring_load_type
   use mech9_coordinate_load, only: coordinate_load_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame, fig1, general_loop
   use mech9_random_geometry, only: random_vector, random_unit
   use mech9_curved_pair, only: curved_pair_type
@@ -22,61 +22,61 @@ module mech9_loaded_mechanisms
 contains
 
   !> Three moving links: revolute, prismatic (its links given the other way round), helical; all loads.
-  subroutine open_chain(mechanism)
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+  subroutine open_chain(model)
+    type(model_type), intent(out) :: model       !< the model
     type(random_type) :: random
     type(pose_type) :: at
     type(screw_pair_type) :: helix
 
-    call new_mechanism(4, reshape([1, 2, 3, 2, 3, 4], [2, 3]), [1, 2, 3], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, random_frame(random), random_frame(random))
-    call add_prismatic(mechanism, 2, 3, 2, random_frame(random), random_frame(random))
+    call new_mechanism(4, reshape([1, 2, 3, 2, 3, 4], [2, 3]), [1, 2, 3], model)
+    call add_revolute(model, 1, 1, 2, random_frame(random), random_frame(random))
+    call add_prismatic(model, 2, 3, 2, random_frame(random), random_frame(random))
     at = random_frame(random)
     helix = helical_pair(at, random_frame(random), 0.4_wp)
     helix%coordinate = 3
     helix%reference = 3
     helix%moving = 4
-    allocate (mechanism%pairs(3)%pair, source=helix)
-    mechanism%initial_position = [0.4_wp, -0.3_wp, 0.8_wp]
-    call load_everything(random, mechanism)
+    allocate (model%mechanism%pairs(3)%pair, source=helix)
+    model%problem%initial%position = [0.4_wp, -0.3_wp, 0.8_wp]
+    call load_everything(random, model)
   end subroutine open_chain
 
   !> The paper's Fig. 1 with the independent coordinate `driven`; all loads, also across the plane.
-  subroutine loaded_fig1(driven, mechanism)
+  subroutine loaded_fig1(driven, model)
     integer, intent(in) :: driven                    !< number of the independent coordinate
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+    type(model_type), intent(out) :: model       !< the model
     type(random_type) :: random
 
-    call fig1(driven, mechanism)
+    call fig1(driven, model)
     ! far from the dead points of q1, which swings between -2.33 and -0.91
-    mechanism%initial_position = [-1.69_wp, 2.53_wp, 0.44_wp, -2.25_wp, 2.65_wp, 2.41_wp, 2.01_wp]
-    call load_everything(random, mechanism)
+    model%problem%initial%position = [-1.69_wp, 2.53_wp, 0.44_wp, -2.25_wp, 2.65_wp, 2.41_wp, 2.01_wp]
+    call load_everything(random, model)
   end subroutine loaded_fig1
 
   !> Five planar links, two degrees of freedom.
-  subroutine five_bar(mechanism)
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+  subroutine five_bar(model)
+    type(model_type), intent(out) :: model       !< the model
     type(random_type) :: random
     real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
 
-    call new_mechanism(5, reshape([1, 2, 2, 3, 3, 4, 4, 5, 1, 5], [2, 5]), [1, 5], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call add_revolute(mechanism, 2, 2, 3, frame([0.8_wp, 0.0_wp, 0.0_wp], z), frame(origin, z))
-    call add_revolute(mechanism, 3, 3, 4, frame([1.2_wp, 0.0_wp, 0.0_wp], z), frame([1.3_wp, 0.0_wp, 0.0_wp], z))
-    call add_revolute(mechanism, 4, 4, 5, frame(origin, z), frame([0.9_wp, 0.0_wp, 0.0_wp], z))
-    call add_revolute(mechanism, 5, 1, 5, frame([1.0_wp, 0.0_wp, 0.0_wp], z), frame(origin, z))
-    mechanism%initial_position = [2.1_wp, -1.3_wp, 1.7_wp, -1.5_wp, 1.0_wp]
-    call load_everything(random, mechanism)
+    call new_mechanism(5, reshape([1, 2, 2, 3, 3, 4, 4, 5, 1, 5], [2, 5]), [1, 5], model)
+    call add_revolute(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(model, 2, 2, 3, frame([0.8_wp, 0.0_wp, 0.0_wp], z), frame(origin, z))
+    call add_revolute(model, 3, 3, 4, frame([1.2_wp, 0.0_wp, 0.0_wp], z), frame([1.3_wp, 0.0_wp, 0.0_wp], z))
+    call add_revolute(model, 4, 4, 5, frame(origin, z), frame([0.9_wp, 0.0_wp, 0.0_wp], z))
+    call add_revolute(model, 5, 1, 5, frame([1.0_wp, 0.0_wp, 0.0_wp], z), frame(origin, z))
+    model%problem%initial%position = [2.1_wp, -1.3_wp, 1.7_wp, -1.5_wp, 1.0_wp]
+    call load_everything(random, model)
   end subroutine five_bar
 
   !> The general spatial loop of seven revolutes, a little away from where it was drawn.
-  subroutine loaded_loop(mechanism)
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+  subroutine loaded_loop(model)
+    type(model_type), intent(out) :: model       !< the model
     type(random_type) :: random
 
-    call general_loop(mechanism)
-    mechanism%initial_position(1) = -0.2_wp
-    call load_everything(random, mechanism)
+    call general_loop(model)
+    model%problem%initial%position(1) = -0.2_wp
+    call load_everything(random, model)
   end subroutine loaded_loop
 
   !> Two spatial loops with common links and an open branch of two links that hangs on the second; four
@@ -85,9 +85,9 @@ contains
   !>   loop A   1-2-3-4-5-6-7-8-1               coordinates 1 to 8
   !>   loop B   3-9-10-11-12-13-5               coordinates 9 to 14, over links 3, 4, 5 of loop A
   !>   branch   11-14-15                        coordinates 15, 16
-  subroutine two_loops(independent, mechanism)
+  subroutine two_loops(independent, model)
     integer, intent(in) :: independent(2)            !< those of the loops
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+    type(model_type), intent(out) :: model       !< the model
     integer, parameter :: links(2, 16) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8, 1, &
                                                   3, 9, 10, 9, 10, 11, 11, 12, 12, 13, 13, 5, 11, 14, 14, 15], [2, 16])
     type(random_type) :: random
@@ -96,24 +96,24 @@ contains
 
     ! of many geometries one whose loops move freely around the start
     random%seed = 942361_long
-    call new_mechanism(15, links, [independent, 15, 16], mechanism)
+    call new_mechanism(15, links, [independent, 15, 16], model)
     do k = 1, 16
       at = random_frame(random)
       if (k == 10 .or. k == 15) then
-        call add_curved(mechanism, k, links(1, k), links(2, k))
+        call add_curved(model, k, links(1, k), links(2, k))
       else if (k == 16) then
-        call add_prismatic(mechanism, k, links(1, k), links(2, k), at, at)
+        call add_prismatic(model, k, links(1, k), links(2, k), at, at)
       else
-        call add_revolute(mechanism, k, links(1, k), links(2, k), at, at)
+        call add_revolute(model, k, links(1, k), links(2, k), at, at)
       end if
     end do
-    mechanism%initial_position(independent) = [0.1_wp, -0.05_wp]
-    mechanism%initial_position(15:16) = [0.7_wp, 0.2_wp]
-    call load_everything(random, mechanism)
+    model%problem%initial%position(independent) = [0.1_wp, -0.05_wp]
+    model%problem%initial%position(15:16) = [0.7_wp, 0.2_wp]
+    call load_everything(random, model)
   end subroutine two_loops
 
-  subroutine add_curved(mechanism, k, reference, moving)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine add_curved(model, k, reference, moving)
+    type(model_type), intent(inout) :: model       !< the model
     integer, intent(in) :: k                           !< coordinate of the pair
     integer, intent(in) :: reference                   !< number of its reference link
     integer, intent(in) :: moving                      !< number of its moving link
@@ -123,7 +123,7 @@ contains
     pair%reference = reference
     pair%moving = moving
     pair%angular = .false.
-    allocate (mechanism%pairs(k)%pair, source=pair)
+    allocate (model%mechanism%pairs(k)%pair, source=pair)
   end subroutine add_curved
 
   function random_frame(random) result(at)
@@ -136,39 +136,39 @@ contains
   end function random_frame
 
   !> No bodies, no loads, no gravity.
-  subroutine without_loads(mechanism)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine without_loads(model)
+    type(model_type), intent(inout) :: model       !< the model
 
-    mechanism%gravity = 0.0_wp
-    if (allocated(mechanism%bodies)) deallocate (mechanism%bodies)
-    if (allocated(mechanism%loads)) deallocate (mechanism%loads)
-    allocate (mechanism%bodies(0), mechanism%loads(0))
+    model%mechanism%gravity = 0.0_wp
+    if (allocated(model%mechanism%bodies)) deallocate (model%mechanism%bodies)
+    if (allocated(model%mechanism%loads)) deallocate (model%mechanism%loads)
+    allocate (model%mechanism%bodies(0), model%mechanism%loads(0))
   end subroutine without_loads
 
   !> A body on every moving link, gravity, and loads of every kind on moving links, between them and to the
   !> frame, on every coordinate.
-  subroutine load_everything(random, mechanism)
+  subroutine load_everything(random, model)
     type(random_type), intent(inout) :: random         !< source of the random numbers
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    type(model_type), intent(inout) :: model       !< the model
     integer :: i, k, last
 
-    call without_loads(mechanism)
-    mechanism%gravity = [0.7_wp, -9.0_wp, 3.0_wp]
-    last = mechanism%structure%n_links
+    call without_loads(model)
+    model%mechanism%gravity = [0.7_wp, -9.0_wp, 3.0_wp]
+    last = model%mechanism%structure%n_links
     do i = 2, last
-      call add_point_masses(mechanism, i, random_masses(random), together=.true.)
+      call add_point_masses(model, i, random_masses(random), together=.true.)
     end do
-    call add_load(mechanism, force_load_type(link=last, position=random_vector(random), force=9.0_wp*random_unit(random)))
-    call add_load(mechanism, force_load_type(link=3, position=random_vector(random), force=7.0_wp*random_unit(random), &
+    call add_load(model, force_load_type(link=last, position=random_vector(random), force=9.0_wp*random_unit(random)))
+    call add_load(model, force_load_type(link=3, position=random_vector(random), force=7.0_wp*random_unit(random), &
                                              turns_with_link=.true.))
-    call add_load(mechanism, force_load_type(link=2, torque=5.0_wp*random_unit(random)))
-    call add_load(mechanism, force_load_type(link=last, torque=6.0_wp*random_unit(random), turns_with_link=.true.))
-    call add_load(mechanism, spring_load_type(links=[1, last], positions=ends(random), stiffness=11.0_wp, &
+    call add_load(model, force_load_type(link=2, torque=5.0_wp*random_unit(random)))
+    call add_load(model, force_load_type(link=last, torque=6.0_wp*random_unit(random), turns_with_link=.true.))
+    call add_load(model, spring_load_type(links=[1, last], positions=ends(random), stiffness=11.0_wp, &
                                               free_length=0.4_wp, damping=2.0_wp))
-    call add_load(mechanism, spring_load_type(links=[last - 1, 2], positions=ends(random), stiffness=8.0_wp, &
+    call add_load(model, spring_load_type(links=[last - 1, 2], positions=ends(random), stiffness=8.0_wp, &
                                               free_length=0.6_wp, damping=1.5_wp))
-    do k = 1, mechanism%structure%n_coordinates
-      call add_load(mechanism, coordinate_load_type(coordinate=k, stiffness=1.0_wp + 0.2_wp*k, rest=0.3_wp*k, &
+    do k = 1, model%mechanism%structure%n_coordinates
+      call add_load(model, coordinate_load_type(coordinate=k, stiffness=1.0_wp + 0.2_wp*k, rest=0.3_wp*k, &
                                                     damping=0.4_wp, force=2.0_wp - 0.5_wp*k))
     end do
   end subroutine load_everything
@@ -194,8 +194,8 @@ contains
   end function random_masses
 
   !> Points with mass on a link: together as one body, by its mass, centre and tensor, or a body each.
-  subroutine add_point_masses(mechanism, link, points, together)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine add_point_masses(model, link, points, together)
+    type(model_type), intent(inout) :: model       !< the model
     integer, intent(in) :: link                        !< that carries the points
     real(wp), intent(in) :: points(:, :)               !< (4, n): x, y, z, mass
     logical, intent(in) :: together                    !< one body, not one for each point
@@ -204,7 +204,7 @@ contains
 
     if (.not. together) then
       do i = 1, size(points, 2)
-        call add_body(mechanism, link, points(4, i), points(1:3, i), 0.0_wp*identity)
+        call add_body(model, link, points(4, i), points(1:3, i), 0.0_wp*identity)
       end do
       return
     end if
@@ -217,30 +217,30 @@ contains
         inertia(:, j) = inertia(:, j) + points(4, i)*(dot_product(arm, arm)*identity(:, j) - arm*arm(j))
       end do
     end do
-    call add_body(mechanism, link, mass, centre, inertia)
+    call add_body(model, link, mass, centre, inertia)
   end subroutine add_point_masses
 
-  subroutine add_body(mechanism, link, mass, centre, inertia)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine add_body(model, link, mass, centre, inertia)
+    type(model_type), intent(inout) :: model       !< the model
     integer, intent(in) :: link                        !< its number
     real(wp), intent(in) :: mass                       !< [kg]
     real(wp), intent(in) :: centre(3)                  !< mass centre in the link [m]
     real(wp), intent(in) :: inertia(3, 3)              !< about the mass centre [kg m^2]
 
-    mechanism%bodies = [mechanism%bodies, body_type(link=link, mass=mass, centre=centre, inertia=inertia)]
+    model%mechanism%bodies = [model%mechanism%bodies, body_type(link=link, mass=mass, centre=centre, inertia=inertia)]
   end subroutine add_body
 
-  subroutine add_load(mechanism, load)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine add_load(model, load)
+    type(model_type), intent(inout) :: model       !< the model
     class(load_type), intent(in) :: load               !< that is added
     type(load_slot_type), allocatable :: longer(:)
     integer :: i
 
-    allocate (longer(size(mechanism%loads) + 1))
-    do i = 1, size(mechanism%loads)
-      call move_alloc(mechanism%loads(i)%load, longer(i)%load)
+    allocate (longer(size(model%mechanism%loads) + 1))
+    do i = 1, size(model%mechanism%loads)
+      call move_alloc(model%mechanism%loads(i)%load, longer(i)%load)
     end do
     allocate (longer(size(longer))%load, source=load)
-    call move_alloc(longer, mechanism%loads)
+    call move_alloc(longer, model%mechanism%loads)
   end subroutine add_load
 end module mech9_loaded_mechanisms

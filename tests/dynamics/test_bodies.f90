@@ -7,7 +7,7 @@ program test_bodies
   use mech9_error, only: error_type, exit_data, exit_integrator
   use mech9_rotation, only: identity
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -38,8 +38,8 @@ program test_bodies
 contains
 
   !> Assemble and work out the motion for some rates of the independent coordinates.
-  subroutine find(mechanism, plan, dynamics, work, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine find(model, plan, dynamics, work, err)
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< its plan
     type(dynamics_plan_type), intent(out) :: dynamics   !< plan of its dynamics
     type(lagrange_work_type), intent(out) :: work       !< the equations at the start
@@ -47,9 +47,9 @@ contains
     type(state_type) :: state
     integer :: i
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     if (allocated(err)) return
-    call make_dynamics_plan(mechanism, plan, dynamics)
+    call make_dynamics_plan(model%mechanism, plan, dynamics)
     work = new_lagrange_work(plan, dynamics)
     ! frames that nothing depends on must not be read
     do i = 1, plan%n_coordinates
@@ -65,17 +65,17 @@ contains
     end do
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, size(plan%independent))]
     ! open chains have their accelerations without the equations
-    call find_equations(mechanism, plan, dynamics, state, work, err)
+    call find_equations(model%mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    call find_motion(mechanism, plan, dynamics, state, work, err)
+    call find_motion(model%mechanism, plan, dynamics, state, work, err)
   end subroutine find
 
   !> Two mechanisms have the same equations. They are sums over the same matter in another order: some
   !> dozens of units of round-off of the largest number.
   subroutine check_same(test, first, second, why)
     type(tester_type), intent(inout) :: test     !< counts the checks
-    type(mechanism_type), intent(in) :: first    !< first mechanism
-    type(mechanism_type), intent(in) :: second   !< second mechanism
+    type(model_type), intent(in) :: first    !< first mechanism
+    type(model_type), intent(in) :: second   !< second mechanism
     character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
@@ -105,14 +105,14 @@ contains
   !> A rigid body is its point masses: parallel axes, tensors and mass centres, on two spatial loops.
   subroutine test_point_masses(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(mechanism_type) :: bodies, points
+    type(model_type) :: bodies, points
     type(random_type) :: random
     real(wp) :: masses(4, 6)
     integer :: i, j
 
     call two_loops([1, 5], bodies)
-    deallocate (bodies%bodies)
-    allocate (bodies%bodies(0))
+    deallocate (bodies%mechanism%bodies)
+    allocate (bodies%mechanism%bodies(0))
     points = bodies
     do i = 2, 15
       do j = 1, 6
@@ -128,15 +128,15 @@ contains
   !> Two bodies of half the mass in the same place are the whole one.
   subroutine test_halves(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(mechanism_type) :: whole, halves
+    type(model_type) :: whole, halves
     integer :: i
 
     call loaded_fig1(5, whole)
     halves = whole
-    deallocate (halves%bodies)
-    allocate (halves%bodies(0))
-    do i = 1, size(whole%bodies)
-      associate (body => whole%bodies(i))
+    deallocate (halves%mechanism%bodies)
+    allocate (halves%mechanism%bodies(0))
+    do i = 1, size(whole%mechanism%bodies)
+      associate (body => whole%mechanism%bodies(i))
         call add_body(halves, body%link, 0.5_wp*body%mass, body%centre, 0.5_wp*body%inertia)
         call add_body(halves, body%link, 0.5_wp*body%mass, body%centre, 0.5_wp*body%inertia)
       end associate
@@ -147,23 +147,23 @@ contains
   !> Links without mass are not in the plan, nor is the frame; what they are left out of is the same.
   subroutine test_massless(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(mechanism_type) :: mechanism, padded
+    type(model_type) :: model, padded
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
     type(error_type), allocatable :: err
     integer :: i
 
-    call loaded_loop(mechanism)
-    call without_loads(mechanism)
-    mechanism%gravity = [0.0_wp, -9.81_wp, 0.0_wp]
-    call add_body(mechanism, 2, 2.0_wp, [0.3_wp, 0.1_wp, 0.2_wp], 0.1_wp*identity)
-    padded = mechanism
+    call loaded_loop(model)
+    call without_loads(model)
+    model%mechanism%gravity = [0.0_wp, -9.81_wp, 0.0_wp]
+    call add_body(model, 2, 2.0_wp, [0.3_wp, 0.1_wp, 0.2_wp], 0.1_wp*identity)
+    padded = model
     do i = 3, 7
       call add_body(padded, i, 0.0_wp, [0.3_wp, 0.1_wp, 0.2_wp], 0.0_wp*identity)
     end do
     call add_body(padded, 1, 5.0_wp, [0.3_wp, 0.1_wp, 0.2_wp], identity)
-    call check_same(test, mechanism, padded, 'bodies without mass, and one of the frame')
+    call check_same(test, model, padded, 'bodies without mass, and one of the frame')
     call find(padded, plan, dynamics, work, err)
     call test%is_true(size(dynamics%bodies) == 1, 'one link with mass is one body in the plan')
     call test%is_true(dynamics%carries(plan%frame_of(2)), 'its frame is kept')
@@ -174,42 +174,42 @@ contains
   !> The coordinate that moves no mass is named, whichever it is.
   subroutine test_no_inertia(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
     type(error_type), allocatable :: err
 
-    call open_chain(mechanism)
-    call without_loads(mechanism)
-    call find(mechanism, plan, dynamics, work, err)
+    call open_chain(model)
+    call without_loads(model)
+    call find(model, plan, dynamics, work, err)
     call test%has_error(err, exit_data, 'no body at all')
     call test%is_true(index(message_of(err), 'coordinate 1 ') > 0, 'the first coordinate is named: '//message_of(err))
-    call add_body(mechanism, 2, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
-    call add_body(mechanism, 3, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
-    call find(mechanism, plan, dynamics, work, err)
+    call add_body(model, 2, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
+    call add_body(model, 3, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
+    call find(model, plan, dynamics, work, err)
     call test%has_error(err, exit_data, 'nothing on the last link')
     call test%is_true(index(message_of(err), 'coordinate 3 ') > 0, 'the last coordinate is named: '//message_of(err))
-    call add_body(mechanism, 4, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
-    call find(mechanism, plan, dynamics, work, err)
+    call add_body(model, 4, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
+    call find(model, plan, dynamics, work, err)
     call test%no_error(err, 'a body on every link')
   end subroutine test_no_inertia
 
   !> Inertia without mass, turned by a torque on its coordinate: J ddq = M.
   subroutine test_flywheel(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
     type(error_type), allocatable :: err
 
-    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call without_loads(mechanism)
-    call add_body(mechanism, 2, 0.0_wp, origin, 0.25_wp*identity)
-    call add_load(mechanism, coordinate_load_type(coordinate=1, force=3.0_wp))
-    call find(mechanism, plan, dynamics, work, err)
+    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], model)
+    call add_revolute(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call without_loads(model)
+    call add_body(model, 2, 0.0_wp, origin, 0.25_wp*identity)
+    call add_load(model, coordinate_load_type(coordinate=1, force=3.0_wp))
+    call find(model, plan, dynamics, work, err)
     call test%no_error(err, 'flywheel')
     call test%near(work%accelerations(1), 12.0_wp, 1.0e-15_wp, 'a flywheel: 3/0.25')
   end subroutine test_flywheel
@@ -218,7 +218,7 @@ contains
   !> the textbook's equations with c = cos q2, s = sin q2.
   subroutine test_double_pendulum(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
@@ -226,15 +226,15 @@ contains
     real(wp), parameter :: m1 = 0.7_wp, m2 = 1.1_wp, l1 = 0.9_wp, l2 = 0.6_wp, g = 9.81_wp, q1 = 0.4_wp, q2 = -1.1_wp
     real(wp), parameter :: rate1 = 0.6_wp, rate2 = -0.1_wp, c = cos(q2), s = sin(q2)
 
-    call new_mechanism(3, reshape([1, 2, 2, 3], [2, 2]), [1, 2], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call add_revolute(mechanism, 2, 2, 3, frame([l1, 0.0_wp, 0.0_wp], z), frame(origin, z))
-    mechanism%initial_position = [q1, q2]
-    call without_loads(mechanism)
-    mechanism%gravity = [g, 0.0_wp, 0.0_wp]
-    call add_body(mechanism, 2, m1, [l1, 0.0_wp, 0.0_wp], 0.0_wp*identity)
-    call add_body(mechanism, 3, m2, [l2, 0.0_wp, 0.0_wp], 0.0_wp*identity)
-    call find(mechanism, plan, dynamics, work, err)
+    call new_mechanism(3, reshape([1, 2, 2, 3], [2, 2]), [1, 2], model)
+    call add_revolute(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(model, 2, 2, 3, frame([l1, 0.0_wp, 0.0_wp], z), frame(origin, z))
+    model%problem%initial%position = [q1, q2]
+    call without_loads(model)
+    model%mechanism%gravity = [g, 0.0_wp, 0.0_wp]
+    call add_body(model, 2, m1, [l1, 0.0_wp, 0.0_wp], 0.0_wp*identity)
+    call add_body(model, 3, m2, [l2, 0.0_wp, 0.0_wp], 0.0_wp*identity)
+    call find(model, plan, dynamics, work, err)
     call test%no_error(err, 'double pendulum')
     call test%near(work%coefficients(1, 1), (m1 + m2)*l1**2 + m2*l2**2 + 2.0_wp*m2*l1*l2*c, 1.0e-15_wp, 'a11')
     call test%near(work%coefficients(2, 1), m2*l2**2 + m2*l1*l2*c, 1.0e-15_wp, 'a12')
@@ -248,23 +248,23 @@ contains
   !> A spring of free length zero may shrink to nothing, where its damper alone is left; any other may not.
   subroutine test_spring_without_length(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
     type(error_type), allocatable :: err
 
-    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], mechanism)
-    call add_prismatic(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call without_loads(mechanism)
-    call add_body(mechanism, 2, 2.0_wp, origin, 0.0_wp*identity)
-    call add_load(mechanism, spring_load_type(links=[1, 2], stiffness=5.0_wp, damping=3.0_wp))
-    call find(mechanism, plan, dynamics, work, err)
+    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], model)
+    call add_prismatic(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call without_loads(model)
+    call add_body(model, 2, 2.0_wp, origin, 0.0_wp*identity)
+    call add_load(model, spring_load_type(links=[1, 2], stiffness=5.0_wp, damping=3.0_wp))
+    call find(model, plan, dynamics, work, err)
     call test%no_error(err, 'a spring of free length zero')
     ! the rate that `find` gives to a first coordinate is 0.6
     call test%near(work%accelerations(1), -3.0_wp*0.6_wp/2.0_wp, 1.0e-15_wp, 'its damper alone: -3 v/2')
-    call add_load(mechanism, spring_load_type(links=[1, 2], stiffness=5.0_wp, free_length=0.1_wp))
-    call find(mechanism, plan, dynamics, work, err)
+    call add_load(model, spring_load_type(links=[1, 2], stiffness=5.0_wp, free_length=0.1_wp))
+    call find(model, plan, dynamics, work, err)
     call test%has_error(err, exit_integrator, 'a spring of free length 0.1 m shrunk to nothing')
   end subroutine test_spring_without_length
 end program test_bodies

@@ -2,33 +2,34 @@
 program test_coordinate_choice
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data, exit_singular
-  use mech9_mechanism, only: mechanism_type
+  use mech9_partition, only: partition_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_requested, only: requested_type, requested_by_results
-  use mech9_coordinate_choice, only: with_independent
+  use mech9_coordinate_choice, only: carry_over
   use mech9_curved_pair, only: curved_pair_type
   use mech9_sample_mechanisms, only: four_bar
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
 
-  call new_four_bar(mechanism)
+  call new_four_bar(model)
   call choose([.false., .true., .false., .false.], 0, 'another coordinate serves')
   call choose([.true., .true., .false., .false.], exit_singular, 'two of one degree of freedom cannot serve')
-  call break_pair(mechanism)
+  call break_pair(model)
   call choose([.false., .true., .false., .false.], exit_data, 'a pair without a value is no matter of the choice')
   call test%finish()
 
 contains
 
   !> A crank and a rocker.
-  subroutine new_four_bar(mechanism)
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+  subroutine new_four_bar(model)
+    type(model_type), intent(out) :: model       !< the model
 
-    call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], mechanism)
+    call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
   end subroutine new_four_bar
 
   !> Take other independent coordinates at the start of the unbroken four-bar.
@@ -36,17 +37,19 @@ contains
     logical, intent(in) :: independent(:)   !< (M)
     integer, intent(in) :: code             !< of the failure; 0: none
     character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
-    type(mechanism_type) :: whole, other_mechanism
+    type(model_type) :: whole
+    type(partition_type) :: partition
     type(plan_type) :: plan, other_plan
     type(state_type) :: state, other_state
     type(requested_type) :: requested
     type(error_type), allocatable :: err
 
     call new_four_bar(whole)
-    call make_plan(whole, whole%initial_position, plan, state, err)
+    call make_plan(whole%mechanism, whole%problem%partition, whole%problem%initial%position, plan, state, err)
     call test%no_error(err, 'a four-bar')
-    requested = requested_by_results(whole)
-    call with_independent(mechanism, state, independent, requested, other_mechanism, other_plan, other_state, err)
+    requested = requested_by_results(whole%mechanism, whole%request%output)
+    call whole%problem%partition%with_independent(whole%mechanism%structure, independent, partition)
+    call carry_over(model%mechanism, partition, plan, state, requested, other_plan, other_state, err)
     if (code == 0) then
       call test%no_error(err, why)
     else
@@ -55,15 +58,15 @@ contains
   end subroutine choose
 
   !> Put a pair in the place of the third one whose procedure has no value anywhere.
-  subroutine break_pair(mechanism)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine break_pair(model)
+    type(model_type), intent(inout) :: model       !< the model
     type(curved_pair_type) :: broken
 
     broken%broken = .true.
-    broken%coordinate = mechanism%pairs(3)%pair%coordinate
-    broken%reference = mechanism%pairs(3)%pair%reference
-    broken%moving = mechanism%pairs(3)%pair%moving
-    deallocate (mechanism%pairs(3)%pair)
-    allocate (mechanism%pairs(3)%pair, source=broken)
+    broken%coordinate = model%mechanism%pairs(3)%pair%coordinate
+    broken%reference = model%mechanism%pairs(3)%pair%reference
+    broken%moving = model%mechanism%pairs(3)%pair%moving
+    deallocate (model%mechanism%pairs(3)%pair)
+    allocate (model%mechanism%pairs(3)%pair, source=broken)
   end subroutine break_pair
 end program test_coordinate_choice

@@ -3,7 +3,7 @@
 program test_dense_output
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_coordinate_load, only: coordinate_load_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -30,47 +30,49 @@ contains
   !> One slide of 1 kg on a spring of 1 N/m.
   subroutine swing(system)
     type(motion_system_type), intent(inout) :: system   !< begun at its start
-    type(mechanism_type) :: mechanism
+    type(model_type), pointer :: model
     type(coordinate_load_type) :: load
 
-    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], mechanism)
-    call add_prismatic(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call without_loads(mechanism)
-    call add_body(mechanism, 2, 1.0_wp, origin, inertia)
+    allocate (model)
+    call new_mechanism(2, reshape([1, 2], [2, 1]), [1], model)
+    call add_prismatic(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call without_loads(model)
+    call add_body(model, 2, 1.0_wp, origin, inertia)
     load%coordinate = 1
     load%stiffness = 1.0_wp
-    call add_load(mechanism, load)
-    mechanism%initial_position = 1.0_wp
-    call begin(mechanism, 0.0_wp, system)
+    call add_load(model, load)
+    model%problem%initial%position = 1.0_wp
+    call begin(model, 0.0_wp, system)
   end subroutine swing
 
   !> A crank-rocker with a heavy crank, assembled at the guess.
   subroutine rocker(guess, system)
     real(wp), intent(in) :: guess(4)                    !< of the coordinates [rad]
     type(motion_system_type), intent(inout) :: system   !< begun at its start
-    type(mechanism_type) :: mechanism
+    type(model_type), pointer :: model
 
-    call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, guess, mechanism)
-    call without_loads(mechanism)
-    call add_body(mechanism, 2, 1.0_wp, origin, inertia)
-    call begin(mechanism, 2.0_wp, system)
+    allocate (model)
+    call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, guess, model)
+    call without_loads(model)
+    call add_body(model, 2, 1.0_wp, origin, inertia)
+    call begin(model, 2.0_wp, system)
   end subroutine rocker
 
   !> The system of a mechanism at its start.
-  subroutine begin(mechanism, rate, system)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine begin(model, rate, system)
+    type(model_type), intent(in), target :: model       !< the system refers to it
     real(wp), intent(in) :: rate                        !< of the independent coordinate [rad/s, m/s]
     type(motion_system_type), intent(inout) :: system   !< begun at its start
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'a plan')
     if (allocated(err)) return
     state%t = 0.0_wp
     state%dq(plan%independent) = rate
-    call set_motion_system(mechanism, plan, state, system, err)
+    call set_motion_system(model, model%problem%partition, plan, state, system, err)
     call test%no_error(err, 'a system')
   end subroutine begin
 
@@ -104,7 +106,7 @@ contains
     call test%is_true(found .eqv. expected, why//': whether it is found')
     ! the tolerance that is allowed for the worse of two polynomials
     if (found) call test%near(maxval(abs(y - [cos(t), -sin(t)])), 0.0_wp, &
-                              system%mechanism%solver%relative_tolerance + system%mechanism%solver%absolute_tolerance, why)
+                              system%model%request%solver%relative_tolerance + system%model%request%solver%absolute_tolerance, why)
   end subroutine check_swing
 
   !> Steps one after the other, a new beginning, and points inside a long step.
@@ -153,6 +155,7 @@ contains
       call dense_output%insert(t, [cos(t), -sin(t)])
     end do
     call check_swing(system, dense_output, 3.9_wp, .true., 'points within another step')
+    deallocate (system%model)
   end subroutine swinging
 
   !> Both branches of a crank-rocker have the same crank angles and Jacobians of opposite sign.
@@ -174,6 +177,7 @@ contains
     call test%no_error(err, 'the other branch')
     call dense_output%add(upper, 0.2_wp, upper%vector())
     call test%is_true(dense_output%crosses(), 'a step from branch to branch')
+    deallocate (upper%model, lower%model)
   end subroutine branches
 
   !> How far closing may move what an integrator or a polynomial found, and where a state is too near to a
@@ -208,6 +212,7 @@ contains
     system%refuse_below = 2.0_wp
     call system%rate(0.0_wp, closed, ydot, err)
     call test%has_error(err, exit_singular, 'no conditioning is that good')
+    deallocate (system%model)
   end subroutine trust
 
   !> Straight lines through what was found at two times; at one time the value there.

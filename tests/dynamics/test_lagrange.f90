@@ -3,7 +3,7 @@
 program test_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -17,22 +17,22 @@ program test_lagrange
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
 
-  call open_chain(mechanism)
-  call compare(test, mechanism, 'open chain')
-  call loaded_fig1(5, mechanism)
-  call compare(test, mechanism, 'Fig. 1')
-  call loaded_fig1(1, mechanism)
-  call compare(test, mechanism, 'Fig. 1 in its other coordinate, both chains solved together')
-  call five_bar(mechanism)
-  call compare(test, mechanism, 'five-bar')
-  call loaded_loop(mechanism)
-  call compare(test, mechanism, 'general loop')
-  call two_loops([1, 5], mechanism)
-  call compare(test, mechanism, 'two loops and a branch')
-  call two_loops([1, 11], mechanism)
-  call compare(test, mechanism, 'two loops solved together, and a branch')
+  call open_chain(model)
+  call compare(test, model, 'open chain')
+  call loaded_fig1(5, model)
+  call compare(test, model, 'Fig. 1')
+  call loaded_fig1(1, model)
+  call compare(test, model, 'Fig. 1 in its other coordinate, both chains solved together')
+  call five_bar(model)
+  call compare(test, model, 'five-bar')
+  call loaded_loop(model)
+  call compare(test, model, 'general loop')
+  call two_loops([1, 5], model)
+  call compare(test, model, 'two loops and a branch')
+  call two_loops([1, 11], model)
+  call compare(test, model, 'two loops solved together, and a branch')
   call test%finish()
 
 contains
@@ -40,9 +40,9 @@ contains
   !> Differences of closed positions lose 2/h = 128 units of round-off, those of their differences the
   !> square of that, 16,000 units, both times the conditioning of the chains, some hundreds: 1e-11 and
   !> 1e-9 of the largest number are left.
-  subroutine compare(test, mechanism, why)
+  subroutine compare(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(model_type), intent(in) :: model       !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(state_type) :: state
@@ -52,16 +52,16 @@ contains
     type(error_type), allocatable :: err
     integer :: i, n
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, why)
     if (allocated(err)) return
-    call make_dynamics_plan(mechanism, plan, dynamics)
+    call make_dynamics_plan(model%mechanism, plan, dynamics)
     work = new_lagrange_work(plan, dynamics)
     n = size(plan%independent)
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, n)]
-    call find_equations(mechanism, plan, dynamics, state, work, err)
+    call find_equations(model%mechanism, plan, dynamics, state, work, err)
     call test%no_error(err, why)
-    call literal_equations(mechanism, plan, state, literal, err)
+    call literal_equations(model, plan, state, literal, err)
     call test%no_error(err, why//': literally')
     if (allocated(err)) return
     do i = 1, n

@@ -4,7 +4,7 @@ program test_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_load, only: load_slot_type
   use mech9_force_load, only: force_load_type
   use mech9_spring_load, only: spring_load_type
@@ -22,44 +22,44 @@ program test_motion
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
 
-  call open_chain(mechanism)
-  call check_all(test, mechanism, 'open chain')
-  call loaded_fig1(1, mechanism)
-  call check_all(test, mechanism, 'Fig. 1 driven in its second chain')
-  call five_bar(mechanism)
-  call check_all(test, mechanism, 'five-bar')
-  call loaded_loop(mechanism)
-  call check_all(test, mechanism, 'general loop')
-  call two_loops([1, 5], mechanism)
-  call check_all(test, mechanism, 'two loops and a branch')
+  call open_chain(model)
+  call check_all(test, model, 'open chain')
+  call loaded_fig1(1, model)
+  call check_all(test, model, 'Fig. 1 driven in its second chain')
+  call five_bar(model)
+  call check_all(test, model, 'five-bar')
+  call loaded_loop(model)
+  call check_all(test, model, 'general loop')
+  call two_loops([1, 5], model)
+  call check_all(test, model, 'two loops and a branch')
   call test%finish()
 
 contains
 
-  subroutine check_all(test, mechanism, why)
+  subroutine check_all(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(model_type), intent(in) :: model       !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
-    type(mechanism_type) :: conservative
+    type(model_type) :: conservative
 
-    call check_over_time(test, mechanism, why)
-    conservative = mechanism
+    call check_over_time(test, model, why)
+    conservative = model
     call keep_conservative(conservative)
     call check_potential(test, conservative, why)
   end subroutine check_all
 
   !> Leave the loads that have a potential energy, without their dissipation.
-  subroutine keep_conservative(mechanism)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine keep_conservative(model)
+    type(model_type), intent(inout) :: model       !< the model
     type(load_slot_type), allocatable :: kept(:)
     integer :: i, n
 
-    allocate (kept(size(mechanism%loads)))
+    allocate (kept(size(model%mechanism%loads)))
     n = 0
-    do i = 1, size(mechanism%loads)
-      select type (load => mechanism%loads(i)%load)
+    do i = 1, size(model%mechanism%loads)
+      select type (load => model%mechanism%loads(i)%load)
       type is (force_load_type)
         cycle
       type is (spring_load_type)
@@ -69,18 +69,18 @@ contains
         load%force = 0.0_wp
       end select
       n = n + 1
-      call move_alloc(mechanism%loads(i)%load, kept(n)%load)
+      call move_alloc(model%mechanism%loads(i)%load, kept(n)%load)
     end do
-    deallocate (mechanism%loads)
-    allocate (mechanism%loads(n))
+    deallocate (model%mechanism%loads)
+    allocate (model%mechanism%loads(n))
     do i = 1, n
-      call move_alloc(kept(i)%load, mechanism%loads(i)%load)
+      call move_alloc(kept(i)%load, model%mechanism%loads(i)%load)
     end do
   end subroutine keep_conservative
 
   !> The assembled start with some rates, and everything that its motion needs.
-  subroutine begin(mechanism, plan, dynamics, state, work, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine begin(model, plan, dynamics, state, work, err)
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< its plan
     type(dynamics_plan_type), intent(out) :: dynamics   !< plan of its dynamics
     type(state_type), intent(out) :: state              !< at the start, with some rates
@@ -88,22 +88,22 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     if (allocated(err)) return
-    call make_dynamics_plan(mechanism, plan, dynamics)
+    call make_dynamics_plan(model%mechanism, plan, dynamics)
     work = new_lagrange_work(plan, dynamics)
     state%dq(plan%independent) = [(0.9_wp - 0.5_wp*i, i=1, size(plan%independent))]
     ! open chains have their accelerations without the equations
-    call find_equations(mechanism, plan, dynamics, state, work, err)
+    call find_equations(model%mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    call find_motion(mechanism, plan, dynamics, state, work, err)
+    call find_motion(model%mechanism, plan, dynamics, state, work, err)
   end subroutine begin
 
   !> Move the independent coordinates by q + dq t + ddq t^2/2 about the start: the differences over time of all
   !> closed coordinates are their rates and accelerations, that of the kinetic energy is the power of all forces.
-  subroutine check_over_time(test, mechanism, why)
+  subroutine check_over_time(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(model_type), intent(in) :: model       !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     !> The accelerations, some hundreds, bend the path within a tenth of a second.
     real(wp), parameter :: h = 1.0_wp/512.0_wp
@@ -116,7 +116,7 @@ contains
     real(wp) :: energy(-half_width:half_width), rate, acceleration, error, scale
     integer :: i, k, side
 
-    call begin(mechanism, plan, dynamics, start, work, err)
+    call begin(model, plan, dynamics, start, work, err)
     call test%no_error(err, why)
     if (allocated(err)) return
     allocate (q(plan%n_coordinates, -half_width:half_width))
@@ -129,7 +129,7 @@ contains
           state%dq(own) = start%dq(own) + i*h*work%accelerations
         end associate
         call close_chains(plan, state, err)
-        if (.not. allocated(err)) call find_motion(mechanism, plan, dynamics, state, generic, err)
+        if (.not. allocated(err)) call find_motion(model%mechanism, plan, dynamics, state, generic, err)
         call test%no_error(err, why//': a position nearby')
         if (allocated(err)) return
         q(:, i) = state%q
@@ -150,9 +150,9 @@ contains
   end subroutine check_over_time
 
   !> Q_p = -dV/dq_p where all loads have a potential energy.
-  subroutine check_potential(test, mechanism, why)
+  subroutine check_potential(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(model_type), intent(in) :: model       !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     real(wp), parameter :: h = 1.0_wp/128.0_wp
     type(plan_type) :: plan
@@ -163,7 +163,7 @@ contains
     real(wp) :: energy(-half_width:half_width), slope, unused, error
     integer :: i, p, side
 
-    call begin(mechanism, plan, dynamics, start, work, err)
+    call begin(model, plan, dynamics, start, work, err)
     call test%no_error(err, why)
     if (allocated(err)) return
     generic = work
@@ -173,10 +173,10 @@ contains
         do i = 0, side*half_width, side
           state%q(plan%independent(p)) = start%q(plan%independent(p)) + i*h
           call close_chains(plan, state, err)
-          if (.not. allocated(err)) call find_motion(mechanism, plan, dynamics, state, generic, err)
+          if (.not. allocated(err)) call find_motion(model%mechanism, plan, dynamics, state, generic, err)
           call test%no_error(err, why//': a position nearby')
           if (allocated(err)) return
-          energy(i) = potential_energy(mechanism, plan, state, generic%view)
+          energy(i) = potential_energy(model%mechanism, plan, state, generic%view)
         end do
       end do
       call derivatives_from_stencil(energy, h, slope, unused, error)

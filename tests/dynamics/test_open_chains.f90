@@ -10,7 +10,7 @@ program test_open_chains
   use mech9_pose, only: pose_type
   use mech9_random, only: random_type
   use mech9_screw_pair, only: screw_pair_type, helical_pair
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -28,7 +28,7 @@ program test_open_chains
 
   !> A mechanism and all that its motion needs.
   type :: case_type
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
     type(dynamics_plan_type) :: dynamics
@@ -56,9 +56,9 @@ contains
     do trial = 1, 96
       m = 2 + mod(trial, 12)
       planar = trial > 48
-      call random_tree(random, m, planar, links, tree%mechanism)
-      call load_everything(random, tree%mechanism)
-      if (mod(trial, 2) == 0) call lighten(random, links, merge(1, 4, planar), tree%mechanism)
+      call random_tree(random, m, planar, links, tree%model)
+      call load_everything(random, tree%model)
+      if (mod(trial, 2) == 0) call lighten(random, links, merge(1, 4, planar), tree%model)
       call prepare(tree, 'a tree')
       call test%is_true(tree%plan%planar%used .or. .not. planar, 'a tree in the plane')
       call check_motion(tree, 'a tree')
@@ -67,12 +67,12 @@ contains
   end subroutine random_trees
 
   !> Steps of all kinds, from any earlier link to the next, either way round, coordinates in any order.
-  subroutine random_tree(random, m, planar, links, mechanism)
+  subroutine random_tree(random, m, planar, links, model)
     type(random_type), intent(inout) :: random         !< source of the random numbers
     integer, intent(in) :: m                           !< coordinates
     logical, intent(in) :: planar                      !< only pairs about and across z
     integer, allocatable, intent(out) :: links(:, :)   !< (2,m) reference and moving link of each coordinate
-    type(mechanism_type), intent(out) :: mechanism     !< the mechanism
+    type(model_type), intent(out) :: model         !< the model
     integer :: order(m), i, k, other
 
     order = [(i, i=1, m)]
@@ -87,22 +87,22 @@ contains
       links(:, order(i)) = [1 + below(random, i), i + 1]
       if (below(random, 2) == 0) links(:, order(i)) = links([2, 1], order(i))
     end do
-    call new_mechanism(m + 1, links, [(i, i=1, m)], mechanism)
+    call new_mechanism(m + 1, links, [(i, i=1, m)], model)
     do k = 1, m
       if (planar) then
-        call add_planar_pair(random, k, links(:, k), mechanism)
+        call add_planar_pair(random, k, links(:, k), model)
       else
-        call add_random_pair(random, k, links(:, k), mechanism)
+        call add_random_pair(random, k, links(:, k), model)
       end if
-      mechanism%initial_position(k) = random%symmetric()
+      model%problem%initial%position(k) = random%symmetric()
     end do
   end subroutine random_tree
 
-  subroutine add_random_pair(random, k, links, mechanism)
+  subroutine add_random_pair(random, k, links, model)
     type(random_type), intent(inout) :: random         !< source of the random numbers
     integer, intent(in) :: k                           !< its coordinate
     integer, intent(in) :: links(2)                    !< reference and moving link
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    type(model_type), intent(inout) :: model       !< the model
     type(screw_pair_type) :: helix
     type(curved_pair_type) :: curved
     type(pose_type) :: here, there
@@ -111,26 +111,26 @@ contains
     there = frame(random_vector(random), random_unit(random))
     select case (below(random, 5))
     case (0)
-      call add_prismatic(mechanism, k, links(1), links(2), here, there)
+      call add_prismatic(model, k, links(1), links(2), here, there)
     case (1)
       helix = helical_pair(here, there, 0.4_wp)
-      allocate (mechanism%pairs(k)%pair, source=helix)
+      allocate (model%mechanism%pairs(k)%pair, source=helix)
     case (2)
       curved%angular = .false.
-      allocate (mechanism%pairs(k)%pair, source=curved)
+      allocate (model%mechanism%pairs(k)%pair, source=curved)
     case default
-      call add_revolute(mechanism, k, links(1), links(2), here, there)
+      call add_revolute(model, k, links(1), links(2), here, there)
     end select
-    mechanism%pairs(k)%pair%coordinate = k
-    mechanism%pairs(k)%pair%reference = links(1)
-    mechanism%pairs(k)%pair%moving = links(2)
+    model%mechanism%pairs(k)%pair%coordinate = k
+    model%mechanism%pairs(k)%pair%reference = links(1)
+    model%mechanism%pairs(k)%pair%moving = links(2)
   end subroutine add_random_pair
 
-  subroutine add_planar_pair(random, k, links, mechanism)
+  subroutine add_planar_pair(random, k, links, model)
     type(random_type), intent(inout) :: random         !< source of the random numbers
     integer, intent(in) :: k                           !< its coordinate
     integer, intent(in) :: links(2)                    !< reference and moving link
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    type(model_type), intent(inout) :: model       !< the model
     type(pose_type) :: here, there
     real(wp) :: along(3)
     logical :: slides
@@ -142,9 +142,9 @@ contains
     here = frame(random_vector(random), along)
     there = frame(random_vector(random), along)
     if (slides) then
-      call add_prismatic(mechanism, k, links(1), links(2), here, there)
+      call add_prismatic(model, k, links(1), links(2), here, there)
     else
-      call add_revolute(mechanism, k, links(1), links(2), here, there)
+      call add_revolute(model, k, links(1), links(2), here, there)
     end if
   end subroutine add_planar_pair
 
@@ -158,17 +158,17 @@ contains
 
   !> Some links that carry another one lose their mass; a body at the end of them all resists six steps in
   !> general, in the plane three, but only two of them slides.
-  subroutine lighten(random, links, most, mechanism)
+  subroutine lighten(random, links, most, model)
     type(random_type), intent(inout) :: random         !< source of the random numbers
     integer, intent(in) :: links(:, :)                 !< (2,M) reference and moving link of each pair
     integer, intent(in) :: most                        !< links
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    type(model_type), intent(inout) :: model       !< the model
     integer :: i, light, toss
 
     light = 0
-    do i = 1, size(mechanism%bodies)
+    do i = 1, size(model%mechanism%bodies)
       toss = below(random, 2)
-      associate (body => mechanism%bodies(i))
+      associate (body => model%mechanism%bodies(i))
         if (count(links == body%link) < 2 .or. light == most .or. toss == 0) cycle
         light = light + 1
         body%mass = 0.0_wp
@@ -184,9 +184,10 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call make_plan(this%mechanism, this%mechanism%initial_position, this%plan, this%state, err)
+    call make_plan(this%model%mechanism, this%model%problem%partition, this%model%problem%initial%position, this%plan, &
+                   this%state, err)
     call test%no_error(err, why//': plan')
-    call make_dynamics_plan(this%mechanism, this%plan, this%dynamics)
+    call make_dynamics_plan(this%model%mechanism, this%plan, this%dynamics)
     this%work = new_lagrange_work(this%plan, this%dynamics)
     this%state%dq(this%plan%independent) = [(1.3_wp*cos(2.0_wp*i), i=1, size(this%plan%independent))]
   end subroutine prepare
@@ -202,7 +203,7 @@ contains
     integer :: i, n
 
     call test%is_true(this%dynamics%open_chains, why//': articulated bodies')
-    call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+    call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
     call test%no_error(err, why//': motion')
     if (allocated(err)) return
     n = size(this%plan%independent)
@@ -210,7 +211,7 @@ contains
     ddq = this%work%accelerations
     call complete_accelerations(this%plan, this%dynamics, this%work, this%state)
     call test%near(maxval(abs(this%state%ddq(this%plan%independent) - ddq)), 0.0_wp, 0.0_wp, why//': each to its coordinate')
-    call find_equations(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+    call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
     call test%no_error(err, why//': equations')
     a = this%work%coefficients
     do i = 1, n
@@ -230,7 +231,7 @@ contains
     before = calls
     call test%is_true(before > 0, 'the counter counts')
     do i = 1, 10
-      call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+      call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
       if (allocated(err)) exit
     end do
     call test%is_true(calls == before, 'ten evaluations allocate nothing')
@@ -245,14 +246,14 @@ contains
     type(case_type) :: chain
     integer :: k
 
-    call new_mechanism(m + 1, reshape([(k, k + 1, k=1, m)], [2, m]), [(k, k=1, m)], chain%mechanism)
-    call without_loads(chain%mechanism)
-    chain%mechanism%gravity = [0.0_wp, 0.0_wp, -9.81_wp]
+    call new_mechanism(m + 1, reshape([(k, k + 1, k=1, m)], [2, m]), [(k, k=1, m)], chain%model)
+    call without_loads(chain%model)
+    chain%model%mechanism%gravity = [0.0_wp, 0.0_wp, -9.81_wp]
     do k = 1, m
       axis = [modulo(k, 2), modulo(k + 1, 2), 0]
-      call add_revolute(chain%mechanism, k, k, k + 1, frame(top, axis), frame(foot, axis))
-      call add_body(chain%mechanism, k + 1, 1.0_wp, 0.5_wp*top, 0.08_wp*identity)
-      chain%mechanism%initial_position(k) = 0.3_wp*sin(real(k, wp))
+      call add_revolute(chain%model, k, k, k + 1, frame(top, axis), frame(foot, axis))
+      call add_body(chain%model, k + 1, 1.0_wp, 0.5_wp*top, 0.08_wp*identity)
+      chain%model%problem%initial%position(k) = 0.3_wp*sin(real(k, wp))
     end do
     call prepare(chain, 'sixty links')
     call check_motion(chain, 'sixty links')
@@ -268,16 +269,16 @@ contains
     integer :: trial, massive
 
     do trial = 1, 20
-      call new_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), [1, 2, 3], chain%mechanism)
-      call without_loads(chain%mechanism)
+      call new_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), [1, 2, 3], chain%model)
+      call without_loads(chain%model)
       point = random_vector(random)
       axis = random_unit(random)
-      call add_prismatic(chain%mechanism, 1, 1, 2, frame(random_vector(random), random_unit(random)), frame(point, axis))
-      call add_revolute(chain%mechanism, 2, 2, 3, frame(point, axis), frame(point, axis))
-      call add_revolute(chain%mechanism, 3, 3, 4, frame(point + 0.7_wp*axis, axis), frame(random_vector(random), axis))
-      chain%mechanism%initial_position = [0.4_wp, random%symmetric(), random%symmetric()]
+      call add_prismatic(chain%model, 1, 1, 2, frame(random_vector(random), random_unit(random)), frame(point, axis))
+      call add_revolute(chain%model, 2, 2, 3, frame(point, axis), frame(point, axis))
+      call add_revolute(chain%model, 3, 3, 4, frame(point + 0.7_wp*axis, axis), frame(random_vector(random), axis))
+      chain%model%problem%initial%position = [0.4_wp, random%symmetric(), random%symmetric()]
       massive = merge(3, 4, mod(trial, 2) == 0)
-      call add_body(chain%mechanism, massive, 1.0_wp + 0.5_wp*random%symmetric(), random_vector(random), 0.3_wp*identity)
+      call add_body(chain%model, massive, 1.0_wp + 0.5_wp*random%symmetric(), random_vector(random), 0.3_wp*identity)
       call prepare(chain, 'without inertia')
       call check_refusal(chain)
     end do
@@ -287,10 +288,10 @@ contains
     type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
     type(error_type), allocatable :: err, expected
 
-    call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+    call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
     call test%has_error(err, exit_data, 'a coordinate without inertia')
     this%dynamics%open_chains = .false.
-    call find_motion(this%mechanism, this%plan, this%dynamics, this%state, this%work, expected)
+    call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, expected)
     call test%has_error(expected, exit_data, 'the same by the coefficients')
     if (.not. (allocated(err) .and. allocated(expected))) return
     call test%is_true(message_of(err) == message_of(expected), 'the same words: '//message_of(err))
@@ -301,11 +302,11 @@ contains
   subroutine closed_chains()
     type(case_type) :: closed
 
-    call five_bar(closed%mechanism)
+    call five_bar(closed%model)
     call prepare(closed, 'five-bar')
     call test%is_true(.not. closed%dynamics%open_chains, 'not in a five-bar')
-    call general_loop(closed%mechanism)
-    call without_loads(closed%mechanism)
+    call general_loop(closed%model)
+    call without_loads(closed%model)
     call prepare(closed, 'spatial loop')
     call test%is_true(.not. closed%dynamics%open_chains, 'not in a spatial loop')
   end subroutine closed_chains

@@ -8,7 +8,7 @@ program test_planar_arithmetic
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_rotation
   use mech9_point, only: point_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -44,14 +44,14 @@ program test_planar_arithmetic
 contains
 
   subroutine known_mechanisms()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
 
-    call loaded_fig1(5, mechanism)
-    call compare(mechanism, .true., 'two chains one after the other')
-    call loaded_fig1(1, mechanism)
-    call compare(mechanism, .true., 'two chains together')
-    call five_bar(mechanism)
-    call compare(mechanism, .true., 'two freedoms')
+    call loaded_fig1(5, model)
+    call compare(model, .true., 'two chains one after the other')
+    call loaded_fig1(1, model)
+    call compare(model, .true., 'two chains together')
+    call five_bar(model)
+    call compare(model, .true., 'two freedoms')
   end subroutine known_mechanisms
 
   !> Two loops with sliding pairs and an open end, driven by turning and by sliding, and a loop on a turning link; in the
@@ -59,7 +59,7 @@ contains
   subroutine any_plane()
     integer, parameter :: links(2, 8) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 3, 5, 6, 5, 6, 1, 5, 7], [2, 8])
     integer, parameter :: on_link_2(2, 5) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 2], [2, 5])
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(random_type) :: random
     type(axis_type) :: axes(8)
     real(wp) :: turn(3, 3), side
@@ -79,59 +79,59 @@ contains
         axes(k)%point = matmul(turn, axes(k)%point)
         axes(k)%along = matmul(turn, axes(k)%along)
       end do
-      call home_mechanism(7, links, axes, [1, 8], mechanism)
-      call load_everything(random, mechanism)
-      call compare(mechanism, .true., 'any plane')
-      call home_mechanism(7, links, axes, [2, 8], mechanism)
-      call load_everything(random, mechanism)
-      call compare(mechanism, .true., merge('any plane, driven by a slide', 'any plane, driven by a hinge', &
+      call home_mechanism(7, links, axes, [1, 8], model)
+      call load_everything(random, model)
+      call compare(model, .true., 'any plane')
+      call home_mechanism(7, links, axes, [2, 8], model)
+      call load_everything(random, model)
+      call compare(model, .true., merge('any plane, driven by a slide', 'any plane, driven by a hinge', &
                                             axes(2)%slides))
-      call home_mechanism(5, on_link_2, axes(:5), [1, 2], mechanism)
-      call load_everything(random, mechanism)
-      call compare(mechanism, .true., 'a loop on a turning link')
+      call home_mechanism(5, on_link_2, axes(:5), [1, 2], model)
+      call load_everything(random, model)
+      call compare(model, .true., 'a loop on a turning link')
     end do
   end subroutine any_plane
 
   !> Axes that have no plane in common, by as little as may be meant.
   subroutine no_plane()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(random_type) :: random
     type(axis_type) :: axes(3)
 
-    call open_chain(mechanism)
-    call compare(mechanism, .false., 'a spatial chain')
+    call open_chain(model)
+    call compare(model, .false., 'a spatial chain')
     axes = planar_axes(3, 3, random)
-    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], mechanism)
-    call load_everything(random, mechanism)
-    call compare(mechanism, .true., 'an open planar chain')
+    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], model)
+    call load_everything(random, model)
+    call compare(model, .true., 'an open planar chain')
     axes(2)%along(1) = 1.0e-9_wp
-    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], mechanism)
-    call load_everything(random, mechanism)
-    call compare(mechanism, .false., 'an axis that is not quite along the normal')
+    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], model)
+    call load_everything(random, model)
+    call compare(model, .false., 'an axis that is not quite along the normal')
     axes(2)%along(1) = 0.0_wp
     axes(3)%along = [1.0_wp, 0.0_wp, 1.0e-9_wp]
-    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], mechanism)
-    call load_everything(random, mechanism)
-    call compare(mechanism, .false., 'a way that is not quite across the normal')
-    call general_loop(mechanism)
-    call load_everything(random, mechanism)
-    call compare(mechanism, .false., 'a spatial loop')
+    call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], model)
+    call load_everything(random, model)
+    call compare(model, .false., 'a way that is not quite across the normal')
+    call general_loop(model)
+    call load_everything(random, model)
+    call compare(model, .false., 'a spatial loop')
   end subroutine no_plane
 
   !> Both arithmetics on one mechanism. Each number is a sum of some dozens of terms, and what is solved for
   !> is known to round-off over the conditioning of the chains, accelerations to that once more.
-  subroutine compare(mechanism, is_planar, why)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine compare(model, is_planar, why)
+    type(model_type), intent(inout) :: model       !< the model
     logical, intent(in) :: is_planar                   !< it must have planar arithmetic
     character(len=*), intent(in) :: why                !< the statement that is checked, printed where it is wrong
     type(result_type) :: flat, space
     real(wp) :: tolerance
 
-    if (allocated(mechanism%points)) deallocate (mechanism%points)
-    allocate (mechanism%points(1))
-    mechanism%points(1) = point_type('P', mechanism%structure%n_links, [0.3_wp, -0.2_wp, 0.5_wp])
-    call evaluate(mechanism, .false., why, flat)
-    call evaluate(mechanism, .true., why, space)
+    if (allocated(model%mechanism%points)) deallocate (model%mechanism%points)
+    allocate (model%mechanism%points(1))
+    model%mechanism%points(1) = point_type('P', model%mechanism%structure%n_links, [0.3_wp, -0.2_wp, 0.5_wp])
+    call evaluate(model, .false., why, flat)
+    call evaluate(model, .true., why, space)
     call test%is_true((flat%planar .eqv. is_planar) .and. .not. space%planar, why//': is it planar')
     call test%near(flat%conditioning, space%conditioning, 1.0e-12_wp, why//': conditioning')
     tolerance = 1.0e-14_wp/space%conditioning
@@ -149,8 +149,8 @@ contains
   end subroutine compare
 
   !> The motion of a mechanism at its start, with some rates.
-  subroutine evaluate(mechanism, in_space, why, result)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine evaluate(model, in_space, why, result)
+    type(model_type), intent(in) :: model       !< the model
     logical, intent(in) :: in_space                 !< in spatial arithmetic even where planar arithmetic would do
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(result_type), intent(out) :: result        !< all numbers of its motion
@@ -161,16 +161,16 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err, in_space)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space)
     call test%no_error(err, why//': plan')
     if (allocated(err)) return
-    call make_dynamics_plan(mechanism, plan, dynamics)
+    call make_dynamics_plan(model%mechanism, plan, dynamics)
     work = new_lagrange_work(plan, dynamics)
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, size(plan%independent))]
     ! open chains have their accelerations without the equations
-    call find_equations(mechanism, plan, dynamics, state, work, err)
+    call find_equations(model%mechanism, plan, dynamics, state, work, err)
     call test%no_error(err, why//': equations')
-    call find_motion(mechanism, plan, dynamics, state, work, err)
+    call find_motion(model%mechanism, plan, dynamics, state, work, err)
     call test%no_error(err, why//': motion')
     if (allocated(err)) return
     call complete_accelerations(plan, dynamics, work, state)
@@ -185,11 +185,11 @@ contains
     result%velocity_terms = work%velocity_terms
     result%forces = work%forces
     allocate (result%points(3, 3))
-    associate (point => mechanism%points(1))
+    associate (point => model%mechanism%points(1))
       call point_motion(plan, state, point%link, point%position, result%points(:, 1), result%points(:, 2), &
                         result%points(:, 3))
     end associate
-    result%energies = [kinetic_energy(dynamics, state), potential_energy(mechanism, plan, state, work%view)]
+    result%energies = [kinetic_energy(dynamics, state), potential_energy(model%mechanism, plan, state, work%view)]
   end subroutine evaluate
 
   subroutine check(numbers, expected, tolerance, why)

@@ -4,8 +4,8 @@ module mech9_input_support
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: parse_document
-  use mech9_reader, only: read_mechanism
-  use mech9_mechanism, only: mechanism_type
+  use mech9_reader, only: read_model
+  use mech9_model, only: model_type
   implicit none
   private
   public :: printed, mechanism_from_text, count_of, eol, slider_crank
@@ -65,14 +65,14 @@ contains
   end subroutine read_back
 
   !> The mechanism that the text of a data file describes.
-  subroutine mechanism_from_text(text, mechanism, diagnostics)
+  subroutine mechanism_from_text(text, model, diagnostics)
     character(len=*), intent(in) :: text                 !< of a data file
-    type(mechanism_type), intent(out) :: mechanism       !< that it describes
+    type(model_type), intent(out) :: model       !< that it describes
     type(diagnostics_type), intent(out) :: diagnostics   !< errors in it
     type(document_type) :: document
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
-    call read_mechanism(document, .true., mechanism, diagnostics)
+    call read_model(document, .true., model, diagnostics)
   end subroutine mechanism_from_text
 
   !> How often a piece occurs in a text.

@@ -9,10 +9,10 @@ program test_fuzz
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: parse_document
   use mech9_setting, only: apply_setting
-  use mech9_reader, only: read_mechanism, read_structure_only
-  use mech9_mechanism, only: mechanism_type
+  use mech9_reader, only: read_model, read_structure_only
+  use mech9_model, only: model_type
   use mech9_structure, only: structure_type
-  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_partition, only: partition_type
   use mech9_testing, only: tester_type
   use mech9_input_support, only: printed, slider_crank, eol
   implicit none
@@ -141,18 +141,18 @@ contains
     integer, intent(in) :: number          !< of the trial
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics, again
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(structure_type) :: structure
-    type(structural_vectors_type) :: vectors
+    type(partition_type) :: partition
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
     again = diagnostics
-    call read_mechanism(document, mod(number, 2) == 0, mechanism, diagnostics)
-    call read_structure_only(document, structure, vectors, again)
+    call read_model(document, mod(number, 2) == 0, model, diagnostics)
+    call read_structure_only(document, structure, partition, again)
     if (diagnostics%failed()) refused = refused + 1
     call judge(diagnostics, text)
     call judge(again, text)
-    if (.not. diagnostics%failed()) call tester%is_true(is_whole(mechanism), 'what is read is whole:'//eol//text)
+    if (.not. diagnostics%failed()) call tester%is_true(is_whole(model), 'what is read is whole:'//eol//text)
   end subroutine try
 
   subroutine forget(diagnostics)
@@ -174,16 +174,17 @@ contains
     end if
   end subroutine judge
 
-  logical function is_whole(mechanism)
-    type(mechanism_type), intent(in) :: mechanism   !< read without an error
+  logical function is_whole(model)
+    type(model_type), intent(in) :: model   !< read without an error
     integer :: k
 
-    is_whole = size(mechanism%pairs) == mechanism%structure%n_coordinates .and. size(mechanism%vectors%nrg) > 1
-    do k = 1, size(mechanism%pairs)
-      is_whole = is_whole .and. allocated(mechanism%pairs(k)%pair)
+    is_whole = size(model%mechanism%pairs) == model%mechanism%structure%n_coordinates .and. &
+               size(model%problem%partition%vectors%nrg) > 1
+    do k = 1, size(model%mechanism%pairs)
+      is_whole = is_whole .and. allocated(model%mechanism%pairs(k)%pair)
     end do
-    do k = 1, size(mechanism%drives)
-      is_whole = is_whole .and. allocated(mechanism%drives(k)%drive)
+    do k = 1, size(model%problem%drives)
+      is_whole = is_whole .and. allocated(model%problem%drives(k)%drive)
     end do
   end function is_whole
 
@@ -194,7 +195,7 @@ contains
     character(len=:), allocatable :: text
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     integer :: i
 
     do i = 1, runs/4
@@ -203,7 +204,7 @@ contains
       call forget(diagnostics)
       call parse_document(source_from_text('test.nml', everything), document, diagnostics)
       call apply_setting(document, text, diagnostics)
-      call read_mechanism(document, .true., mechanism, diagnostics)
+      call read_model(document, .true., model, diagnostics)
       call judge(diagnostics, text)
     end do
   end subroutine damaged_settings

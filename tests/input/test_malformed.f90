@@ -5,8 +5,8 @@ program test_malformed
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
-  use mech9_reader, only: read_mechanism
-  use mech9_mechanism, only: mechanism_type
+  use mech9_reader, only: read_model
+  use mech9_model, only: model_type
   use mech9_input_support, only: printed
   use mech9_testing, only: tester_type
   implicit none
@@ -34,7 +34,7 @@ contains
     character(len=*), intent(in) :: expected   !< the line of the list
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     character(len=:), allocatable :: name, fragment, answer
     integer :: at, code
 
@@ -43,7 +43,7 @@ contains
     call next_field(expected, at, fragment)
     read (fragment, *) code
     call read_document(name, document, diagnostics)
-    call read_mechanism(document, .true., mechanism, diagnostics)
+    call read_model(document, .true., model, diagnostics)
     answer = printed(diagnostics)
     call tester%is_true(diagnostics%code() == code, name//': exit code '//to_text(code)//', not '// &
                         to_text(diagnostics%code()))

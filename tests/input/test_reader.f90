@@ -5,7 +5,7 @@ program test_reader
   use mech9_rotation, only: about_axis, identity
   use mech9_pair, only: pair_motion_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_testing, only: tester_type
   use mech9_input_support, only: mechanism_from_text, printed, slider_crank, eol
   implicit none
@@ -27,20 +27,20 @@ program test_reader
 
 contains
 
-  subroutine read_well(text, mechanism, why)
+  subroutine read_well(text, model, why)
     character(len=*), intent(in) :: text             !< of a good data file
     character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
-    type(mechanism_type), intent(out) :: mechanism   !< that it describes
+    type(model_type), intent(out) :: model   !< that it describes
     type(diagnostics_type) :: diagnostics
 
-    call mechanism_from_text(text, mechanism, diagnostics)
+    call mechanism_from_text(text, model, diagnostics)
     call tester%is_true(.not. diagnostics%failed(), why//' is read')
     if (diagnostics%failed()) print '(a)', printed(diagnostics)
   end subroutine read_well
 
   !> Pose of a pair at q, held against a rotation and a translation.
-  subroutine pose_is(mechanism, k, q, r, p, why)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine pose_is(model, k, q, r, p, why)
+    type(model_type), intent(in) :: model       !< the model
     integer, intent(in) :: k                        !< coordinate of the pair
     real(wp), intent(in) :: q                       !< its value [rad or m]
     real(wp), intent(in) :: r(3, 3)                 !< the right rotation
@@ -49,39 +49,41 @@ contains
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
 
-    call mechanism%pairs(k)%pair%evaluate(q, motion, err)
+    call model%mechanism%pairs(k)%pair%evaluate(q, motion, err)
     call tester%no_error(err, why)
     call tester%near(maxval(abs(motion%pose%r - r)), 0.0_wp, 4.0_wp*round_off, why//': rotation')
     call tester%near(maxval(abs(motion%pose%p - p)), 0.0_wp, 4.0_wp*round_off, why//': translation')
   end subroutine pose_is
 
   subroutine a_whole_mechanism()
-    type(mechanism_type) :: m
+    type(model_type) :: m
     real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
 
     call read_well(slider_crank, m, 'the slider-crank')
-    call tester%is_true(m%title == 'Slider-crank', 'its title')
-    call tester%is_true(m%structure%n_links == 4 .and. m%structure%n_coordinates == 4, 'its counts')
-    call tester%is_true(all(m%structure%independent .eqv. [.true., .false., .false., .false.]), 'its independent coordinate')
-    call tester%is_true(size(m%vectors%nrg) == 5, 'the second set is made; (9): 4 + 2 - 1')
-    call tester%is_true(m%pairs(1)%pair%coordinate == 1 .and. m%pairs(4)%pair%coordinate == 4, 'pairs stand by coordinate')
-    call tester%is_true(m%pairs(3)%pair%reference == 3 .and. m%pairs(3)%pair%moving == 4, 'links of a pair')
-    call tester%is_true(m%pairs(1)%pair%angular .and. .not. m%pairs(4)%pair%angular, 'angles and lengths')
-    call tester%is_true(m%pairs(4)%pair%place%line == 6 .and. m%points(1)%place%line == 8 &
-                        .and. m%drives(1)%drive%place%line == 9, 'the model knows the lines')
+    call tester%is_true(m%mechanism%title == 'Slider-crank', 'its title')
+    call tester%is_true(m%mechanism%structure%n_links == 4 .and. m%mechanism%structure%n_coordinates == 4, 'its counts')
+    call tester%is_true(all(m%problem%partition%independent() .eqv. [.true., .false., .false., .false.]), &
+                        'its independent coordinate')
+    call tester%is_true(size(m%problem%partition%vectors%nrg) == 5, 'the second set is made; (9): 4 + 2 - 1')
+    call tester%is_true(m%mechanism%pairs(1)%pair%coordinate == 1 .and. m%mechanism%pairs(4)%pair%coordinate == 4, &
+                        'pairs stand by coordinate')
+    call tester%is_true(m%mechanism%pairs(3)%pair%reference == 3 .and. m%mechanism%pairs(3)%pair%moving == 4, 'links of a pair')
+    call tester%is_true(m%mechanism%pairs(1)%pair%angular .and. .not. m%mechanism%pairs(4)%pair%angular, 'angles and lengths')
+    call tester%is_true(m%mechanism%pairs(4)%pair%place%line == 6 .and. m%mechanism%points(1)%place%line == 8 &
+                        .and. m%problem%drives(1)%drive%place%line == 9, 'the mechanism knows the lines')
     call pose_is(m, 1, 0.3_wp, about_axis(z, 0.3_wp), [0.0_wp, 0.0_wp, 0.0_wp], 'a turn about z')
     call pose_is(m, 2, 0.3_wp, about_axis(z, 0.3_wp), 0.3_wp*x, 'a turn about an axis beside the origin')
     call pose_is(m, 4, 1.2_wp, identity, [1.2_wp, 0.1_wp, 0.0_wp], 'a slide along x')
-    call tester%near(m%initial_position(4), 1.2_wp, 0.0_wp, 'a guess')
-    call tester%is_true(all(m%position_given .eqv. [.false., .false., .false., .true.]), 'which guesses are given')
-    call tester%is_true(m%points(1)%name == 'B' .and. m%points(1)%link == 4, 'a point')
-    call tester%is_true(all(abs(m%points(1)%position) <= 0.0_wp), 'its position by default')
-    call tester%is_true(m%time%intervals == 10 .and. size(m%parameters) == 0, 'time and parameters')
+    call tester%near(m%problem%initial%position(4), 1.2_wp, 0.0_wp, 'a guess')
+    call tester%is_true(all(m%problem%initial%position_given .eqv. [.false., .false., .false., .true.]), 'which guesses are given')
+    call tester%is_true(m%mechanism%points(1)%name == 'B' .and. m%mechanism%points(1)%link == 4, 'a point')
+    call tester%is_true(all(abs(m%mechanism%points(1)%position) <= 0.0_wp), 'its position by default')
+    call tester%is_true(m%request%time%intervals == 10 .and. size(m%mechanism%parameters) == 0, 'time and parameters')
   end subroutine a_whole_mechanism
 
   !> c, the second set, and the links of the pairs describe the same structure.
   subroutine sources_of_structure()
-    type(mechanism_type) :: m, other
+    type(model_type) :: m, other
     character(len=:), allocatable :: rest
     integer :: at
 
@@ -92,26 +94,27 @@ contains
     call same_structure(m, other, 'from the pairs')
     call read_well("&structure nrg=1,2,3,4,1 nws=0,1,2,3,4 rdw=2*1,3*0 /"//rest, other, 'the second set')
     call same_structure(m, other, 'from the second set')
-    call tester%is_true(all(other%vectors%nrw == [0, 0, 0, 0, 1]), 'nrw is computed where it is not given')
+    call tester%is_true(all(other%problem%partition%vectors%nrw == [0, 0, 0, 0, 1]), 'nrw is computed where it is not given')
     call read_well("&structure nrg=1,4,3,2,1 nws=0,4,3,2,1 rdw=1,0,0,0,1 nrw=4*0,1, cq=1" &
                    //" c(1,4)=4 c(4,1)=4 c(1,2)=1 c(2,1)=1 c(2,3)=2 c(3,2)=2 c(4,3)=3 c(3,4)=3 /"//rest, other, 'both sets')
     call same_structure(m, other, 'from both sets')
-    call tester%is_true(all(other%vectors%nrg == [1, 4, 3, 2, 1]), 'the order of computation is the one given')
+    call tester%is_true(all(other%problem%partition%vectors%nrg == [1, 4, 3, 2, 1]), 'the order of computation is the one given')
     call read_well("&structure c=0,1,0,4, 1,0,2,0, 0,2,0,3, 4,0,3,0 cq=1 /"//rest, other, 'c in one piece')
     call same_structure(m, other, 'from c in one piece')
   end subroutine sources_of_structure
 
   subroutine same_structure(a, b, why)
-    type(mechanism_type), intent(in) :: a   !< first mechanism
-    type(mechanism_type), intent(in) :: b   !< second mechanism
+    type(model_type), intent(in) :: a   !< first mechanism
+    type(model_type), intent(in) :: b   !< second mechanism
     character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
     integer :: k
 
-    call tester%is_true(a%structure%n_links == b%structure%n_links, why//': as many links')
-    call tester%is_true(all(a%structure%independent .eqv. b%structure%independent), why//': the same independent ones')
-    do k = 1, size(a%structure%links, 2)
-      call tester%is_true(minval(a%structure%links(:, k)) == minval(b%structure%links(:, k)) .and. &
-                          maxval(a%structure%links(:, k)) == maxval(b%structure%links(:, k)), why//': the same links')
+    call tester%is_true(a%mechanism%structure%n_links == b%mechanism%structure%n_links, why//': as many links')
+    call tester%is_true(all(a%problem%partition%kind == b%problem%partition%kind), why//': the same independent ones')
+    do k = 1, size(a%mechanism%structure%links, 2)
+      call tester%is_true(minval(a%mechanism%structure%links(:, k)) == minval(b%mechanism%structure%links(:, k)) .and. &
+                          maxval(a%mechanism%structure%links(:, k)) == maxval(b%mechanism%structure%links(:, k)), &
+                                              why//': the same links')
     end do
   end subroutine same_structure
 
@@ -125,7 +128,7 @@ contains
   end function one_pair
 
   subroutine zero_directions()
-    type(mechanism_type) :: m
+    type(model_type) :: m
     real(wp) :: r(3, 3)
     real(wp), parameter :: half = sqrt(0.5_wp), none(3) = 0.0_wp
 
@@ -149,7 +152,7 @@ contains
 
   !> T = Rz(theta) Tz(d) Tx(a) Rx(alpha) by elementary rotations.
   subroutine denavit_hartenberg()
-    type(mechanism_type) :: m
+    type(model_type) :: m
     real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], x(3) = [1.0_wp, 0.0_wp, 0.0_wp]
     real(wp) :: r(3, 3), p(3), q
 
@@ -170,7 +173,7 @@ contains
   end subroutine denavit_hartenberg
 
   subroutine helix()
-    type(mechanism_type) :: m
+    type(model_type) :: m
 
     call read_well(one_pair("kind='helical', axis=0,0,5, pitch=0.25"), m, 'a helical pair')
     call pose_is(m, 1, 2.0_wp*pi, identity, [0.0_wp, 0.0_wp, 0.25_wp], 'one turn advances by the pitch')
@@ -178,7 +181,7 @@ contains
 
   !> In degrees only angles change: those of revolute coordinates, not of prismatic ones.
   subroutine degrees()
-    type(mechanism_type) :: m
+    type(model_type) :: m
     character(len=*), parameter :: head = "&mechanism angle_unit='DEG' / &structure cq=1,2 /"// &
                                    "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"// &
                                    "&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /"
@@ -189,42 +192,44 @@ contains
                    "&drive coordinate=2, kind='harmonic', mean=2, amplitude=3, angular_frequency=90, phase=30 /"// &
                    "&initial coordinate=1, position=60, velocity=-30 / &initial coordinate=2, position=60, velocity=-30 /", &
                    m, 'a mechanism in degrees')
-    call tester%near(m%angle_unit, pi/180.0_wp, round_off, 'the unit of angles')
-    call tester%near(m%initial_position(1), pi/3.0_wp, round_off, 'an initial angle')
-    call tester%near(m%initial_velocity(1), -pi/6.0_wp, round_off, 'an initial angular velocity')
-    call tester%near(m%initial_position(2), 60.0_wp, 0.0_wp, 'an initial length is none')
-    call m%drives(1)%drive%evaluate(2.0_wp, q, dq, ddq, err)
+    call tester%near(m%mechanism%angle_unit, pi/180.0_wp, round_off, 'the unit of angles')
+    call tester%near(m%problem%initial%position(1), pi/3.0_wp, round_off, 'an initial angle')
+    call tester%near(m%problem%initial%velocity(1), -pi/6.0_wp, round_off, 'an initial angular velocity')
+    call tester%near(m%problem%initial%position(2), 60.0_wp, 0.0_wp, 'an initial length is none')
+    call m%problem%drives(1)%drive%evaluate(2.0_wp, q, dq, ddq, err)
     call tester%near(q, pi*(1.0_wp + 1.0_wp + 1.0_wp), 4.0_wp*round_off, 'a polynomial of an angle')
     call tester%near(ddq, pi/2.0_wp, round_off, 'its second derivative')
-    call m%drives(2)%drive%evaluate(2.0_wp, q, dq, ddq, err)
+    call m%problem%drives(2)%drive%evaluate(2.0_wp, q, dq, ddq, err)
     ! 2 + 3 sin(180 + 30 degrees) = 2 - 3/2
     call tester%near(q, 0.5_wp, 4.0_wp*round_off, 'a harmonic length with its phase in degrees')
     call tester%near(dq, -3.0_wp*(pi/2.0_wp)*sqrt(0.75_wp), 8.0_wp*round_off, 'its rate')
   end subroutine degrees
 
   subroutine bodies_and_settings()
-    type(mechanism_type) :: m
+    type(model_type) :: m
 
     call read_well(slider_crank//"&body link=3, mass=2, centre=1,2,3, inertia=4,5,6,0.1,0.2,0.3 /"// &
                    "&gravity acceleration=0,-9.81,0 / &solver method='Adams', relative_tolerance=1e-9, maximum_steps=77 /"// &
                    "&output table='a b.dat' hdf5='x.h5'/ &user parameters=3*0.5, 7 /"// &
                    "&load kind='coordinate', coordinate=2, stiffness=-2 / &load kind='user' /", m, 'everything else')
-    call tester%is_true(m%bodies(1)%link == 3 .and. m%bodies(1)%place%line == 11, 'a body')
-    call tester%near(maxval(abs(m%bodies(1)%inertia - transpose(m%bodies(1)%inertia))), 0.0_wp, 0.0_wp, 'a symmetric tensor')
-    call tester%is_true(all(abs([m%bodies(1)%inertia(1, 2), m%bodies(1)%inertia(3, 1), m%bodies(1)%inertia(2, 3)] &
+    call tester%is_true(m%mechanism%bodies(1)%link == 3 .and. m%mechanism%bodies(1)%place%line == 11, 'a body')
+    call tester%near(maxval(abs(m%mechanism%bodies(1)%inertia - transpose(m%mechanism%bodies(1)%inertia))), 0.0_wp, 0.0_wp, &
+                        'a symmetric tensor')
+    call tester%is_true(all(abs([m%mechanism%bodies(1)%inertia(1, 2), m%mechanism%bodies(1)%inertia(3, 1), &
+                        m%mechanism%bodies(1)%inertia(2, 3)] &
                                 - [0.1_wp, 0.2_wp, 0.3_wp]) <= 0.0_wp), 'its products xy, xz, yz')
-    call tester%is_true(abs(m%bodies(1)%inertia(3, 3) - 6.0_wp) <= 0.0_wp, 'its moment zz')
-    call tester%near(m%gravity(2), -9.81_wp, 0.0_wp, 'gravity')
-    call tester%is_true(m%solver%method == 'adams' .and. m%solver%maximum_steps == 77, 'solver')
-    call tester%near(m%solver%relative_tolerance, 1.0e-9_wp, 0.0_wp, 'a tolerance')
-    call tester%near(m%solver%absolute_tolerance, 1.0e-10_wp, 0.0_wp, 'a tolerance by default')
-    call tester%is_true(m%output%table == 'a b.dat' .and. m%output%hdf5 == 'x.h5', 'names of files')
-    call tester%is_true(size(m%parameters) == 4 .and. abs(m%parameters(4) - 7.0_wp) <= 0.0_wp, 'parameters')
+    call tester%is_true(abs(m%mechanism%bodies(1)%inertia(3, 3) - 6.0_wp) <= 0.0_wp, 'its moment zz')
+    call tester%near(m%mechanism%gravity(2), -9.81_wp, 0.0_wp, 'gravity')
+    call tester%is_true(m%request%solver%method == 'adams' .and. m%request%solver%maximum_steps == 77, 'solver')
+    call tester%near(m%request%solver%relative_tolerance, 1.0e-9_wp, 0.0_wp, 'a tolerance')
+    call tester%near(m%request%solver%absolute_tolerance, 1.0e-10_wp, 0.0_wp, 'a tolerance by default')
+    call tester%is_true(m%request%output%table == 'a b.dat' .and. m%request%output%hdf5 == 'x.h5', 'names of files')
+    call tester%is_true(size(m%mechanism%parameters) == 4 .and. abs(m%mechanism%parameters(4) - 7.0_wp) <= 0.0_wp, 'parameters')
   end subroutine bodies_and_settings
 
   !> A smooth curve through points of a cubic is that cubic.
   subroutine tables()
-    type(mechanism_type) :: m
+    type(model_type) :: m
     type(diagnostics_type) :: g
     character(len=*), parameter :: drive = "&structure cq=1 / &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"// &
                                    "&drive coordinate=1, kind='table', file='test_reader_table.dat' /"
@@ -241,14 +246,14 @@ contains
     close (unit)
     call read_well(drive, m, 'a table')
     t = 0.9_wp
-    call m%drives(1)%drive%evaluate(t, q, dq, ddq, err)
+    call m%problem%drives(1)%drive%evaluate(t, q, dq, ddq, err)
     call tester%no_error(err, 'a time within the table')
     ! second derivatives come from second differences over 0.25: 16 times round-off of the values, and more
     call tester%near(q, 1.0_wp - 2.0_wp*t + 3.0_wp*t**3, 1.0e-14_wp, 'the cubic')
     call tester%near(dq, -2.0_wp + 9.0_wp*t**2, 1.0e-13_wp, 'its first derivative')
     call tester%near(ddq, 18.0_wp*t, 1.0e-12_wp, 'its second derivative')
     call read_well("&mechanism angle_unit='deg' /"//drive, m, 'a table in degrees')
-    call m%drives(1)%drive%evaluate(t, q, dq, ddq, err)
+    call m%problem%drives(1)%drive%evaluate(t, q, dq, ddq, err)
     call tester%near(q, (1.0_wp - 2.0_wp*t + 3.0_wp*t**3)*pi/180.0_wp, 1.0e-14_wp, 'the cubic in degrees')
     open (newunit=unit, file='test_reader_table.dat', status='old')
     close (unit, status='delete')
@@ -257,21 +262,21 @@ contains
   end subroutine tables
 
   subroutine single_position()
-    type(mechanism_type) :: m
+    type(model_type) :: m
     integer :: at
 
     at = index(slider_crank, '&time')
     call read_well(slider_crank(:at - 1)//'&time start=0.2, intervals=0 /', m, 'a single position')
-    call tester%near(m%time%time(0), 0.2_wp, 0.0_wp, 'it is that at the start')
+    call tester%near(m%request%time%time(0), 0.2_wp, 0.0_wp, 'it is that at the start')
     call read_well(slider_crank(:at - 1)//'&time start=1, end=0, intervals=4 /', m, 'time running backwards')
-    call tester%near(m%time%time(1), 0.75_wp, 0.0_wp, 'its second time')
+    call tester%near(m%request%time%time(1), 0.75_wp, 0.0_wp, 'its second time')
     call read_well(slider_crank(:at - 1), m, 'no &time')
-    call tester%near(m%time%time(1), 0.01_wp, round_off, 'times by default')
+    call tester%near(m%request%time%time(1), 0.01_wp, round_off, 'times by default')
   end subroutine single_position
 
   !> What the scanner, the grammar, the structure and the model object to, in one go and in the order of the lines.
   subroutine all_errors_at_once()
-    type(mechanism_type) :: m
+    type(model_type) :: m
     type(diagnostics_type) :: g
     character(len=:), allocatable :: text, answer
     integer :: places(5), i

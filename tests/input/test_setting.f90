@@ -6,8 +6,8 @@ program test_setting
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: parse_document
   use mech9_setting, only: apply_setting
-  use mech9_reader, only: read_mechanism
-  use mech9_mechanism, only: mechanism_type
+  use mech9_reader, only: read_model
+  use mech9_model, only: model_type
   use mech9_testing, only: tester_type
   use mech9_input_support, only: printed, slider_crank, eol
   implicit none
@@ -19,36 +19,36 @@ program test_setting
 
 contains
 
-  subroutine set(setting, mechanism, answer)
+  subroutine set(setting, model, answer)
     character(len=*), intent(in) :: setting                !< argument of --set
-    type(mechanism_type), intent(out) :: mechanism         !< with it
+    type(model_type), intent(out) :: model         !< with it
     character(len=:), allocatable, intent(out) :: answer   !< what is printed
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
     call parse_document(source_from_text('f.nml', slider_crank), document, diagnostics)
     call apply_setting(document, setting, diagnostics)
-    call read_mechanism(document, .true., mechanism, diagnostics)
+    call read_model(document, .true., model, diagnostics)
     answer = printed(diagnostics)
   end subroutine set
 
   subroutine what_is_set()
-    type(mechanism_type) :: m
+    type(model_type) :: m
     character(len=:), allocatable :: answer
 
     call set('time.intervals=7', m, answer)
-    call tester%is_true(answer == '' .and. m%time%intervals == 7, 'a number is replaced')
+    call tester%is_true(answer == '' .and. m%request%time%intervals == 7, 'a number is replaced')
     call set(' Time.END = 2.5d0 ', m, answer)
     call tester%is_true(answer == '', 'case and blanks do not matter')
-    call tester%near(m%time%end, 2.5_wp, 0.0_wp, 'a real is replaced')
+    call tester%near(m%request%time%end, 2.5_wp, 0.0_wp, 'a real is replaced')
     call set('mechanism.title=O''Brien''s engine, "the" second', m, answer)
-    call tester%is_true(answer == '' .and. m%title == 'O''Brien''s engine, "the" second', 'a text needs no quotes')
+    call tester%is_true(answer == '' .and. m%mechanism%title == 'O''Brien''s engine, "the" second', 'a text needs no quotes')
     call set('mechanism.title=''quoted''', m, answer)
-    call tester%is_true(answer == '' .and. m%title == 'quoted', 'a text may have quotes')
+    call tester%is_true(answer == '' .and. m%mechanism%title == 'quoted', 'a text may have quotes')
     call set('output.table=/tmp/a b.dat', m, answer)
-    call tester%is_true(answer == '' .and. m%output%table == '/tmp/a b.dat', 'a group that is not there is added')
+    call tester%is_true(answer == '' .and. m%request%output%table == '/tmp/a b.dat', 'a group that is not there is added')
     call set('user.parameters=1,2,3', m, answer)
-    call tester%is_true(answer == '' .and. size(m%parameters) == 3, 'a list')
+    call tester%is_true(answer == '' .and. size(m%mechanism%parameters) == 3, 'a list')
     call set('pair(2).point=0.4,0,0', m, answer)
     call tester%is_true(answer == '', 'the second &pair')
     call set('pair(4).zero(2)=2', m, answer)
@@ -89,7 +89,7 @@ contains
   subroutine refused(setting, message)
     character(len=*), intent(in) :: setting   !< argument of --set
     character(len=*), intent(in) :: message   !< the right first message; empty: none
-    type(mechanism_type) :: m
+    type(model_type) :: m
     character(len=:), allocatable :: answer
 
     call set(setting, m, answer)

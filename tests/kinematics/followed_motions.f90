@@ -2,7 +2,7 @@
 module mech9_followed_motions
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -15,24 +15,24 @@ module mech9_followed_motions
 contains
 
   !> Plan and assemble at time t, and start there. Without a position the test ends.
-  subroutine begin_motion(test, mechanism, t, plan, driven, start_error)
+  subroutine begin_motion(test, model, t, plan, driven, start_error)
     type(tester_type), intent(inout) :: test                              !< counts the checks
-    type(mechanism_type), intent(in) :: mechanism                         !< the mechanism
+    type(model_type), intent(in) :: model                             !< the model
     real(wp), intent(in) :: t                                             !< time of the start [s]
     type(plan_type), intent(out) :: plan                                  !< its plan
     type(driven_motion_type), intent(out) :: driven                       !< its driven motion, at the start
     type(error_type), allocatable, intent(out), optional :: start_error   !< of a start that need not go well
     type(state_type) :: state
     type(error_type), allocatable :: err
-    real(wp), dimension(size(mechanism%pairs)) :: q, dq, ddq
+    real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
 
-    q = mechanism%initial_position
-    call set_inputs(mechanism, t, q, dq, ddq, err)
+    q = model%problem%initial%position
+    call set_inputs(model%problem%drives, t, q, dq, ddq, err)
     call test%no_error(err, 'drives have values')
-    call make_plan(mechanism, q, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, q, plan, state, err)
     call test%no_error(err, 'plan and assembly')
     if (allocated(err)) call test%finish()
-    call start_driven_motion(mechanism, plan, state, t, driven, err)
+    call start_driven_motion(model%problem%drives, plan, state, t, driven, err)
     if (present(start_error)) then
       call move_alloc(err, start_error)
     else

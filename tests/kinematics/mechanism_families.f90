@@ -5,7 +5,7 @@ module mech9_mechanism_families
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_vector, random_unit
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -25,21 +25,21 @@ module mech9_mechanism_families
 contains
 
   !> The mechanism with these links and axes of its pairs.
-  subroutine home_mechanism(n_links, links, axes, cq, mechanism)
+  subroutine home_mechanism(n_links, links, axes, cq, model)
     integer, intent(in) :: n_links                   !< links, the frame included
     integer, intent(in) :: links(:, :)               !< (2,M) reference and moving link of each pair
     integer, intent(in) :: cq(:)                     !< independent coordinates
     type(axis_type), intent(in) :: axes(:)           !< of each pair in the home position
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+    type(model_type), intent(out) :: model       !< the model
     integer :: k
 
-    call new_mechanism(n_links, links, cq, mechanism)
+    call new_mechanism(n_links, links, cq, model)
     do k = 1, size(axes)
       associate (f => frame(axes(k)%point, axes(k)%along))
         if (axes(k)%slides) then
-          call add_prismatic(mechanism, k, links(1, k), links(2, k), f, f)
+          call add_prismatic(model, k, links(1, k), links(2, k), f, f)
         else
-          call add_revolute(mechanism, k, links(1, k), links(2, k), f, f)
+          call add_revolute(model, k, links(1, k), links(2, k), f, f)
         end if
       end associate
     end do
@@ -52,12 +52,12 @@ contains
     integer, intent(in) :: cq(:)                        !< independent coordinates
     type(axis_type), intent(in) :: axes(:)              !< of each pair in the home position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
 
-    call home_mechanism(n_links, links, axes, cq, mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call home_mechanism(n_links, links, axes, cq, model)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   end subroutine plan_at_home
 
   !> Pivots at random places of a plane; of every `slide_each` pairs one slides (0: none).
@@ -200,8 +200,8 @@ contains
 
   !> A platform (link 2) on six legs, each a universal joint on the frame, a slider, and a spherical joint, by
   !> links in between: 32 links, 36 pairs. The sliders are coordinates 3, 9, 15, ...
-  subroutine stewart_platform(mechanism)
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+  subroutine stewart_platform(model)
+    type(model_type), intent(out) :: model       !< the model
     type(axis_type) :: axes(36)
     integer :: links(2, 36), leg, i, k, first
     real(wp) :: low(3), high(3), along(3), across(3), angle
@@ -232,6 +232,6 @@ contains
       axes(k + 5)%along = [0.0_wp, 1.0_wp, 0.0_wp]
       axes(k + 6)%along = [0.0_wp, 0.0_wp, 1.0_wp]
     end do
-    call home_mechanism(32, links, axes, [3, 9, 15, 21, 27, 33], mechanism)
+    call home_mechanism(32, links, axes, [3, 9, 15, 21, 27, 33], model)
   end subroutine stewart_platform
 end module mech9_mechanism_families

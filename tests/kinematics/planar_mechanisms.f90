@@ -2,7 +2,7 @@
 module mech9_planar_mechanisms
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame
   implicit none
   private
@@ -92,30 +92,30 @@ contains
   end function two_circles
 
   !> Crank, coupler and a slider along x at the height `offset`; coordinates crank, coupler, slider pin, slider.
-  subroutine slider_crank(crank, coupler, offset, angle, branch, mechanism)
+  subroutine slider_crank(crank, coupler, offset, angle, branch, model)
     real(wp), intent(in) :: crank                    !< its length [m]
     real(wp), intent(in) :: coupler                  !< its length [m]
     real(wp), intent(in) :: offset                   !< height of the guide above the crank's pivot [m]
     real(wp), intent(in) :: angle                    !< of the crank, for the guesses
     integer, intent(in) :: branch                    !< +1: the slider is right of the crank's pin
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+    type(model_type), intent(out) :: model       !< the model
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
     real(wp) :: across, along, direction
 
-    call new_mechanism(4, links, [1], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call add_revolute(mechanism, 2, 2, 3, frame(crank*x, z), frame(origin, z))
-    call add_revolute(mechanism, 3, 3, 4, frame(coupler*x, z), frame(origin, z))
-    call add_prismatic(mechanism, 4, 1, 4, frame([0.0_wp, offset, 0.0_wp], x), frame(origin, x))
+    call new_mechanism(4, links, [1], model)
+    call add_revolute(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(model, 2, 2, 3, frame(crank*x, z), frame(origin, z))
+    call add_revolute(model, 3, 3, 4, frame(coupler*x, z), frame(origin, z))
+    call add_prismatic(model, 4, 1, 4, frame([0.0_wp, offset, 0.0_wp], x), frame(origin, x))
     across = offset - crank*sin(angle)
     along = branch*sqrt(max(coupler**2 - across**2, 0.0_wp))
     direction = atan2(across, along)
-    mechanism%initial_position = [angle, direction - angle, -direction, crank*cos(angle) + along]
+    model%problem%initial%position = [angle, direction - angle, -direction, crank*cos(angle) + along]
   end subroutine slider_crank
 
   !> A four-bar, and two more links from a point of its coupler to a pivot; coordinates of the four-bar, then
   !> the new ones outwards, the last at the pivot.
-  subroutine watt_six_bar(bar, at, pivot, lengths, angle, branch, second, mechanism)
+  subroutine watt_six_bar(bar, at, pivot, lengths, angle, branch, second, model)
     type(four_bar_type), intent(in) :: bar           !< lengths of the four-bar
     real(wp), intent(in) :: at(2)                    !< the point in the coupler
     real(wp), intent(in) :: pivot(2)                 !< of the last link in the frame [m]
@@ -123,18 +123,18 @@ contains
     real(wp), intent(in) :: angle                    !< of the crank, for the guesses
     integer, intent(in) :: branch                    !< of the four-bar, +1 or -1
     integer, intent(in) :: second                    !< branch of the two links, +1 or -1
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+    type(model_type), intent(out) :: model       !< the model
     integer, parameter :: links(2, 7) = reshape([1, 2, 2, 3, 3, 4, 1, 4, 3, 5, 5, 6, 1, 6], [2, 7])
     real(wp) :: q(7), swing, point(2), pin(2), link_5, link_6
 
-    call new_mechanism(6, links, [1], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call add_revolute(mechanism, 2, 2, 3, frame(bar%crank*x, z), frame(origin, z))
-    call add_revolute(mechanism, 3, 3, 4, frame(bar%coupler*x, z), frame(bar%rocker*x, z))
-    call add_revolute(mechanism, 4, 1, 4, frame(bar%ground*x, z), frame(origin, z))
-    call add_revolute(mechanism, 5, 3, 5, frame([at, 0.0_wp], z), frame(origin, z))
-    call add_revolute(mechanism, 6, 5, 6, frame(lengths(1)*x, z), frame(lengths(2)*x, z))
-    call add_revolute(mechanism, 7, 1, 6, frame([pivot, 0.0_wp], z), frame(origin, z))
+    call new_mechanism(6, links, [1], model)
+    call add_revolute(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(model, 2, 2, 3, frame(bar%crank*x, z), frame(origin, z))
+    call add_revolute(model, 3, 3, 4, frame(bar%coupler*x, z), frame(bar%rocker*x, z))
+    call add_revolute(model, 4, 1, 4, frame(bar%ground*x, z), frame(origin, z))
+    call add_revolute(model, 5, 3, 5, frame([at, 0.0_wp], z), frame(origin, z))
+    call add_revolute(model, 6, 5, 6, frame(lengths(1)*x, z), frame(lengths(2)*x, z))
+    call add_revolute(model, 7, 1, 6, frame([pivot, 0.0_wp], z), frame(origin, z))
     q(:4) = four_bar_guess(bar, angle, branch)
     swing = q(1) + q(2)
     point = bar%crank*[cos(angle), sin(angle)] + at(1)*[cos(swing), sin(swing)] + at(2)*[-sin(swing), cos(swing)]
@@ -142,6 +142,6 @@ contains
     link_5 = atan2(pin(2) - point(2), pin(1) - point(1))
     link_6 = atan2(pin(2) - pivot(2), pin(1) - pivot(1))
     q(5:) = [link_5 - swing, link_6 - link_5, link_6]
-    mechanism%initial_position = q
+    model%problem%initial%position = q
   end subroutine watt_six_bar
 end module mech9_planar_mechanisms

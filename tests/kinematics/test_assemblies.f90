@@ -5,7 +5,7 @@ program test_assemblies
   use mech9_error, only: error_type, exit_assembly
   use mech9_random, only: random_type
   use mech9_pose, only: pose_type, compose, inverse
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -29,7 +29,7 @@ contains
 
   !> Any guess leads to one of the two positions of the rocker, where there are any; the list holds both.
   subroutine four_bars_from_anywhere()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
     type(assembly_list_type) :: list
@@ -44,8 +44,8 @@ contains
         length(k) = 1.0_wp + 0.8_wp*random%symmetric()
         guess(k) = pi*random%symmetric()
       end do
-      call four_bar(length(1), length(2), length(3), length(4), guess, mechanism)
-      call make_plan(mechanism, guess, plan, state, err)
+      call four_bar(length(1), length(2), length(3), length(4), guess, model)
+      call make_plan(model%mechanism, model%problem%partition, guess, plan, state, err)
       diagonal = norm2([length(2)*cos(guess(1)) - length(1), length(2)*sin(guess(1))])
       ! coupler, rocker and diagonal must make a triangle; leave out the narrowest ones
       if (min(length(3) + length(4) - diagonal, diagonal - abs(length(3) - length(4))) > 1.0e-6_wp) then
@@ -83,7 +83,7 @@ contains
   !> Coupler and rocker stretched: the two assemblies are one, and coordinates are known to the root of
   !> round-off only; but the chain closes. A millionth farther it does not, and stays open by at most that.
   subroutine four_bar_near_its_reach()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
@@ -91,13 +91,13 @@ contains
     integer :: i
 
     do i = 0, 20
-      call four_bar(3.0_wp, 1.0_wp, 1.2_wp, 0.8_wp, [0.0_wp, 0.3_wp*i/20, 0.2_wp, 2.8_wp], mechanism)
-      call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+      call four_bar(3.0_wp, 1.0_wp, 1.2_wp, 0.8_wp, [0.0_wp, 0.3_wp*i/20, 0.2_wp, 2.8_wp], model)
+      call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
       call test%no_error(err, 'a four-bar that just reaches')
       if (.not. allocated(err)) call check_closed(test, plan, state, 'a four-bar that just reaches')
     end do
-    call four_bar(3.0_wp + 1.0e-3_wp, 1.0_wp, 1.2_wp, 0.8_wp, [0.0_wp, 0.3_wp, 0.2_wp, 2.8_wp], mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call four_bar(3.0_wp + 1.0e-3_wp, 1.0_wp, 1.2_wp, 0.8_wp, [0.0_wp, 0.3_wp, 0.2_wp, 2.8_wp], model)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%has_error(err, exit_assembly, 'a four-bar that just does not reach')
     if (.not. allocated(err)) return
     call test%is_true(index(message_of(err), 'stays open by ') > 0, 'it says by how much')
@@ -108,7 +108,7 @@ contains
 
   !> Crank and rod: the slide is at r cos a -+ sqrt(l^2 - r^2 sin^2 a).
   subroutine slider_crank()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
     type(assembly_list_type) :: list
@@ -117,13 +117,13 @@ contains
     real(wp), parameter :: crank = 0.4_wp, rod = 1.1_wp, angle = 0.7_wp
     real(wp) :: slides(2)
 
-    call new_mechanism(4, links, [1], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call add_revolute(mechanism, 2, 2, 3, frame([crank, 0.0_wp, 0.0_wp], z), frame(origin, z))
-    call add_revolute(mechanism, 3, 3, 4, frame([rod, 0.0_wp, 0.0_wp], z), frame(origin, z))
-    call add_prismatic(mechanism, 4, 1, 4, frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]), frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]))
-    mechanism%initial_position(1) = angle
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call new_mechanism(4, links, [1], model)
+    call add_revolute(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(model, 2, 2, 3, frame([crank, 0.0_wp, 0.0_wp], z), frame(origin, z))
+    call add_revolute(model, 3, 3, 4, frame([rod, 0.0_wp, 0.0_wp], z), frame(origin, z))
+    call add_prismatic(model, 4, 1, 4, frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]), frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]))
+    model%problem%initial%position(1) = angle
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'slider-crank')
     if (allocated(err)) return
     call find_assemblies(plan, state, 60, list)
@@ -157,7 +157,7 @@ contains
     real(wp), intent(in) :: plate(2, 3)   !< (2,3) joints in the platform [m]
     real(wp), intent(in) :: legs(3)       !< their lengths [m]
     integer, intent(inout) :: most        !< the greatest number of positions so far
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
     type(assembly_list_type) :: list
@@ -165,12 +165,12 @@ contains
     integer, parameter :: links(2, 6) = reshape([1, 3, 3, 2, 1, 4, 4, 2, 1, 5, 5, 2], [2, 6])
     integer :: k, expected
 
-    call new_mechanism(5, links, [integer ::], mechanism)
+    call new_mechanism(5, links, [integer ::], model)
     do k = 1, 3
-      call add_revolute(mechanism, 2*k - 1, 1, 2 + k, frame([base(:, k), 0.0_wp], z), frame(origin, z))
-      call add_revolute(mechanism, 2*k, 2 + k, 2, frame([legs(k), 0.0_wp, 0.0_wp], z), frame([plate(:, k), 0.0_wp], z))
+      call add_revolute(model, 2*k - 1, 1, 2 + k, frame([base(:, k), 0.0_wp], z), frame(origin, z))
+      call add_revolute(model, 2*k, 2 + k, 2, frame([legs(k), 0.0_wp, 0.0_wp], z), frame([plate(:, k), 0.0_wp], z))
     end do
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     expected = positions_of(base, plate, legs)
     if (expected == 0) then
       call test%has_error(err, exit_assembly, 'a platform without positions')
@@ -224,7 +224,7 @@ contains
   !> Six revolutes in a loop, the arm of Manseur and Doty in the position that is reached in 16 ways, the most
   !> that any such arm has.
   subroutine six_revolutes()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
     type(assembly_list_type) :: list
@@ -240,16 +240,16 @@ contains
                       0.102262_wp, 0.991071_wp, 0.085558_wp], [3, 3])
     hand%p = [-1.14017_wp, 0.0_wp, 0.0_wp]
     call orthonormalize(hand%r)
-    call new_mechanism(6, links, [integer ::], mechanism)
+    call new_mechanism(6, links, [integer ::], model)
     do k = 1, 6
       after%r = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, cos(twist(k)), sin(twist(k)), &
                          0.0_wp, -sin(twist(k)), cos(twist(k))], [3, 3])
       after%p = [a(k), 0.0_wp, d(k)]
       in_moving = inverse(after)
       if (k == 6) in_moving = compose(hand, in_moving)
-      call add_revolute(mechanism, k, links(1, k), links(2, k), frame(origin, z), in_moving)
+      call add_revolute(model, k, links(1, k), links(2, k), frame(origin, z), in_moving)
     end do
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'six revolutes')
     if (allocated(err)) return
     call find_assemblies(plan, state, 1500, list)

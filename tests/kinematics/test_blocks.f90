@@ -4,7 +4,7 @@ program test_blocks
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_structure
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -16,7 +16,7 @@ program test_blocks
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
   type(plan_type) :: plan
   type(state_type) :: state
   type(error_type), allocatable :: err
@@ -25,12 +25,12 @@ program test_blocks
   integer :: k
 
   ! pairs 4 to 7 are the first closed chain, a four-bar: driven in it, it goes first
-  call fig1(5, mechanism)
-  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call fig1(5, model)
+  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   assembled = state%q
   do k = 1, 7
-    call fig1(k, mechanism)
-    mechanism%initial_position = assembled
+    call fig1(k, model)
+    model%problem%initial%position = assembled
     if (k < 4) call check('Fig. 1 driven in its second chain', [6])
     if (k >= 4) call check('Fig. 1 driven in its first chain', [3, 3])
   end do
@@ -43,12 +43,12 @@ program test_blocks
   call all_drives('four-bars in a row', crank_row(4), 3, [(0, k=1, 13)])
   ! tongs driven in their first crossing; driven elsewhere, what lies below can only be closed together,
   ! because frames stand on frames
-  call home_mechanism(42, lazy_tongs(20), planar_axes(61, 0, random), [1], mechanism)
+  call home_mechanism(42, lazy_tongs(20), planar_axes(61, 0, random), [1], model)
   call check('lazy tongs', [(3, k=1, 20)])
-  call home_mechanism(2402, lazy_tongs(1200), planar_axes(3601, 0, random), [3601], mechanism)
-  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call home_mechanism(2402, lazy_tongs(1200), planar_axes(3601, 0, random), [3601], model)
+  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   call test%has_error(err, exit_structure, 'too many coordinates that can only be solved for together')
-  call stewart_platform(mechanism)
+  call stewart_platform(model)
   call check('Stewart platform', [30])
   call long_rows()
   ! what a main program holds is never given back by itself, and a leak to the sanitizer
@@ -67,9 +67,9 @@ contains
     do driven = 1, 3*cells(1) + 1, 3*cells(1)
       do i = 1, 2
         call home_mechanism(2*cells(i) + 2, crank_row(cells(i)), planar_axes(3*cells(i) + 1, 0, random), &
-                            [1 + (driven - 1)/cells(1)*cells(i)], mechanism)
+                            [1 + (driven - 1)/cells(1)*cells(i)], model)
         call cpu_time(before)
-        call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+        call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
         call cpu_time(after)
         call test%no_error(err, 'a long row')
         seconds(i) = after - before
@@ -91,7 +91,7 @@ contains
 
     do k = 1, size(links, 2)
       axes = planar_axes(size(links, 2), 0, random)
-      call home_mechanism(maxval(links), links, axes, [k], mechanism)
+      call home_mechanism(maxval(links), links, axes, [k], model)
       if (unknowns(k) > 0) then
         call check(name, [unknowns(k)])
       else
@@ -107,10 +107,10 @@ contains
     integer, intent(in) :: sizes(:)        !< unknowns of the blocks
     type(state_type) :: state
     type(error_type), allocatable :: err
-    real(wp) :: start(size(mechanism%pairs))
+    real(wp) :: start(size(model%mechanism%pairs))
     integer :: k
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, name)
     if (allocated(err)) return
     if (size(block_sizes(plan)) == size(sizes)) then
@@ -123,9 +123,9 @@ contains
     call check_smallest(test, plan, name)
     start = state%q
     do k = 1, size(start)
-      if (.not. mechanism%structure%independent(k)) start(k) = start(k) + 0.1_wp*random%symmetric()
+      if (.not. model%problem%partition%is_independent(k)) start(k) = start(k) + 0.1_wp*random%symmetric()
     end do
-    call make_plan(mechanism, start, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, start, plan, state, err)
     call test%no_error(err, name//' from another guess')
     call check_closed(test, plan, state, name//' from another guess')
   end subroutine check
@@ -142,7 +142,7 @@ contains
     real(wp) :: rates(size(axes)), expected(size(axes)), residual_norm
     integer :: k
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     if (allocated(err)) return
     call loop_equations(maxval(links), links, axes, equations)
     expected = 0.0_wp

@@ -7,7 +7,7 @@ program test_branch_certainty
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_harmonic_drive, only: harmonic_drive_type
@@ -45,7 +45,7 @@ contains
   subroutine check_four_bar(bar, name)
     type(four_bar_type), intent(in) :: bar   !< its lengths
     character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -54,13 +54,13 @@ contains
 
     start = 0.7_wp
     do branch = -1, 1, 2
-      call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, start, branch), mechanism)
-      call drive(mechanism, 1, [start, 2.0_wp*pi])
+      call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, start, branch), model)
+      call drive(model, 1, [start, 2.0_wp*pi])
       do n = 1, size(outputs)
-        call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+        call begin_motion(test, model, 0.0_wp, plan, driven)
         worst = 0.0_wp
         do j = 1, outputs(n)
-          call advance(mechanism, plan, driven, real(turns*j, wp)/outputs(n), err)
+          call advance(model%problem%drives, plan, driven, real(turns*j, wp)/outputs(n), err)
           if (allocated(err)) exit
           angle = four_bar_angle(bar, driven%state%q(1), branch)
           worst = max(worst, angle_between(driven%state%q(4), angle))
@@ -78,7 +78,7 @@ contains
   !> x = r cos + - root of l^2 - (r sin - e)^2; the crank at the i-th comes nearer and nearer to what it can turn.
   subroutine check_slider_crank(i)
     integer, intent(in) :: i   !< number of the crank
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -89,13 +89,13 @@ contains
     offset = 0.3_wp*random%symmetric()
     coupler = crank + abs(offset) + 10.0_wp**(-0.4_wp*i)
     do branch = -1, 1, 2
-      call slider_crank(crank, coupler, offset, 0.4_wp, branch, mechanism)
-      call drive(mechanism, 1, [0.4_wp, 2.0_wp*pi])
+      call slider_crank(crank, coupler, offset, 0.4_wp, branch, model)
+      call drive(model, 1, [0.4_wp, 2.0_wp*pi])
       do n = 1, size(outputs)
-        call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+        call begin_motion(test, model, 0.0_wp, plan, driven)
         worst = 0.0_wp
         do j = 1, outputs(n)
-          call advance(mechanism, plan, driven, real(turns*j, wp)/outputs(n), err)
+          call advance(model%problem%drives, plan, driven, real(turns*j, wp)/outputs(n), err)
           if (allocated(err)) exit
           angle = driven%state%q(1)
           expected = crank*cos(angle) + branch*sqrt(coupler**2 - (crank*sin(angle) - offset)**2)
@@ -109,7 +109,7 @@ contains
 
   !> A four-bar with a pair of links on its coupler: all four branches, by two intersections of circles.
   subroutine check_six_bar()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -122,13 +122,13 @@ contains
     pivot = [0.4_wp + 0.3_wp*random%symmetric(), -2.2_wp]
     do branch = -1, 1, 2
       do second = -1, 1, 2
-        call watt_six_bar(bar, at, pivot, [2.6_wp, 2.5_wp], 0.3_wp, branch, second, mechanism)
-        call drive(mechanism, 1, [0.3_wp, 2.0_wp*pi])
+        call watt_six_bar(bar, at, pivot, [2.6_wp, 2.5_wp], 0.3_wp, branch, second, model)
+        call drive(model, 1, [0.3_wp, 2.0_wp*pi])
         do n = 1, size(outputs)
-          call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+          call begin_motion(test, model, 0.0_wp, plan, driven)
           worst = 0.0_wp
           do j = 1, outputs(n)
-            call advance(mechanism, plan, driven, real(turns*j, wp)/outputs(n), err)
+            call advance(model%problem%drives, plan, driven, real(turns*j, wp)/outputs(n), err)
             if (allocated(err)) exit
             worst = max(worst, angle_between(driven%state%q(4), four_bar_angle(bar, driven%state%q(1), branch)))
             swing = driven%state%q(1) + driven%state%q(2)
@@ -147,7 +147,7 @@ contains
 
   !> Two chains that are solved together, driven to and fro many times between two outputs.
   subroutine check_swinging_fig1()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -155,28 +155,28 @@ contains
     real(wp) :: start(7), q(7)
     integer :: n, j
 
-    call fig1(1, mechanism)
-    deallocate (mechanism%drives)
-    allocate (mechanism%drives(1))
+    call fig1(1, model)
+    deallocate (model%problem%drives)
+    allocate (model%problem%drives(1))
     swing%coordinate = 1
     swing%mean = -1.05_wp
-    mechanism%initial_position(1) = swing%mean
+    model%problem%initial%position(1) = swing%mean
     swing%amplitude = 0.1_wp
     swing%angular_frequency = 2.0_wp*pi
     do n = 1, 4
-      allocate (mechanism%drives(1)%drive, source=swing)
-      call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+      allocate (model%problem%drives(1)%drive, source=swing)
+      call begin_motion(test, model, 0.0_wp, plan, driven)
       start = driven%state%q
       do j = 1, 10**n
         ! at the last output the drive has swung forty-seven and a quarter times
-        call advance(mechanism, plan, driven, 47.25_wp*j/10**n, err)
+        call advance(model%problem%drives, plan, driven, 47.25_wp*j/10**n, err)
         if (allocated(err)) exit
       end do
       call test%no_error(err, 'Fig. 1 swings on')
       if (n == 1) q = driven%state%q
       call test%is_true(maxval(abs(driven%state%q - start)) > 0.05_wp, 'and has moved')
       call test%near(maxval(abs(driven%state%q - q)), 0.0_wp, 1.0e-11_wp, 'to the same position')
-      deallocate (mechanism%drives(1)%drive)
+      deallocate (model%problem%drives(1)%drive)
     end do
   end subroutine check_swinging_fig1
 end program test_branch_certainty

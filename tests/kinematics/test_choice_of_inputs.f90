@@ -4,7 +4,7 @@ program test_choice_of_inputs
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_structure
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -14,7 +14,7 @@ program test_choice_of_inputs
   implicit none
   type(tester_type) :: test
   type(random_type) :: random
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
   integer :: i, n, refused, accepted
 
   refused = 0
@@ -52,8 +52,8 @@ contains
       ! 1, 2: one too few; 3, 4: one too many; 5, 6: as many as before, but others
       if (any(kind == [1, 2, 5, 6])) call change_one(changed, .true.)
       if (any(kind == [3, 4, 5, 6])) call change_one(changed, .false.)
-      call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. changed), mechanism)
-      call check(name, mechanism, equations, count(dependent), changed)
+      call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. changed), model)
+      call check(name, model, equations, count(dependent), changed)
     end do
   end subroutine try
 
@@ -88,9 +88,9 @@ contains
     serves = count(dependent) == rank .and. count(chosen) == rank
   end function serves
 
-  subroutine check(name, mechanism, equations, rank, dependent)
+  subroutine check(name, model, equations, rank, dependent)
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(model_type), intent(in) :: model       !< the model
     real(wp), intent(in) :: equations(:, :)         !< (6 loops,M) that the rates satisfy
     integer, intent(in) :: rank                     !< of the equations
     logical, intent(in) :: dependent(:)             !< (M) coordinates that follow from the others
@@ -100,7 +100,7 @@ contains
     integer, allocatable :: proposed(:)
     integer :: k
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     if (serves(equations, rank, dependent)) then
       accepted = accepted + 1
       call test%no_error(err, name//': coordinates that can serve')

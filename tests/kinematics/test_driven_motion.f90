@@ -2,7 +2,7 @@
 program test_driven_motion
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_singular
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_differentiation, only: half_width, derivatives_from_stencil
@@ -11,17 +11,17 @@ program test_driven_motion
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
 
-  call fig1(5, mechanism)
-  call drive(mechanism, 5, [0.5_wp, 6.0_wp])
-  call check_derivatives(mechanism, 'Fig. 1')
-  call fig1(1, mechanism)
-  call drive(mechanism, 1, [-1.0_wp, 0.4_wp, -0.2_wp])
-  call check_derivatives(mechanism, 'Fig. 1 driven at q1')
-  call general_loop(mechanism)
-  call drive(mechanism, 1, [0.1_wp, 0.4_wp, 0.3_wp])
-  call check_derivatives(mechanism, 'general loop')
+  call fig1(5, model)
+  call drive(model, 5, [0.5_wp, 6.0_wp])
+  call check_derivatives(model, 'Fig. 1')
+  call fig1(1, model)
+  call drive(model, 1, [-1.0_wp, 0.4_wp, -0.2_wp])
+  call check_derivatives(model, 'Fig. 1 driven at q1')
+  call general_loop(model)
+  call drive(model, 1, [0.1_wp, 0.4_wp, 0.3_wp])
+  call check_derivatives(model, 'general loop')
   call check_four_bar()
   call check_dead_point()
   call test%finish()
@@ -29,8 +29,8 @@ program test_driven_motion
 contains
 
   !> Rates and accelerations against high-order differences of the positions around t = 0.
-  subroutine check_derivatives(mechanism, name)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine check_derivatives(model, name)
+    type(model_type), intent(in) :: model       !< the model
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
     real(wp), parameter :: h = 2.0_wp**(-8)
     type(plan_type) :: plan
@@ -40,11 +40,11 @@ contains
     real(wp) :: first, second, error
     integer :: i, k
 
-    call begin_motion(test, mechanism, -half_width*h, plan, driven)
+    call begin_motion(test, model, -half_width*h, plan, driven)
     allocate (q(-half_width:half_width, plan%n_coordinates))
     q(-half_width, :) = driven%state%q
     do i = 1 - half_width, half_width
-      call advance(mechanism, plan, driven, i*h, err)
+      call advance(model%problem%drives, plan, driven, i*h, err)
       call test%no_error(err, name//' goes on')
       q(i, :) = driven%state%q
       if (i == 0) dq = driven%state%dq
@@ -62,7 +62,7 @@ contains
   !> A crank-rocker over many turns, with few and with many outputs a turn, against its closed form.
   subroutine check_four_bar()
     real(wp), parameter :: ground = 0.40_wp, crank = 0.15_wp, coupler = 0.35_wp, rocker = 0.30_wp
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -70,12 +70,12 @@ contains
     real(wp) :: t, expected
 
     do per_turn = 3, 300, 33
-      call four_bar(ground, crank, coupler, rocker, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], mechanism)
-      call drive(mechanism, 1, [0.0_wp, 2.0_wp*pi])
-      call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+      call four_bar(ground, crank, coupler, rocker, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
+      call drive(model, 1, [0.0_wp, 2.0_wp*pi])
+      call begin_motion(test, model, 0.0_wp, plan, driven)
       do i = 1, 3*per_turn
         t = real(i, wp)/per_turn
-        call advance(mechanism, plan, driven, t, err)
+        call advance(model%problem%drives, plan, driven, t, err)
         call test%no_error(err, 'four-bar goes on')
         expected = rocker_angle(2.0_wp*pi*t)
         ! the closed form loses a few digits in its square root and arc functions
@@ -109,7 +109,7 @@ contains
 
   !> A crank that cannot turn fully stops just short of its dead point, on its branch.
   subroutine check_dead_point()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -118,11 +118,11 @@ contains
 
     ! coupler and rocker stretch out when the diagonal is 0.3 + 0.3
     limit = acos((0.4_wp**2 + 0.35_wp**2 - 0.6_wp**2)/(2.0_wp*0.4_wp*0.35_wp))
-    call four_bar(0.4_wp, 0.35_wp, 0.3_wp, 0.3_wp, [0.5_wp, 0.5_wp, 1.0_wp, 2.0_wp], mechanism)
-    call drive(mechanism, 1, [0.5_wp, 1.0_wp])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+    call four_bar(0.4_wp, 0.35_wp, 0.3_wp, 0.3_wp, [0.5_wp, 0.5_wp, 1.0_wp, 2.0_wp], model)
+    call drive(model, 1, [0.5_wp, 1.0_wp])
+    call begin_motion(test, model, 0.0_wp, plan, driven)
     do i = 1, 40
-      call advance(mechanism, plan, driven, 0.1_wp*i, err)
+      call advance(model%problem%drives, plan, driven, 0.1_wp*i, err)
       if (allocated(err)) exit
     end do
     call test%has_error(err, exit_singular, 'a dead point is exit code 6')

@@ -2,7 +2,7 @@
 program test_look_ahead
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -16,7 +16,7 @@ program test_look_ahead
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
   type(plan_type) :: plan
   type(branch_stepper_type) :: stepper
 
@@ -38,16 +38,16 @@ contains
     logical :: stuck
     integer :: refused_by, step
 
-    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, start, 1), mechanism)
-    call drive(mechanism, 1, [start, 1.0_wp])
-    call make_plan(mechanism, mechanism%initial_position, plan, assembled, err)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, start, 1), model)
+    call drive(model, 1, [start, 1.0_wp])
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, assembled, err)
     call test%no_error(err, 'plan and assembly')
     if (allocated(err)) call test%finish()
-    call start_driven_motion(mechanism, plan, assembled, 0.0_wp, driven, err)
+    call start_driven_motion(model%problem%drives, plan, assembled, 0.0_wp, driven, err)
     call test%no_error(err, 'start')
     stepper = driven%branch_stepper_type
     do step = 1, 1000
-      call step_towards(mechanism, plan, stepper, t, stuck, refused_by, err)
+      call step_towards(model%problem%drives, plan, stepper, t, stuck, refused_by, err)
       if (allocated(err) .or. stuck .or. is_near(stepper%monitors(1))) exit
     end do
     call test%is_true(is_near(stepper%monitors(1)) .and. .not. stuck, 'regular steps lead near the singular position')
@@ -61,7 +61,7 @@ contains
 
     limit = four_bar_limit(bar, stretched=.true.)
     call come_near(bar, limit - 0.4_wp, 2.0_wp)
-    call look_ahead(mechanism, plan, stepper, 1, 1.0_wp, finding)
+    call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == dead_point .and. finding%block == 1, 'a dead point is found')
     ! the square-root law leaves terms of higher order in the distance of the last step, some 1e-11
     call test%near(finding%t, 0.4_wp, 1.0e-9_wp, 'at its time')
@@ -79,18 +79,18 @@ contains
     integer :: i
 
     call come_near(bar, start, 2.0_wp)
-    call look_ahead(mechanism, plan, stepper, 1, 1.0_wp, finding)
+    call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == branch_point, 'a crossing is found')
     ! the time is extrapolated from positions of the probe that lie within a small part of the distance
     call test%near(finding%t, 0.5_wp, 1.0e-6_wp, 'at its time')
-    call build_crossing(mechanism, plan, stepper, finding%t, crossing, err)
+    call build_crossing(model%problem%drives, plan, stepper, finding%t, crossing, err)
     call test%no_error(err, 'crossing')
     call test%is_true(crossing%exists .and. .not. crossing%ends, 'the motion through it is found')
     call test%is_true(crossing%from < 0.5_wp .and. crossing%to > 0.5_wp, 'from before to beyond')
     state = stepper%state
     do i = 0, 8
       t = crossing%from + (crossing%to - crossing%from)*i/8.0_wp
-      call position_within(mechanism, plan, crossing, t, state, stepper%work, stepper%monitors, err)
+      call position_within(model%problem%drives, plan, crossing, t, state, stepper%work, stepper%monitors, err)
       call test%no_error(err, 'a position within the crossing')
       ! the rocker stays parallel to the crank, and the coupler to the ground; the polynomial of this linear motion is exact
       call test%near(maxval(abs(state%q - [start + t, -start - t, start + t, start + t])), 0.0_wp, 1.0e-11_wp, &
@@ -105,7 +105,7 @@ contains
     type(finding_type) :: finding
 
     call come_near(bar, pi - 0.5_wp, 2.0_wp)
-    call look_ahead(mechanism, plan, stepper, 1, 1.0_wp, finding)
+    call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == nothing_special, 'branches that only come close are no crossing')
     call test%is_true(finding%t > 0.5_wp, 'and none is found until they are apart again')
   end subroutine check_close_branches

@@ -2,7 +2,7 @@
 program test_no_allocation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -14,16 +14,16 @@ program test_no_allocation
   use mech9_counted_memory, only: calls
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
 
-  call fig1(5, mechanism)
-  call drive(mechanism, 5, [0.5_wp, 6.0_wp])
+  call fig1(5, model)
+  call drive(model, 5, [0.5_wp, 6.0_wp])
   call count_calls('planar chains')
-  call fig1(1, mechanism)
-  call drive(mechanism, 1, [-1.0_wp, 0.1_wp])
+  call fig1(1, model)
+  call drive(model, 1, [-1.0_wp, 0.1_wp])
   call count_calls('chains solved together')
-  call general_loop(mechanism)
-  call drive(mechanism, 1, [0.0_wp, 0.1_wp])
+  call general_loop(model)
+  call drive(model, 1, [0.0_wp, 0.1_wp])
   call count_calls('a spatial chain')
   call test%finish()
 
@@ -39,20 +39,20 @@ contains
     real(wp) :: row(100)
     integer :: i, before
 
-    deallocate (mechanism%points)
-    allocate (mechanism%points(1))
-    mechanism%points(1) = point_type('P', 3, [0.1_wp, 0.2_wp, 0.0_wp])
-    columns = kinematic_columns(mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    deallocate (model%mechanism%points)
+    allocate (model%mechanism%points(1))
+    model%mechanism%points(1) = point_type('P', 3, [0.1_wp, 0.2_wp, 0.0_wp])
+    columns = kinematic_columns(model%mechanism, model%request%output)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, name//': plan')
-    call start_driven_motion(mechanism, plan, state, 0.0_wp, driven, err)
+    call start_driven_motion(model%problem%drives, plan, state, 0.0_wp, driven, err)
     call test%no_error(err, name//': start')
     before = calls
     call test%is_true(before > 0, 'the counter counts')
     do i = 1, 100
-      call advance(mechanism, plan, driven, 0.002_wp*i, err)
+      call advance(model%problem%drives, plan, driven, 0.002_wp*i, err)
       if (allocated(err)) exit
-      call columns%fill(mechanism, plan, driven%state, row)
+      call columns%fill(model%mechanism, plan, driven%state, row)
     end do
     call test%is_true(calls == before, name//': a hundred positions allocate nothing')
     call test%no_error(err, name//': goes on')

@@ -4,7 +4,7 @@ program test_overconstrained
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_structure
   use mech9_pose, only: pose_type, compose, identity_pose
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -125,18 +125,18 @@ contains
     integer, intent(in) :: driven               !< number of the driven coordinate
     type(axis_type), intent(in) :: axes(:)      !< of each pair in the home position
     integer, intent(in), optional :: sizes(:)   !< unknowns of the blocks
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
     integer, allocatable :: found(:)
     integer :: i
 
-    call home_mechanism(n_links, links, axes, [driven], mechanism)
+    call home_mechanism(n_links, links, axes, [driven], model)
     do i = 0, 4
-      if (i > 0) mechanism%initial_position = state%q
-      mechanism%initial_position(driven) = 0.03_wp*i
-      call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+      if (i > 0) model%problem%initial%position = state%q
+      model%problem%initial%position(driven) = 0.03_wp*i
+      call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
       call test%no_error(err, name)
       if (allocated(err)) return
       call check_order(test, plan, name)

@@ -5,7 +5,7 @@ program test_planar_chain
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -16,51 +16,51 @@ program test_planar_chain
   implicit none
   type(tester_type) :: test
   type(random_type) :: random
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
   type(four_bar_type) :: bar
   integer :: trial
 
   do trial = 1, 20
     call slider_crank(0.3_wp + 0.1_wp*random%symmetric(), 0.9_wp, 0.1_wp*random%symmetric(), 3.0_wp*random%symmetric(), &
-                      merge(1, -1, mod(trial, 2) == 0), mechanism)
-    call check_same_motion(mechanism, 1, 'a slider-crank')
+                      merge(1, -1, mod(trial, 2) == 0), model)
+    call check_same_motion(model, 1, 'a slider-crank')
     bar = random_crank(random, 0.3_wp)
-    call watt_six_bar(bar, [0.4_wp, 0.3_wp], [2.0_wp, 0.5_wp], [2.0_wp, 1.8_wp], random%symmetric(), 1, 1, mechanism)
-    call check_same_motion(mechanism, 2, 'a six-bar')
-    call swinging_guide(0.3_wp, 0.7_wp, 3.0_wp*random%symmetric(), mechanism)
-    call check_same_motion(mechanism, 1, 'a slide on a link that turns')
+    call watt_six_bar(bar, [0.4_wp, 0.3_wp], [2.0_wp, 0.5_wp], [2.0_wp, 1.8_wp], random%symmetric(), 1, 1, model)
+    call check_same_motion(model, 2, 'a six-bar')
+    call swinging_guide(0.3_wp, 0.7_wp, 3.0_wp*random%symmetric(), model)
+    call check_same_motion(model, 1, 'a slide on a link that turns')
   end do
-  call fig1(5, mechanism)
-  call check_same_motion(mechanism, 2, 'Fig. 1')
-  call fig1(1, mechanism)
-  call check_same_motion(mechanism, 0, 'Fig. 1 driven at q1: its chains need each other')
+  call fig1(5, model)
+  call check_same_motion(model, 2, 'Fig. 1')
+  call fig1(1, model)
+  call check_same_motion(model, 0, 'Fig. 1 driven at q1: its chains need each other')
   call test%finish()
 
 contains
 
   !> A block on the crank's pin slides along a guide that swings about a fixed pin.
-  subroutine swinging_guide(crank, ground, angle, mechanism)
+  subroutine swinging_guide(crank, ground, angle, model)
     real(wp), intent(in) :: crank                    !< lengths [m]
     real(wp), intent(in) :: ground                   !< lengths [m]
     real(wp), intent(in) :: angle                    !< of the crank [rad]
-    type(mechanism_type), intent(out) :: mechanism   !< the mechanism
+    type(model_type), intent(out) :: model       !< the model
     real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 4, 3, 1, 4], [2, 4])
     real(wp) :: way(2), guide
 
-    call new_mechanism(4, links, [1], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, frame(origin, z), frame(origin, z))
-    call add_revolute(mechanism, 2, 2, 3, frame(crank*x, z), frame(origin, z))
-    call add_prismatic(mechanism, 3, 4, 3, frame(origin, x), frame(origin, x))
-    call add_revolute(mechanism, 4, 1, 4, frame(ground*x, z), frame(origin, z))
+    call new_mechanism(4, links, [1], model)
+    call add_revolute(model, 1, 1, 2, frame(origin, z), frame(origin, z))
+    call add_revolute(model, 2, 2, 3, frame(crank*x, z), frame(origin, z))
+    call add_prismatic(model, 3, 4, 3, frame(origin, x), frame(origin, x))
+    call add_revolute(model, 4, 1, 4, frame(ground*x, z), frame(origin, z))
     way = crank*[cos(angle), sin(angle)] - [ground, 0.0_wp]
     guide = atan2(way(2), way(1))
-    mechanism%initial_position = [angle, guide - angle, norm2(way), guide]
+    model%problem%initial%position = [angle, guide - angle, norm2(way), guide]
   end subroutine swinging_guide
 
   !> Rates and accelerations of coordinates and frames, at random ones of the independent coordinates.
-  subroutine check_same_motion(mechanism, chains, name)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine check_same_motion(model, chains, name)
+    type(model_type), intent(in) :: model       !< the model
     integer, intent(in) :: chains                   !< blocks that are such chains
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
@@ -70,7 +70,7 @@ contains
     integer :: b, i, found
     real(wp) :: allowed
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, name)
     if (allocated(err)) return
     do i = 1, size(plan%independent)

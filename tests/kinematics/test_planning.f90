@@ -2,7 +2,8 @@
 program test_planning
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_structure, exit_assembly
-  use mech9_mechanism, only: mechanism_type
+  use mech9_partition, only: new_partition
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -10,7 +11,7 @@ program test_planning
   use mech9_testing, only: tester_type, message_of
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
   type(plan_type) :: plan
   type(state_type) :: state
   type(error_type), allocatable :: err
@@ -18,57 +19,57 @@ program test_planning
   real(wp), allocatable :: assembled(:)
   integer :: k
 
-  call fig1(5, mechanism)
-  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call fig1(5, model)
+  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   call test%no_error(err, 'Fig. 1 driven at q5')
   call test%is_true(size(plan%blocks) == 2, 'the two chains of Fig. 1 are solved one after the other')
   call test%is_true(all(plan%closures%rank == 3), 'planar chains have three independent equations')
 
   assembled = state%q
   do k = 1, 7
-    call fig1(k, mechanism)
-    mechanism%initial_position = assembled
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call fig1(k, model)
+    model%problem%initial%position = assembled
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'Fig. 1 driven at any coordinate')
     if (any(k == [4, 5, 6, 7])) cycle
     call test%is_true(size(plan%blocks) == 1, 'driven in the second chain, both are solved together')
   end do
 
-  call general_loop(mechanism)
-  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call general_loop(model)
+  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   call test%no_error(err, 'general loop')
   call test%is_true(all(plan%closures%rank == 6), 'a general loop has six independent equations')
 
   ! spherical four-bar: all axes through one point
-  call new_mechanism(4, reshape([1, 2, 2, 3, 3, 4, 4, 1], [2, 4]), [1], mechanism)
-  call add_revolute(mechanism, 1, 1, 2, frame(origin, [0.0_wp, 0.0_wp, 1.0_wp]), frame(origin, [0.0_wp, 0.0_wp, 1.0_wp]))
-  call add_revolute(mechanism, 2, 2, 3, frame(origin, [0.4_wp, 0.0_wp, 1.0_wp]), frame(origin, [0.4_wp, 0.0_wp, 1.0_wp]))
-  call add_revolute(mechanism, 3, 3, 4, frame(origin, [1.0_wp, 0.6_wp, 0.2_wp]), frame(origin, [1.0_wp, 0.6_wp, 0.2_wp]))
-  call add_revolute(mechanism, 4, 4, 1, frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]), frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]))
-  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call new_mechanism(4, reshape([1, 2, 2, 3, 3, 4, 4, 1], [2, 4]), [1], model)
+  call add_revolute(model, 1, 1, 2, frame(origin, [0.0_wp, 0.0_wp, 1.0_wp]), frame(origin, [0.0_wp, 0.0_wp, 1.0_wp]))
+  call add_revolute(model, 2, 2, 3, frame(origin, [0.4_wp, 0.0_wp, 1.0_wp]), frame(origin, [0.4_wp, 0.0_wp, 1.0_wp]))
+  call add_revolute(model, 3, 3, 4, frame(origin, [1.0_wp, 0.6_wp, 0.2_wp]), frame(origin, [1.0_wp, 0.6_wp, 0.2_wp]))
+  call add_revolute(model, 4, 4, 1, frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]), frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]))
+  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   call test%no_error(err, 'spherical four-bar')
   call test%is_true(all(plan%closures%rank == 3), 'a spherical chain has three independent equations')
 
   ! too few independent coordinates
-  call new_mechanism(5, reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 1], [2, 5]), [1], mechanism)
+  call new_mechanism(5, reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 1], [2, 5]), [1], model)
   do k = 1, 5
-    call add_revolute(mechanism, k, k, mod(k, 5) + 1, &
+    call add_revolute(model, k, k, mod(k, 5) + 1, &
                       frame([cos(1.3_wp*k), sin(1.3_wp*k), 0.0_wp], [0.0_wp, 0.0_wp, 1.0_wp]), &
                       frame([cos(1.3_wp*k), sin(1.3_wp*k), 0.0_wp], [0.0_wp, 0.0_wp, 1.0_wp]))
   end do
-  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   call test%has_error(err, exit_structure, 'a five-bar needs two independent coordinates')
   call test%is_true(index(message_of(err), '1 more of the coordinates 2, 3, 4, 5') > 0, 'and is told which could be')
 
   ! too many
-  call four_bar(1.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], mechanism)
-  mechanism%structure%independent(2) = .true.
-  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call four_bar(1.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
+  call new_partition(model%mechanism%structure, [.true., .true., .false., .false.], model%problem%partition)
+  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   call test%is_true(allocated(err), 'a four-bar has one independent coordinate')
 
   ! impossible lengths
-  call four_bar(5.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], mechanism)
-  call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+  call four_bar(5.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
+  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   call test%has_error(err, exit_assembly, 'links too short to meet')
   ! what a main program holds is never given back by itself, and a leak to the sanitizer
   deallocate (assembled)

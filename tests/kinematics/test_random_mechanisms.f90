@@ -7,7 +7,7 @@ program test_random_mechanisms
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -46,7 +46,7 @@ contains
     type(axis_type), allocatable :: axes(:)
     real(wp), allocatable :: equations(:, :)
     logical, allocatable :: dependent(:)
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     integer :: k
 
     allocate (links, source=random_links(n_links, loops, random))
@@ -57,22 +57,22 @@ contains
     allocate (dependent(size(axes)))
     call choose_dependent(equations, random, dependent)
     largest = max(largest, size(axes))
-    call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), mechanism)
-    call check(name, mechanism, equations, dependent)
-    if (size(axes) < 60) call check_units(name, n_links, links, axes, mechanism)
+    call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), model)
+    call check(name, model, equations, dependent)
+    if (size(axes) < 60) call check_units(name, n_links, links, axes, model)
   end subroutine try
 
   !> The same mechanism in other units of length, over seven orders of magnitude: the same blocks, and the
   !> same position to the last digits from the same guess.
-  subroutine check_units(name, n_links, links, axes, mechanism)
+  subroutine check_units(name, n_links, links, axes, model)
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
     integer, intent(in) :: n_links                  !< links, the frame included
     integer, intent(in) :: links(:, :)              !< (2,M) reference and moving link of each pair
     type(axis_type), intent(in) :: axes(:)          !< of each pair in the home position
-    type(mechanism_type), intent(in) :: mechanism   !< that is given in other units
+    type(model_type), intent(in) :: model   !< that is given in other units
     real(wp), parameter :: units(2) = [1.0e-4_wp, 1.0e3_wp]
     type(axis_type) :: scaled(size(axes))
-    type(mechanism_type) :: other
+    type(model_type) :: other
     type(plan_type) :: plan, other_plan
     type(state_type) :: state, other_state
     type(error_type), allocatable :: err
@@ -82,9 +82,9 @@ contains
     do k = 1, size(axes)
       start(k) = 0.05_wp*random%symmetric()
     end do
-    where (.not. mechanism%structure%independent) start = 0.0_wp
+    where (.not. model%problem%partition%independent()) start = 0.0_wp
     start = 0.02_wp*start
-    call make_plan(mechanism, start, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, start, plan, state, err)
     if (allocated(err)) return       ! out of reach: no position to compare
     do i = 1, size(units)
       scaled = axes
@@ -93,7 +93,7 @@ contains
       end do
       unit_of = merge(units(i), 1.0_wp, axes%slides)
       call home_mechanism(n_links, links, scaled, plan%independent, other)
-      call make_plan(other, start*unit_of, other_plan, other_state, err)
+      call make_plan(other%mechanism, other%problem%partition, start*unit_of, other_plan, other_state, err)
       call test%no_error(err, name//' in other units')
       if (allocated(err)) return
       call test%is_true(size(plan%blocks) == size(other_plan%blocks), name//' in other units: as many blocks')
@@ -104,9 +104,9 @@ contains
     end do
   end subroutine check_units
 
-  subroutine check(name, mechanism, equations, dependent)
+  subroutine check(name, model, equations, dependent)
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(model_type), intent(in) :: model       !< the model
     real(wp), intent(in) :: equations(:, :)         !< (6 loops,M) that the rates satisfy
     logical, intent(in) :: dependent(:)             !< (M) coordinates that follow from the others
     type(plan_type) :: plan
@@ -115,7 +115,7 @@ contains
     real(wp) :: rates(size(dependent)), expected(size(dependent)), start(size(dependent)), residual_norm
     integer :: k
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, name)
     if (allocated(err)) return
     call check_order(test, plan, name)
@@ -134,7 +134,7 @@ contains
     call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, name//': rates')
     start = 1.0e-3_wp/maxval(abs(expected))*expected
     where (dependent) start = 0.0_wp
-    call make_plan(mechanism, start, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, start, plan, state, err)
     call test%no_error(err, name//' beside home')
     if (allocated(err)) return
     call check_closed(test, plan, state, name//' beside home')

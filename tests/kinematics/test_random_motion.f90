@@ -6,7 +6,7 @@ program test_random_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_harmonic_drive, only: harmonic_drive_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -42,7 +42,7 @@ contains
     type(axis_type), allocatable :: axes(:)
     real(wp), allocatable :: equations(:, :)
     logical, allocatable :: dependent(:)
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     integer :: k
 
     allocate (links, source=random_links(n_links, loops, random))
@@ -53,14 +53,14 @@ contains
     allocate (dependent(size(axes)))
     call choose_dependent(equations, random, dependent)
     if (all(dependent)) return
-    call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), mechanism)
-    call compare(name, mechanism)
+    call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), model)
+    call compare(name, model)
   end subroutine try
 
   !> Swing all independent coordinates.
-  subroutine compare(name, mechanism)
+  subroutine compare(name, model)
     character(len=*), intent(in) :: name               !< of the mechanism, for the report of a failure
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+    type(model_type), intent(inout) :: model       !< the model
     type(plan_type) :: plan
     type(state_type) :: start
     type(driven_motion_type) :: few, many
@@ -68,20 +68,20 @@ contains
     type(harmonic_drive_type) :: swing
     integer :: i
 
-    call make_plan(mechanism, mechanism%initial_position, plan, start, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err)
     call test%no_error(err, name//': plan')
     if (allocated(err)) return
-    deallocate (mechanism%drives)
-    allocate (mechanism%drives(size(plan%independent)))
+    deallocate (model%problem%drives)
+    allocate (model%problem%drives(size(plan%independent)))
     do i = 1, size(plan%independent)
       swing%coordinate = plan%independent(i)
       swing%amplitude = 3.0_wp*plan%unit_of(swing%coordinate)*random%symmetric()
       swing%angular_frequency = 2.0_wp + random%symmetric()
       swing%mean = start%q(swing%coordinate)
-      allocate (mechanism%drives(i)%drive, source=swing)
+      allocate (model%problem%drives(i)%drive, source=swing)
     end do
-    call follow(mechanism, plan, start, 2, few, few_err)
-    call follow(mechanism, plan, start, 1500, many, many_err)
+    call follow(model, plan, start, 2, few, few_err)
+    call follow(model, plan, start, 1500, many, many_err)
     call test%is_true(allocated(few_err) .eqv. allocated(many_err), name//': both end, or none')
     if (allocated(few_err) .neqv. allocated(many_err)) then
       if (allocated(few_err)) print '(2a)', '  few: ', message_of(few_err)
@@ -100,8 +100,8 @@ contains
     end if
   end subroutine compare
 
-  subroutine follow(mechanism, plan, start, outputs, driven, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine follow(model, plan, start, outputs, driven, err)
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(in) :: plan                 !< its plan
     type(state_type), intent(in) :: start               !< assembled position
     integer, intent(in) :: outputs                      !< how many
@@ -109,10 +109,10 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: j
 
-    call start_driven_motion(mechanism, plan, start, 0.0_wp, driven, err)
+    call start_driven_motion(model%problem%drives, plan, start, 0.0_wp, driven, err)
     do j = 1, outputs
       if (allocated(err)) return
-      call advance(mechanism, plan, driven, 5.0_wp*j/outputs, err)
+      call advance(model%problem%drives, plan, driven, 5.0_wp*j/outputs, err)
     end do
   end subroutine follow
 end program test_random_motion

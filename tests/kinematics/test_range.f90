@@ -3,7 +3,8 @@ program test_range
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_partition, only: new_partition
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -32,18 +33,18 @@ program test_range
 
 contains
 
-  subroutine range_of(mechanism, coordinate, range)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine range_of(model, coordinate, range)
+    type(model_type), intent(in) :: model       !< the model
     integer, intent(in) :: coordinate               !< that is moved
     type(motion_range_type), intent(out) :: range   !< that it has
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
 
-    call make_plan(mechanism, mechanism%initial_position, plan, start, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err)
     call test%no_error(err, 'plan and assembly')
     if (allocated(err)) call test%finish()
-    call find_range(mechanism, plan, start, coordinate, range)
+    call find_range(plan, start, coordinate, range)
   end subroutine range_of
 
   subroutine check_limits(range, lower, upper, name)
@@ -64,15 +65,15 @@ contains
     integer, intent(in) :: branch    !< +1 or -1: side of the diagonal on which the chain closes
     real(wp), intent(in) :: excess   !< length of the ground beyond coupler and rocker less the crank [m]
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(motion_range_type) :: range
     real(wp) :: limit
 
     bar = four_bar_type(ground=0.0_wp, crank=0.7_wp, coupler=0.8_wp, rocker=0.75_wp)
     bar%ground = bar%coupler + bar%rocker - bar%crank + excess
     limit = four_bar_limit(bar, stretched=.true.)
-    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.3_wp*limit, branch), mechanism)
-    call range_of(mechanism, 1, range)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.3_wp*limit, branch), model)
+    call range_of(model, 1, range)
     call check_limits(range, -limit, limit, 'a crank that swings')
   end subroutine both_sides
 
@@ -80,7 +81,7 @@ contains
   subroutine folded(branch)
     integer, intent(in) :: branch   !< +1 or -1: side of the diagonal on which the chain closes
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(motion_range_type) :: range
     real(wp) :: from, to
 
@@ -90,20 +91,20 @@ contains
     from = four_bar_limit(bar, stretched=.false.)
     to = four_bar_limit(bar, stretched=.true.)
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, &
-                  four_bar_guess(bar, 0.5_wp*(from + to), branch), mechanism)
-    call range_of(mechanism, 1, range)
+                  four_bar_guess(bar, 0.5_wp*(from + to), branch), model)
+    call range_of(model, 1, range)
     call check_limits(range, from, to, 'a crank between folded and stretched')
   end subroutine folded
 
   subroutine full_turn(branch)
     integer, intent(in) :: branch   !< +1 or -1: side of the diagonal on which the chain closes
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(motion_range_type) :: range
 
     bar = random_crank(random, 0.1_wp*abs(random%symmetric()))
-    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.4_wp, branch), mechanism)
-    call range_of(mechanism, 1, range)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.4_wp, branch), model)
+    call range_of(model, 1, range)
     call test%is_true(range%upper%kind == ends_round .and. range%lower%kind == ends_round, 'a crank that turns')
     call test%is_true(range%upper%turns == 1, 'and is round after one turn')
   end subroutine full_turn
@@ -111,55 +112,44 @@ contains
   !> A slider-crank driven at its slider: between crank and coupler stretched out and folded.
   subroutine slider_as_input(branch)
     integer, intent(in) :: branch   !< +1 or -1: side of the diagonal on which the chain closes
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(motion_range_type) :: range
     real(wp) :: crank, coupler, offset, lower, upper
 
     crank = 0.5_wp + 0.1_wp*random%symmetric()
     coupler = 1.5_wp + 0.1_wp*random%symmetric()
     offset = 0.2_wp*random%symmetric()
-    call slider_crank(crank, coupler, offset, 1.0_wp*branch, 1, mechanism)
-    call drive_at_slider(mechanism)
+    call slider_crank(crank, coupler, offset, 1.0_wp*branch, 1, model)
+    call new_partition(model%mechanism%structure, [.false., .false., .false., .true.], model%problem%partition)
     lower = sqrt((coupler - crank)**2 - offset**2)
     upper = sqrt((coupler + crank)**2 - offset**2)
-    call range_of(mechanism, 4, range)
+    call range_of(model, 4, range)
     call check_limits(range, lower, upper, 'a slider')
   end subroutine slider_as_input
 
-  !> The same mechanism with coordinate 4 independent.
-  subroutine drive_at_slider(mechanism)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
-    type(mechanism_type) :: other
-    integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
-
-    call new_mechanism(4, links, [4], other)
-    mechanism%structure = other%structure
-    mechanism%vectors = other%vectors
-  end subroutine drive_at_slider
-
   !> A kite is its own mirror image after one turn of the crank: it is round after two.
   subroutine two_turns()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(motion_range_type) :: range
 
     call four_bar(0.7_wp, 0.7_wp, 1.0_wp, 1.0_wp, &
-                  four_bar_guess(four_bar_type(0.7_wp, 0.7_wp, 1.0_wp, 1.0_wp), 0.8_wp, 1), mechanism)
-    call range_of(mechanism, 1, range)
+                  four_bar_guess(four_bar_type(0.7_wp, 0.7_wp, 1.0_wp, 1.0_wp), 0.8_wp, 1), model)
+    call range_of(model, 1, range)
     call test%is_true(range%upper%kind == ends_round .and. range%upper%turns == 2, 'a kite comes round after two turns')
   end subroutine two_turns
 
   !> An arm and a slide: one turns round, the other has no end.
   subroutine open_chain()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(motion_range_type) :: range
     real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], x(3) = [1.0_wp, 0.0_wp, 0.0_wp]
 
-    call new_mechanism(3, reshape([1, 2, 2, 3], [2, 2]), [1, 2], mechanism)
-    call add_revolute(mechanism, 1, 1, 2, frame(0.0_wp*z, z), frame(0.0_wp*z, z))
-    call add_prismatic(mechanism, 2, 2, 3, frame(x, x), frame(0.0_wp*x, x))
-    call range_of(mechanism, 1, range)
+    call new_mechanism(3, reshape([1, 2, 2, 3], [2, 2]), [1, 2], model)
+    call add_revolute(model, 1, 1, 2, frame(0.0_wp*z, z), frame(0.0_wp*z, z))
+    call add_prismatic(model, 2, 2, 3, frame(x, x), frame(0.0_wp*x, x))
+    call range_of(model, 1, range)
     call test%is_true(range%upper%kind == ends_round, 'an arm turns round')
-    call range_of(mechanism, 2, range)
+    call range_of(model, 2, range)
     call test%is_true(range%upper%kind == ends_never .and. range%lower%kind == ends_never, 'a slide has no end')
     call test%is_true(range%upper%value > 10.0_wp .and. range%lower%value < -10.0_wp, 'as far as was looked')
   end subroutine open_chain

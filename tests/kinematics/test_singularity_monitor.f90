@@ -2,7 +2,7 @@
 program test_singularity_monitor
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -32,11 +32,11 @@ program test_singularity_monitor
 contains
 
   subroutine begin()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(error_type), allocatable :: err
 
-    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, middle, 1), mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, middle, 1), model)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'plan and assembly')
     if (allocated(err)) call test%finish()
     call test%is_true(size(plan%blocks) == 1, 'one block')

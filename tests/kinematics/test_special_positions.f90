@@ -4,7 +4,7 @@ program test_special_positions
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_singular
   use mech9_random, only: random_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_harmonic_drive, only: harmonic_drive_type
@@ -42,7 +42,7 @@ contains
   subroutine check_dead_point(excess)
     real(wp), intent(in) :: excess   !< sum of ground and rocker less that of coupler and crank [m]
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     real(wp) :: limit
     integer :: branch, direction
 
@@ -53,19 +53,19 @@ contains
     do branch = -1, 1, 2
       do direction = -1, 1, 2
         call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, &
-                      four_bar_guess(bar, 0.5_wp*limit, branch), mechanism)
-        call drive(mechanism, 1, [0.5_wp*limit, direction*2.0_wp])
-        if (direction > 0) call find_end(mechanism, limit, direction, 'a four-bar')
+                      four_bar_guess(bar, 0.5_wp*limit, branch), model)
+        call drive(model, 1, [0.5_wp*limit, direction*2.0_wp])
+        if (direction > 0) call find_end(model, limit, direction, 'a four-bar')
         ! the other way: through zero to the same limit on the other side, unless the links fold before it
         if (direction < 0 .and. bar%ground - bar%crank > abs(bar%coupler - bar%rocker)) &
-          call find_end(mechanism, -limit, direction, 'a four-bar, backwards')
+          call find_end(model, -limit, direction, 'a four-bar, backwards')
       end do
     end do
   end subroutine check_dead_point
 
   !> A crank longer than what the coupler reaches: sin = (l + e)/r.
   subroutine check_slider_dead_point()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     real(wp) :: crank, coupler, offset
     integer :: branch
 
@@ -73,15 +73,15 @@ contains
     coupler = 0.6_wp + 0.05_wp*random%symmetric()
     offset = 0.05_wp*random%symmetric()
     do branch = -1, 1, 2
-      call slider_crank(crank, coupler, offset, 0.1_wp, branch, mechanism)
-      call drive(mechanism, 1, [0.1_wp, 0.4_wp, 0.3_wp])
-      call find_end(mechanism, asin((coupler + offset)/crank), 1, 'a slider-crank')
+      call slider_crank(crank, coupler, offset, 0.1_wp, branch, model)
+      call drive(model, 1, [0.1_wp, 0.4_wp, 0.3_wp])
+      call find_end(model, asin((coupler + offset)/crank), 1, 'a slider-crank')
     end do
   end subroutine check_slider_dead_point
 
   !> Run to the dead point with few and with many outputs.
-  subroutine find_end(mechanism, limit, direction, name)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine find_end(model, limit, direction, name)
+    type(model_type), intent(in) :: model       !< the model
     real(wp), intent(in) :: limit                   !< the crank at the dead point [rad]
     integer, intent(in) :: direction                !< +1 or -1: of the crank
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
@@ -91,9 +91,9 @@ contains
     integer :: n, j
 
     do n = 1, 1000, 333
-      call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+      call begin_motion(test, model, 0.0_wp, plan, driven)
       do j = 1, n
-        call advance(mechanism, plan, driven, 4.0_wp*j/n, err)
+        call advance(model%problem%drives, plan, driven, 4.0_wp*j/n, err)
         if (allocated(err)) exit
         call test%is_true((limit - driven%state%q(1))*direction > 0.0_wp, name//': no output beyond the dead point')
       end do
@@ -111,8 +111,8 @@ contains
 
   !> Turn the crank by one and a half turns and compare coordinates 2 to 4, their rates and accelerations
   !> with multiples of the crank's: coupler against crank, rocker against coupler, rocker.
-  subroutine check_proportional(mechanism, n, start, expected, factors, name)
-    type(mechanism_type), intent(inout) :: mechanism   !< the mechanism
+  subroutine check_proportional(model, n, start, expected, factors, name)
+    type(model_type), intent(inout) :: model       !< the model
     integer, intent(in) :: n                           !< outputs
     real(wp), intent(in) :: start                      !< of the crank
     real(wp), intent(in) :: expected(2:4)              !< at the crank's angle zero
@@ -123,10 +123,10 @@ contains
     type(error_type), allocatable :: err
     integer :: j
 
-    call drive(mechanism, 1, [start, 3.0_wp*pi, merge(0.5_wp, 0.0_wp, start < 1.0_wp)])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+    call drive(model, 1, [start, 3.0_wp*pi, merge(0.5_wp, 0.0_wp, start < 1.0_wp)])
+    call begin_motion(test, model, 0.0_wp, plan, driven)
     do j = 1, n
-      call advance(mechanism, plan, driven, real(j, wp)/n, err)
+      call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       ! between the positions beside a special one there is a polynomial of high degree through accelerations that
       ! round-off over the square of their distance from it leaves uncertain by some 1e-8 of the squares of the
@@ -146,10 +146,10 @@ contains
   subroutine check_parallelogram(n, start)
     integer, intent(in) :: n        !< outputs
     real(wp), intent(in) :: start   !< angle of the crank at the start [rad]
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
 
-    call four_bar(1.0_wp, 0.4_wp, 1.0_wp, 0.4_wp, [start, -start, start, start], mechanism)
-    call check_proportional(mechanism, n, start, [0.0_wp, 0.0_wp, 0.0_wp], [-1.0_wp, 1.0_wp, 1.0_wp], 'a parallelogram')
+    call four_bar(1.0_wp, 0.4_wp, 1.0_wp, 0.4_wp, [start, -start, start, start], model)
+    call check_proportional(model, n, start, [0.0_wp, 0.0_wp, 0.0_wp], [-1.0_wp, 1.0_wp, 1.0_wp], 'a parallelogram')
   end subroutine check_parallelogram
 
   !> The same links crossed: the tangents of half the angles of crank and rocker have a fixed product, hence
@@ -158,7 +158,7 @@ contains
     integer, intent(in) :: n   !< outputs
     real(wp), parameter :: ground = 1.0_wp, crank = 0.4_wp, start = 0.5_wp*pi
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -166,12 +166,12 @@ contains
     integer :: j
 
     bar = four_bar_type(ground, crank, ground, crank)
-    call four_bar(ground, crank, ground, crank, four_bar_guess(bar, start, -1), mechanism)
-    call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+    call four_bar(ground, crank, ground, crank, four_bar_guess(bar, start, -1), model)
+    call drive(model, 1, [start, 3.0_wp*pi])
+    call begin_motion(test, model, 0.0_wp, plan, driven)
     call test%is_true(angle_between(driven%state%q(4), start) > 1.0_wp, 'it is not the parallelogram')
     do j = 1, n
-      call advance(mechanism, plan, driven, real(j, wp)/n, err)
+      call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       associate (a => driven%state%q(1), b => driven%state%q(4))
         ! the pins are apart by the coupler's length, and the rocker turns against the crank
@@ -190,7 +190,7 @@ contains
     integer, intent(in) :: n   !< outputs
     real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -198,11 +198,11 @@ contains
     integer :: j
 
     bar = four_bar_type(short, short, long, long)
-    call four_bar(short, short, long, long, four_bar_guess(bar, 0.25_wp*pi, 1), mechanism)
-    call drive(mechanism, 1, [0.25_wp*pi, -3.0_wp*pi])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+    call four_bar(short, short, long, long, four_bar_guess(bar, 0.25_wp*pi, 1), model)
+    call drive(model, 1, [0.25_wp*pi, -3.0_wp*pi])
+    call begin_motion(test, model, 0.0_wp, plan, driven)
     do j = 1, n
-      call advance(mechanism, plan, driven, real(j, wp)/n, err)
+      call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       ! the diagonal 2 short sin(q1/2), with its sign, points along q1/2 + 90 degrees
       half = 0.5_wp*driven%state%q(1)
@@ -219,17 +219,17 @@ contains
     integer, intent(in) :: n        !< outputs
     real(wp), intent(in) :: start   !< angle of the crank at the start [rad]
     real(wp), parameter :: arm = 0.6_wp
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     integer :: j
 
-    call slider_crank(arm, arm, 0.0_wp, start, 1, mechanism)
-    call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+    call slider_crank(arm, arm, 0.0_wp, start, 1, model)
+    call drive(model, 1, [start, 3.0_wp*pi])
+    call begin_motion(test, model, 0.0_wp, plan, driven)
     do j = 1, n
-      call advance(mechanism, plan, driven, real(j, wp)/n, err)
+      call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       associate (state => driven%state)
         call test%near(state%q(4), 2.0_wp*arm*cos(state%q(1)), 1.0e-11_wp, 'equal arms: slider')
@@ -245,7 +245,7 @@ contains
   subroutine check_touched_dead_point(n)
     integer, intent(in) :: n   !< outputs
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -255,17 +255,17 @@ contains
 
     bar = four_bar_type(ground=1.2_wp, crank=0.7_wp, coupler=0.9_wp, rocker=0.4_wp)
     limit = four_bar_limit(bar, stretched=.true.)
-    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.7_wp*limit, 1), mechanism)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.7_wp*limit, 1), model)
     swing%coordinate = 1
     swing%mean = 0.7_wp*limit
     swing%amplitude = 0.3_wp*limit
     swing%angular_frequency = pi
-    deallocate (mechanism%drives)
-    allocate (mechanism%drives(1))
-    allocate (mechanism%drives(1)%drive, source=swing)
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+    deallocate (model%problem%drives)
+    allocate (model%problem%drives(1))
+    allocate (model%problem%drives(1)%drive, source=swing)
+    call begin_motion(test, model, 0.0_wp, plan, driven)
     do j = 1, n
-      call advance(mechanism, plan, driven, real(j, wp)/n, err)
+      call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
     end do
     call test%no_error(err, 'a dead point that is only touched is passed')
@@ -279,7 +279,7 @@ contains
     integer, intent(in) :: n   !< outputs
     real(wp), parameter :: start = 0.8_wp, crank = 0.4_wp
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -290,13 +290,13 @@ contains
     ! link 5 is fixed to nothing but moves like a second coupler: it joins the coupler at its middle
     point = crank*[cos(start), sin(start)] + [0.5_wp, 0.0_wp]
     pin = [1.7_wp, 0.0_wp] + crank*[cos(start), sin(start)]
-    call watt_six_bar(bar, [0.5_wp, 0.0_wp], [1.7_wp, 0.0_wp], [1.2_wp, crank], start, 1, 1, mechanism)
-    mechanism%initial_position = [start, -start, start, start, 0.0_wp, start, start]
-    call drive(mechanism, 1, [start, 3.0_wp*pi])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven)
+    call watt_six_bar(bar, [0.5_wp, 0.0_wp], [1.7_wp, 0.0_wp], [1.2_wp, crank], start, 1, 1, model)
+    model%problem%initial%position = [start, -start, start, start, 0.0_wp, start, start]
+    call drive(model, 1, [start, 3.0_wp*pi])
+    call begin_motion(test, model, 0.0_wp, plan, driven)
     call test%near(norm2(pin - point), 1.2_wp, 1.0e-14_wp, 'the second parallelogram closes')
     do j = 1, n
-      call advance(mechanism, plan, driven, real(j, wp)/n, err)
+      call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       call test%near(angle_between(driven%state%q(7), driven%state%q(1)), 0.0_wp, 1.0e-11_wp, 'two parallelograms')
       call test%near(driven%state%dq(7), driven%state%dq(1), 1.0e-8_wp, 'two parallelograms: rates')

@@ -3,7 +3,7 @@
 program test_special_start
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_singular
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_sample_mechanisms, only: drive, four_bar
@@ -30,16 +30,16 @@ contains
     integer, intent(in) :: n        !< outputs
     real(wp), intent(in) :: speed   !< of the crank [rad/s]
     real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     real(wp) :: half, root, position, rate, acceleration
     integer :: j
 
-    call four_bar(short, short, long, long, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], mechanism)
-    call drive(mechanism, 1, [0.0_wp, speed])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
+    call four_bar(short, short, long, long, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], model)
+    call drive(model, 1, [0.0_wp, speed])
+    call begin_motion(test, model, 0.0_wp, plan, driven, err)
     call test%no_error(err, 'a kite starts')
     do j = 0, n
       if (allocated(err)) exit
@@ -52,7 +52,7 @@ contains
       call test%near(driven%state%q(4), position, 1.0e-11_wp, 'a kite: position')
       call test%near(driven%state%dq(4), rate, 1.0e-9_wp*max(1.0_wp, abs(speed)), 'a kite: rate')
       call test%near(driven%state%ddq(4), acceleration, 1.0e-6_wp*max(1.0_wp, speed**2), 'a kite: acceleration')
-      if (j < n) call advance(mechanism, plan, driven, (j + 1)*1.5_wp/(abs(speed)*n), err)
+      if (j < n) call advance(model%problem%drives, plan, driven, (j + 1)*1.5_wp/(abs(speed)*n), err)
     end do
     call test%no_error(err, 'a kite goes on')
   end subroutine kite
@@ -60,19 +60,19 @@ contains
   !> A flat parallelogram: as parallelogram dq4 = dq1, crossed dq4 = -dq1 (ground + crank)/(ground - crank).
   !> Equal arms at a right angle: the slider moves by -2 r dq1, or not at all.
   subroutine two_ways()
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
 
-    call four_bar(1.0_wp, 0.6_wp, 1.0_wp, 0.6_wp, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], mechanism)
-    call drive(mechanism, 1, [0.0_wp, 1.0_wp])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
+    call four_bar(1.0_wp, 0.6_wp, 1.0_wp, 0.6_wp, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], model)
+    call drive(model, 1, [0.0_wp, 1.0_wp])
+    call begin_motion(test, model, 0.0_wp, plan, driven, err)
     call refused(err, 'dq4 = 1 ', 'dq4 = -4 ')
-    call slider_crank(0.3_wp, 0.3_wp, 0.0_wp, 0.5_wp*pi, 1, mechanism)
-    mechanism%initial_position(4) = 0.0_wp
-    call drive(mechanism, 1, [0.5_wp*pi, 2.0_wp])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
+    call slider_crank(0.3_wp, 0.3_wp, 0.0_wp, 0.5_wp*pi, 1, model)
+    model%problem%initial%position(4) = 0.0_wp
+    call drive(model, 1, [0.5_wp*pi, 2.0_wp])
+    call begin_motion(test, model, 0.0_wp, plan, driven, err)
     call refused(err, 'dq4 = -1.2 ', 'dq4 = 0 ')
   end subroutine two_ways
 
@@ -97,7 +97,7 @@ contains
 
   subroutine dead_start()
     type(four_bar_type) :: bar
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -105,9 +105,9 @@ contains
 
     bar = four_bar_type(ground=1.2_wp, crank=0.7_wp, coupler=0.9_wp, rocker=0.4_wp)
     limit = four_bar_limit(bar, stretched=.true.)
-    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit, 1), mechanism)
-    call drive(mechanism, 1, [limit, -1.0_wp])
-    call begin_motion(test, mechanism, 0.0_wp, plan, driven, err)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit, 1), model)
+    call drive(model, 1, [limit, -1.0_wp])
+    call begin_motion(test, model, 0.0_wp, plan, driven, err)
     call test%has_error(err, exit_singular, 'a start at a dead point: exit code 6')
     if (allocated(err)) call test%is_true(index(message_of(err), 'dead point') > 0, 'the message says so')
   end subroutine dead_start

@@ -9,7 +9,7 @@ program test_drives
   use mech9_polynomial_drive, only: polynomial_drive_type
   use mech9_harmonic_drive, only: harmonic_drive_type
   use mech9_table_drive, only: table_drive_type
-  use mech9_settings, only: time_grid_type
+  use mech9_request, only: time_grid_type
   use mech9_testing, only: tester_type
   implicit none
   !> A few roundings of numbers of order one.

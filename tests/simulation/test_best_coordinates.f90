@@ -8,7 +8,7 @@ program test_best_coordinates
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
   use mech9_rotation, only: cross
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: place_all
@@ -26,17 +26,17 @@ program test_best_coordinates
   !> Its crank swings: coupler and rocker can be stretched out and folded.
   type(four_bar_type), parameter :: bar = four_bar_type(ground=1.0_wp, crank=0.75_wp, coupler=1.0_wp, rocker=0.4_wp)
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type) :: model
 
   call check_four_bar()
   call check_five_bar()
   call check_two_four_bars()
-  call loaded_fig1(1, mechanism)
-  call check_towards_limit(mechanism, in_plane, 'Fig. 1 at the end of the range of coordinate 1')
-  call general_loop(mechanism)
-  call check_towards_limit(mechanism, in_space, 'a spatial loop at the end of the range of coordinate 1')
-  call two_loops([1, 5], mechanism)
-  call check_towards_limit(mechanism, in_space, 'two spatial loops with common links')
+  call loaded_fig1(1, model)
+  call check_towards_limit(model, in_plane, 'Fig. 1 at the end of the range of coordinate 1')
+  call general_loop(model)
+  call check_towards_limit(model, in_space, 'a spatial loop at the end of the range of coordinate 1')
+  call two_loops([1, 5], model)
+  call check_towards_limit(model, in_space, 'two spatial loops with common links')
   call test%finish()
 
 contains
@@ -51,8 +51,8 @@ contains
     integer :: i, branch
 
     limit = four_bar_limit(bar, stretched=.true.)
-    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit - 0.3_wp, 1), mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit - 0.3_wp, 1), model)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'a four-bar has a plan')
     do i = 1, 12
       do branch = -1, 1, 2
@@ -90,8 +90,8 @@ contains
     logical :: independent(5)
     integer :: i
 
-    call five_bar(mechanism)
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call five_bar(model)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'a five-bar has a plan')
     do i = 1, 12
       first = 0.8_wp*[cos(2.5_wp), sin(2.5_wp)]
@@ -148,33 +148,33 @@ contains
     type(error_type), allocatable :: err
     integer :: i, k
 
-    call new_mechanism(7, links, [1, 5], mechanism)
+    call new_mechanism(7, links, [1, 5], model)
     do k = 1, 8
       i = modulo(k - 1, 4) + 1
-      call add_revolute(mechanism, k, links(1, k), links(2, k), frame([at(i), 0.0_wp, 0.0_wp], z), &
+      call add_revolute(model, k, links(1, k), links(2, k), frame([at(i), 0.0_wp, 0.0_wp], z), &
                         frame([moving_at(i), 0.0_wp, 0.0_wp], z))
     end do
-    mechanism%initial_position(:4) = four_bar_guess(bar, four_bar_limit(bar, stretched=.true.) - 0.3_wp, 1)
-    mechanism%initial_position(5:) = mechanism%initial_position(:4)
+    model%problem%initial%position(:4) = four_bar_guess(bar, four_bar_limit(bar, stretched=.true.) - 0.3_wp, 1)
+    model%problem%initial%position(5:) = model%problem%initial%position(:4)
     requested%coordinates = [(both .or. k <= 4, k=1, 8)]
     requested%links = [(.false., k=1, 7)]
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err, requested=requested)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, requested=requested)
     call test%no_error(err, 'two four-bars have a plan')
   end subroutine new_two_four_bars
 
   !> Move the first independent coordinate until the chains close no longer, with steps that are halved there; the others stand.
-  subroutine check_towards_limit(mechanism, rows, why)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine check_towards_limit(model, rows, why)
+    type(model_type), intent(in) :: model       !< the model
     integer, intent(in) :: rows(:)                  !< the rows of a screw that count
     character(len=*), intent(in) :: why             !< the place, printed where a check fails
     type(plan_type) :: plan
     type(state_type) :: state, trial
     type(error_type), allocatable :: err
-    logical :: independent(size(mechanism%pairs)), own(size(mechanism%pairs))
+    logical :: independent(size(model%mechanism%pairs)), own(size(model%mechanism%pairs))
     real(wp), allocatable :: a(:, :)
     real(wp) :: step
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     own = .false.

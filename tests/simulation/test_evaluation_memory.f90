@@ -3,7 +3,7 @@
 program test_evaluation_memory
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -13,27 +13,27 @@ program test_evaluation_memory
   use mech9_counted_memory, only: calls
   implicit none
   type(tester_type) :: test
-  type(mechanism_type) :: mechanism
+  type(model_type), target :: model
 
-  call loaded_fig1(5, mechanism)
-  call count_calls(mechanism, 2, 'planar chains, one after the other')
-  call loaded_fig1(1, mechanism)
-  call count_calls(mechanism, 1, 'planar chains that are solved together')
-  call five_bar(mechanism)
-  call count_calls(mechanism, 1, 'a planar chain of two degrees of freedom')
-  call loaded_loop(mechanism)
-  call count_calls(mechanism, 1, 'a spatial chain')
-  call two_loops([1, 5], mechanism)
-  call count_calls(mechanism, 2, 'spatial chains, one after the other, and an open branch')
-  call two_loops([1, 9], mechanism)
-  call count_calls(mechanism, 1, 'spatial chains that are solved together')
+  call loaded_fig1(5, model)
+  call count_calls(model, 2, 'planar chains, one after the other')
+  call loaded_fig1(1, model)
+  call count_calls(model, 1, 'planar chains that are solved together')
+  call five_bar(model)
+  call count_calls(model, 1, 'a planar chain of two degrees of freedom')
+  call loaded_loop(model)
+  call count_calls(model, 1, 'a spatial chain')
+  call two_loops([1, 5], model)
+  call count_calls(model, 2, 'spatial chains, one after the other, and an open branch')
+  call two_loops([1, 9], model)
+  call count_calls(model, 1, 'spatial chains that are solved together')
   call test%finish()
 
 contains
 
   !> Small steps by Euler's method, as good as any here, each with two evaluations and the closing of the chains.
-  subroutine count_calls(mechanism, blocks, why)
-    type(mechanism_type), intent(in) :: mechanism   !< with closed chains, bodies and loads of all kinds
+  subroutine count_calls(model, blocks, why)
+    type(model_type), intent(in), target :: model   !< with closed chains, bodies and loads of all kinds
     integer, intent(in) :: blocks                   !< number of its blocks with closed chains
     character(len=*), intent(in) :: why             !< what it is, printed where a check fails
     type(motion_system_type) :: system
@@ -43,12 +43,12 @@ contains
     real(wp), allocatable :: y(:), ydot(:)
     integer :: i, before
 
-    call make_plan(mechanism, mechanism%initial_position, plan, state, err)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     call test%is_true(count(plan%blocks%last_closure >= plan%blocks%first_closure) == blocks, why//': the chains are blocks')
     state%dq(plan%independent) = [(0.5_wp*cos(2.0_wp*i), i=1, size(plan%independent))]
-    call set_motion_system(mechanism, plan, state, system, err)
+    call set_motion_system(model, model%problem%partition, plan, state, system, err)
     call test%no_error(err, why//': there is a system')
     if (allocated(err)) return
     y = system%vector()

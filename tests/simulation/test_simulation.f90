@@ -5,14 +5,14 @@
 program test_simulation
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_usage, exit_singular, exit_interrupted
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_source, only: source_from_text
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: parse_document
-  use mech9_reader, only: read_mechanism
+  use mech9_reader, only: read_model
   use mech9_explanation, only: explain
   use mech9_simulation, only: simulation_type, simulation_statistics_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
@@ -60,35 +60,44 @@ contains
     class(simulation_type), allocatable, intent(out) :: simulation   !< not started
     type(driven_simulation_type), allocatable :: of_drives
     type(free_simulation_type), allocatable :: of_forces
-    type(mechanism_type) :: mechanism
+    type(model_type), pointer :: model
     type(plan_type) :: plan
     type(state_type) :: assembled
     type(error_type), allocatable :: err
 
-    call read(text, is_driven, mechanism)
+    allocate (model)
+    call read(text, is_driven, model)
     if (is_driven) then
       allocate (of_drives)
-      call assemble_driven(mechanism, plan, assembled, err)
-      call new_driven_simulation(mechanism, plan, assembled, of_drives)
+      call assemble_driven(model, plan, assembled, err)
+      call new_driven_simulation(model, plan, assembled, of_drives)
       call move_alloc(of_drives, simulation)
     else
       allocate (of_forces)
-      call assemble_free(mechanism, plan, assembled, err)
-      if (.not. allocated(err)) call new_free_simulation(mechanism, plan, assembled, of_forces, err)
+      call assemble_free(model, plan, assembled, err)
+      if (.not. allocated(err)) call new_free_simulation(model, plan, assembled, of_forces, err)
       call move_alloc(of_forces, simulation)
     end if
     call test%no_error(err, 'a four-bar')
   end subroutine new_simulation
 
-  subroutine read(text, is_driven, mechanism)
+  !> Close a simulation that `new_simulation` made, and give back its model.
+  subroutine end_simulation(simulation)
+    class(simulation_type), intent(inout) :: simulation   !< the simulation
+
+    call simulation%close()
+    deallocate (simulation%model)
+  end subroutine end_simulation
+
+  subroutine read(text, is_driven, model)
     character(len=*), intent(in) :: text             !< text of a data file
     logical, intent(in) :: is_driven                 !< all independent coordinates are driven
-    type(mechanism_type), intent(out) :: mechanism   !< that it describes
+    type(model_type), intent(out) :: model   !< that it describes
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
     call parse_document(source_from_text('text', text), document, diagnostics)
-    call read_mechanism(document, is_driven, mechanism, diagnostics)
+    call read_model(document, is_driven, model, diagnostics)
     call test%is_true(.not. diagnostics%failed(), 'the text is sound')
   end subroutine read
 
@@ -96,11 +105,10 @@ contains
   function numbers(simulation)
     class(simulation_type), intent(in), target :: simulation   !< at some time
     real(wp), allocatable :: numbers(:)
-    type(mechanism_type), pointer :: mechanism
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 
-    call simulation%present(mechanism, plan, state)
+    call simulation%present(plan, state)
     numbers = [state%q, state%dq]
   end function numbers
 
@@ -127,8 +135,8 @@ contains
     call pieces%advance(2.0_wp, err)
     call test%no_error(err, 'the present time can be asked for again')
     call test%is_true(maxval(abs(numbers(whole) - numbers(pieces))) <= tolerance, 'and is where it was')
-    call whole%close()
-    call pieces%close()
+    call end_simulation(whole)
+    call end_simulation(pieces)
   end subroutine check_pieces
 
   !> A motion that is interrupted at the given question stops there with its code; asked again it goes on to the same end.
@@ -155,13 +163,13 @@ contains
     call interrupted%advance(1.0_wp, err)
     call test%no_error(err, 'it goes on when it is asked again')
     call test%is_true(maxval(abs(numbers(whole) - numbers(interrupted))) <= 1e-12_wp, 'to the same position')
-    call interrupted%close()
+    call end_simulation(interrupted)
     call new_simulation(text, is_driven, interrupted)
     left = 1
     call interrupted%start(err, countdown_type(left))
     call test%has_error(err, exit_interrupted, 'the start can be interrupted')
-    call interrupted%close()
-    call whole%close()
+    call end_simulation(interrupted)
+    call end_simulation(whole)
   end subroutine check_interruption
 
   !> Counts grow with every advance, across changes of coordinates too, and begin at nothing.
@@ -191,7 +199,7 @@ contains
     ! each accepted step of the method takes several evaluations, and 2 s at this tolerance are more than 20 steps
     call test%is_true(now%evaluations > now%steps .and. now%newton_iterations > 0 .and. now%steps > 20_long, &
                       'evaluations and iterations against steps')
-    call simulation%close()
+    call end_simulation(simulation)
   end subroutine check_statistics
 
   !> No motion without a start, and none back.
@@ -211,20 +219,20 @@ contains
     call simulation%advance(0.25_wp, err)
     call test%has_error(err, exit_usage, 'a time before the present one')
     call test%is_true(all(abs(numbers(simulation) - there) <= 0.0_wp), 'which changes nothing')
-    call simulation%close()
+    call end_simulation(simulation)
   end subroutine check_order_of_times
 
   !> No position with open chains is handed out, whoever asks for it.
   subroutine check_open_chains()
     type(open_chains_type) :: simulation
-    type(mechanism_type) :: mechanism
+    type(model_type), target :: model
     type(plan_type) :: plan
     type(state_type) :: assembled
     type(error_type), allocatable :: err
 
-    call read(driven, .true., mechanism)
-    call assemble_driven(mechanism, plan, assembled, err)
-    call new_driven_simulation(mechanism, plan, assembled, simulation%driven_simulation_type)
+    call read(driven, .true., model)
+    call assemble_driven(model, plan, assembled, err)
+    call new_driven_simulation(model, plan, assembled, simulation%driven_simulation_type)
     simulation%gap = 0.9e-9_wp*plan%length
     call simulation%start(err)
     call test%no_error(err, 'chains that are open by less than 1e-9 of the size')

@@ -17,6 +17,7 @@ module literal_transformation
 
   type :: work_type
     type(structure_type) :: structure
+    logical, allocatable :: independent(:)
     logical, allocatable :: known(:), used(:), bridge(:)
     type(structural_vectors_type) :: vectors
     integer :: closures = 0
@@ -24,14 +25,16 @@ module literal_transformation
 
 contains
 
-  subroutine transform_literally(structure, vectors)
+  subroutine transform_literally(structure, independent, vectors)
     type(structure_type), intent(in) :: structure           !< the structure
+    logical, intent(in) :: independent(:)                   !< (M) the coordinate is independent
     type(structural_vectors_type), intent(out) :: vectors   !< by the rules, taken literally
     type(work_type) :: work
     type(listing_type) :: closed, approach
     integer :: k
 
     work%structure = structure
+    work%independent = independent
     allocate (work%known(structure%n_links), source=.false.)
     allocate (work%used(structure%n_coordinates), source=.false.)
     allocate (work%bridge(structure%n_coordinates), source=.false.)
@@ -166,7 +169,7 @@ contains
     integer, intent(in) :: pairs(:)       !< its coordinates
     integer :: key(size(pairs) + 3)
 
-    key(1) = count(.not. work%structure%independent(pairs))
+    key(1) = count(.not. work%independent(pairs))
     key(2) = size(pairs)
     key(3) = start
     key(4:) = pairs
@@ -182,8 +185,8 @@ contains
     n = listing%best_n
     first = listing%best_pairs(1)
     last = listing%best_pairs(n)
-    if (work%structure%independent(first) .neqv. work%structure%independent(last)) then
-      turn = work%structure%independent(last)
+    if (work%independent(first) .neqv. work%independent(last)) then
+      turn = work%independent(last)
     else
       turn = last < first
     end if
@@ -224,7 +227,7 @@ contains
     do k = work%structure%n_coordinates, 1, -1
       if (work%used(k) .or. all(work%structure%links(:, k) /= link)) cycle
       if (open_pair > 0) then
-        if (work%structure%independent(open_pair) .and. .not. work%structure%independent(k)) cycle
+        if (work%independent(open_pair) .and. .not. work%independent(k)) cycle
       end if
       open_pair = k
     end do
@@ -242,7 +245,7 @@ contains
     closes = any(links(:n) == links(n + 1))
     ! on an approach the links are known by now, but they are written down for the first time
     if (work%known(links(n + 1)) .and. any(work%vectors%nrg == links(n + 1))) closes = .true.
-    kinds = merge(1, 0, work%structure%independent(pairs))
+    kinds = merge(1, 0, work%independent(pairs))
     numbers = work%closures
     if (closes) work%closures = work%closures + 1
     numbers(n) = work%closures

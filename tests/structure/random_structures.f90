@@ -58,12 +58,13 @@ contains
   end subroutine join
 
   !> A connected structure of a kind (1 to n_kinds) with about n links.
-  function random_structure(kind, n, seed, shuffle) result(structure)
+  subroutine random_structure(kind, n, seed, structure, independent, shuffle)
     integer, intent(in) :: kind                !< 1 to n_kinds
     integer, intent(in) :: n                   !< links, about
     integer, intent(in) :: seed                !< of the random numbers
+    type(structure_type), intent(out) :: structure         !< the structure
+    logical, allocatable, intent(out) :: independent(:)    !< (M) the coordinate is independent
     logical, intent(in), optional :: shuffle   !< number links and coordinates at random (default)
-    type(structure_type) :: structure
     type(random_type) :: random
     type(pairs_type) :: pairs
     integer :: i, discarded, share
@@ -104,15 +105,15 @@ contains
     if (present(shuffle)) at_random = shuffle
     structure%n_coordinates = pairs%count
     structure%n_links = maxval(pairs%links(:, :pairs%count))
-    allocate (structure%links(2, pairs%count), structure%independent(pairs%count))
+    allocate (structure%links(2, pairs%count), independent(pairs%count))
     structure%links = pairs%links(:, :pairs%count)
     if (at_random) call renumber(structure, random)
     call random%below(4, share)
     do i = 1, pairs%count
       call random%below(8, discarded)
-      structure%independent(i) = discarded < share
+      independent(i) = discarded < share
     end do
-  end function random_structure
+  end subroutine random_structure
 
   subroutine add_tree(pairs, n, random)
     type(pairs_type), intent(inout) :: pairs     !< pairs so far; those of the part are added

@@ -42,24 +42,25 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors
     type(structure_type) :: structure
+    logical, allocatable :: independent(:)
     type(finding_type), allocatable :: findings(:)
     type(chain_type) :: chains(2)
 
     vectors = fig_1()
-    call structure_from_vectors(vectors, structure, findings, n_links=6, n_coordinates=7)
+    call structure_from_vectors(vectors, structure, independent, findings, n_links=6, n_coordinates=7)
     call tester%is_true(size(findings) == 0, 'Fig. 1 is good')
     call tester%is_true(structure%n_links == 6 .and. structure%n_coordinates == 7, 'with 6 links and 7 coordinates')
     call tester%is_true(all(structure%links == reshape([1, 6, 6, 5, 5, 3, 2, 3, 1, 2, 4, 1, 3, 4], [2, 7])), &
                         'whose pairs join the links of the figure')
-    call tester%is_true(count(structure%independent) == 1 .and. structure%independent(5), 'and 5 independent')
+    call tester%is_true(count(independent) == 1 .and. independent(5), 'and 5 independent')
     deallocate (vectors%nrw)
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(size(findings) == 0 .and. all(vectors%nrw == [0, 0, 0, 0, 1, 1, 1, 1, 2]), 'nrw is computed')
     ! not in the program's order and longer than needed: the first ring is cut into an open chain
     ! and a closed one
     vectors = some_vectors([1, 4, 3, 1, 2, 3], [0, 6, 7, 0, 5, 4], [1, 0, 0, 1, 1, 0])
     vectors%nws = [0, 4, 3, 0, 1, 2]
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(size(findings) == 0, 'another order and a longer set are good too')
     call tester%is_true(all(vectors%nrw == [0, 0, 0, 0, 0, 1]), 'with one closure at its end')
     chains = chains_of(vectors)
@@ -77,10 +78,11 @@ contains
     character(len=*), intent(in) :: why                       !< the statement that is checked, printed where it is wrong
     integer, intent(in) :: position                           !< of the mistake in it
     type(structure_type) :: structure
+    logical, allocatable :: independent(:)
     type(finding_type), allocatable :: findings(:)
     integer :: i
 
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(size(findings) == 1, why//': one finding, not '//to_text(size(findings)))
     do i = 1, size(findings)
       if (size(findings) > 1) print '(2a)', '  ', findings(i)%message
@@ -95,6 +97,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors, empty
     type(structure_type) :: structure
+    logical, allocatable :: independent(:)
     type(finding_type), allocatable :: findings(:)
 
     vectors = fig_1()
@@ -110,13 +113,13 @@ contains
     vectors = some_vectors([1], [0], [1])
     call one_finding(tester, vectors, 'nrg', 0, 'at least one step', 'only the head')
     vectors = fig_1()
-    call structure_from_vectors(vectors, structure, findings, n_links=20, n_coordinates=7)
+    call structure_from_vectors(vectors, structure, independent, findings, n_links=20, n_coordinates=7)
     call tester%is_true(size(findings) == 1, 'too short for the number of links')
     vectors = fig_1()
-    call structure_from_vectors(vectors, structure, findings, n_links=7, n_coordinates=8)
+    call structure_from_vectors(vectors, structure, independent, findings, n_links=7, n_coordinates=8)
     call tester%is_true(size(findings) == 2, 'a link and a coordinate that are said to be there are missing')
     vectors = fig_1()
-    call structure_from_vectors(vectors, structure, findings, n_links=5, n_coordinates=6)
+    call structure_from_vectors(vectors, structure, independent, findings, n_links=5, n_coordinates=6)
     call tester%is_true(size(findings) == 2, 'a link and a coordinate more than are said to be there')
   end subroutine wrong_sizes
 
@@ -124,15 +127,16 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(structural_vectors_type) :: vectors
     type(structure_type) :: structure
+    logical, allocatable :: independent(:)
     type(finding_type), allocatable :: findings(:)
 
     vectors = fig_1()
     vectors%nrg(1) = 2
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 1), 'the first link must be the frame')
     vectors = fig_1()
     vectors%nws(1) = 3
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 1), 'the first coordinate must be 0')
     vectors = fig_1()
     vectors%rdw(3) = 2
@@ -145,20 +149,20 @@ contains
     call one_finding(tester, vectors, 'rdw', 6, 'must be 1', 'rdw at a start')
     vectors = fig_1()
     vectors%nws(9) = 2
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 9), 'a coordinate used twice')
     call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 0), 'and the other one missing')
     vectors = fig_1()
     vectors%nrg(8) = 1000000000
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 8), 'a mistyped link is out of range')
     vectors = fig_1()
     vectors%nws(8) = -huge(1)
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 8), 'a negative coordinate')
     vectors = fig_1()
     vectors%nrw(3) = huge(1)
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(any(findings%name == 'nrw' .and. findings%index(1) == 3), 'a huge number of closures')
   end subroutine wrong_numbers
 
@@ -184,9 +188,10 @@ contains
     type(tester_type), intent(inout) :: tester                !< counts the checks
     type(structural_vectors_type), intent(inout) :: vectors   !< good ones, which are changed
     type(structure_type) :: structure
+    logical, allocatable :: independent(:)
     type(finding_type), allocatable :: findings(:)
 
-    call structure_from_vectors(vectors, structure, findings)
+    call structure_from_vectors(vectors, structure, independent, findings)
     call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 3), 'a step from a link to itself')
   end subroutine check_self_step
 

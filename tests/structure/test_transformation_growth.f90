@@ -52,6 +52,7 @@ contains
     real(wp), intent(out) :: time                !< [s]
     integer(long), intent(out) :: pairs          !< of all structures together
     type(structure_type) :: structure
+    logical, allocatable :: independent(:)
     type(structural_vectors_type) :: vectors
     character(len=:), allocatable :: wrong
     integer(long) :: operations
@@ -62,14 +63,14 @@ contains
     pairs = 0
     time = huge(time)
     do seed = 1, seeds
-      structure = random_structure(kind, n, seed)
+      call random_structure(kind, n, seed, structure, independent)
       call cpu_time(began)
-      call transform(structure, vectors, operations)
+      call transform(structure, independent, vectors, operations)
       call cpu_time(ended)
       work = work + real(operations, wp)/seeds
       pairs = pairs + structure%n_coordinates
       time = min(time, ended - began)
-      wrong = what_is_wrong(structure, vectors)
+      wrong = what_is_wrong(structure, independent, vectors)
       call tester%is_true(wrong == '', 'vectors as defined: '//trim(kind_names(kind))//', '//to_text(n)// &
                           ' links, seed '//to_text(seed)//': '//wrong)
     end do

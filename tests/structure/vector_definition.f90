@@ -10,8 +10,9 @@ module vector_definition
 contains
 
   !> The first thing that is wrong, or nothing.
-  function what_is_wrong(structure, vectors) result(text)
+  function what_is_wrong(structure, independent, vectors) result(text)
     type(structure_type), intent(in) :: structure          !< from which the vectors come
+    logical, intent(in) :: independent(:)   !< (M) the coordinate is independent
     type(structural_vectors_type), intent(in) :: vectors   !< that are held against the definitions
     character(len=:), allocatable :: text
     logical :: known(structure%n_links), used(structure%n_coordinates)
@@ -44,7 +45,7 @@ contains
           used(k) = .true.
           if (all([link, vectors%nrg(i - 1)] /= structure%links(1, k)) .or. &
               all([link, vectors%nrg(i - 1)] /= structure%links(2, k))) text = 'a pair between other links'
-          if (vectors%rdw(i) /= merge(1, 0, structure%independent(k))) text = 'rdw'
+          if (vectors%rdw(i) /= merge(1, 0, independent(k))) text = 'rdw'
           closes = known(link)
           known(link) = .true.
         end if

@@ -5,8 +5,8 @@ module many_runs
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
-  use mech9_reader, only: read_mechanism
-  use mech9_mechanism, only: mechanism_type
+  use mech9_reader, only: read_model
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
@@ -53,66 +53,66 @@ contains
     type(run_type), intent(inout) :: run   !< gets its rows, or its failure
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
-    type(mechanism_type) :: mechanism
+    type(model_type), target :: model
     type(error_type), allocatable :: err
 
     call read_document(run%file, document, diagnostics)
-    call read_mechanism(document, .not. run%dynamic, mechanism, diagnostics)
+    call read_model(document, .not. run%dynamic, model, diagnostics)
     if (diagnostics%failed()) then
       call diagnostics%render(1, run%said)
       run%done = index(run%file, 'malformed') > 0
       return
     end if
     ! short, so that the threads begin and end often
-    mechanism%time%intervals = 20
+    model%request%time%intervals = 20
     if (run%dynamic) then
-      call integrate(mechanism, run%rows, err)
+      call integrate(model, run%rows, err)
     else
-      call follow(mechanism, run%rows, err)
+      call follow(model, run%rows, err)
     end if
     run%done = .not. allocated(err)
   end subroutine carry_out
 
-  subroutine follow(mechanism, rows, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine follow(model, rows, err)
+    type(model_type), intent(in), target :: model           !< the model
     real(wp), allocatable, intent(out) :: rows(:, :)    !< of the results, one in each column
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type) :: plan
     type(state_type) :: start
     type(driven_simulation_type) :: simulation
 
-    call assemble_driven(mechanism, plan, start, err)
+    call assemble_driven(model, plan, start, err)
     if (allocated(err)) return
-    call new_driven_simulation(mechanism, plan, start, simulation)
-    call fill(simulation, mechanism, rows, err)
+    call new_driven_simulation(model, plan, start, simulation)
+    call fill(simulation, model, rows, err)
   end subroutine follow
 
-  subroutine integrate(mechanism, rows, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  subroutine integrate(model, rows, err)
+    type(model_type), intent(in), target :: model           !< the model
     real(wp), allocatable, intent(out) :: rows(:, :)    !< of the results, one in each column
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type) :: plan
     type(state_type) :: start
     type(free_simulation_type) :: simulation
 
-    call assemble_free(mechanism, plan, start, err)
-    if (.not. allocated(err)) call new_free_simulation(mechanism, plan, start, simulation, err)
-    if (.not. allocated(err)) call fill(simulation, mechanism, rows, err)
+    call assemble_free(model, plan, start, err)
+    if (.not. allocated(err)) call new_free_simulation(model, plan, start, simulation, err)
+    if (.not. allocated(err)) call fill(simulation, model, rows, err)
     call simulation%close()
   end subroutine integrate
 
-  subroutine fill(simulation, mechanism, rows, err)
+  subroutine fill(simulation, model, rows, err)
     class(simulation_type), intent(inout), target :: simulation   !< about to start
-    type(mechanism_type), intent(in) :: mechanism                 !< the mechanism
+    type(model_type), intent(in), target :: model                     !< the model
     real(wp), allocatable, intent(out) :: rows(:, :)              !< of the results, one in each column
     type(error_type), allocatable, intent(out) :: err             !< allocated if it failed
     type(row_source_type) :: source
     integer :: i
 
-    call new_row_source('mech9', mechanism, simulation, source)
-    allocate (rows(source%columns%count, 0:mechanism%time%intervals), source=0.0_wp)
-    do i = 0, mechanism%time%intervals
-      call source%row_at(mechanism%time%time(i), rows(:, i), err)
+    call new_row_source('mech9', simulation, source)
+    allocate (rows(source%columns%count, 0:model%request%time%intervals), source=0.0_wp)
+    do i = 0, model%request%time%intervals
+      call source%row_at(model%request%time%time(i), rows(:, i), err)
       if (allocated(err)) return
     end do
   end subroutine fill

@@ -4,11 +4,11 @@ module mech9_draft_check
   use mech9_source, only: span_type, source_from_text
   use mech9_grammar, only: item_table, rows_of_group, takes_kind
   use mech9_structure, only: structure_type
-  use mech9_structural_vectors, only: structural_vectors_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_partition, only: partition_type
+  use mech9_model, only: model_type
   use mech9_document, only: document_type
   use mech9_parser, only: parse_document
-  use mech9_reader, only: read_mechanism, read_structure_only
+  use mech9_reader, only: read_model, read_structure_only
   use mech9_diagnostics, only: diagnostics_type
   use mech9_draft, only: draft_type
   use mech9_draft_text, only: draft_text_type, write_draft, locate
@@ -27,49 +27,49 @@ module mech9_draft_check
 contains
 
   !> The mechanism of a draft is read. It is of use only if there are no errors.
-  subroutine read_draft(draft, path, needs_drives, mechanism, written, diagnostics)
+  subroutine read_draft(draft, path, needs_drives, model, written, diagnostics)
     type(draft_type), intent(in) :: draft               !< groups and names with their values as text
     character(len=*), intent(in) :: path                !< path of the data file; tables of drives are sought beside it
     logical, intent(in) :: needs_drives                 !< the program needs a drive for each independent coordinate
-    type(mechanism_type), intent(out) :: mechanism      !< the mechanism
+    type(model_type), intent(out) :: model          !< the model
     type(draft_text_type), intent(out) :: written       !< text of the draft, with the place of each entry
     type(diagnostics_type), intent(out) :: diagnostics  !< gets what is wrong
     type(document_type) :: document
 
     call write_draft(draft, '', written)
     call parse_document(source_from_text(path, written%text), document, diagnostics)
-    call read_mechanism(document, needs_drives, mechanism, diagnostics)
+    call read_model(document, needs_drives, model, diagnostics)
   end subroutine read_draft
 
   !> The structure of a draft is read. It is of use only if there are no faults.
-  pure subroutine read_draft_structure(draft, outline, structure, vectors, faults)
+  pure subroutine read_draft_structure(draft, outline, structure, partition, faults)
     type(draft_type), intent(in) :: draft                    !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                !< facts known beside the draft
-    type(structure_type), intent(out) :: structure           !< links of the pairs and independent coordinates
-    type(structural_vectors_type), intent(out) :: vectors    !< the structure as the second set
+    type(structure_type), intent(out) :: structure           !< links of the pairs
+    type(partition_type), intent(out) :: partition         !< kinds of the coordinates, and their order of computation
     type(fault_type), allocatable, intent(out) :: faults(:)  !< errors, each with its entry in the draft
     type(draft_type) :: part
     type(draft_text_type) :: written
     type(diagnostics_type) :: diagnostics
 
     part = structural_part(draft, outline)
-    call read_part(part, structure, vectors, written, diagnostics)
+    call read_part(part, structure, partition, written, diagnostics)
     call find_faults(diagnostics, written, faults)
     call translate(part, draft, faults)
   end subroutine read_draft_structure
 
   !> The structural part of a draft is read like a data file.
-  pure subroutine read_part(part, structure, vectors, written, diagnostics)
+  pure subroutine read_part(part, structure, partition, written, diagnostics)
     type(draft_type), intent(in) :: part                   !< draft with the structure alone
-    type(structure_type), intent(out) :: structure         !< links of the pairs and independent coordinates
-    type(structural_vectors_type), intent(out) :: vectors  !< the structure as the second set
+    type(structure_type), intent(out) :: structure         !< links of the pairs
+    type(partition_type), intent(out) :: partition         !< kinds of the coordinates, and their order of computation
     type(draft_text_type), intent(out) :: written          !< text of the draft, with the place of each entry
     type(diagnostics_type), intent(out) :: diagnostics     !< gets what is wrong
     type(document_type) :: document
 
     call write_draft(part, '', written)
     call parse_document(source_from_text('structure', written%text), document, diagnostics)
-    call read_structure_only(document, structure, vectors, diagnostics)
+    call read_structure_only(document, structure, partition, diagnostics)
   end subroutine read_part
 
   !> The part of a draft that gives the structure: counts, structural data, and the links of the pairs if the structure is
@@ -150,9 +150,9 @@ contains
     integer, intent(in) :: place                           !< place among the groups of that name, from 1
     character(len=:), allocatable, intent(out) :: problem  !< messages, a line each; empty: nothing is wrong
     type(draft_type) :: trial
-    type(mechanism_type) :: mechanism
+    type(model_type) :: model
     type(structure_type) :: structure
-    type(structural_vectors_type) :: vectors
+    type(partition_type) :: partition
     type(draft_text_type) :: written
     type(diagnostics_type) :: diagnostics
     type(fault_type), allocatable :: faults(:)
@@ -165,11 +165,11 @@ contains
         call complete(trial, 'pair', i)
       end do
       call complete_matrix(trial)
-      call read_part(trial, structure, vectors, written, diagnostics)
+      call read_part(trial, structure, partition, written, diagnostics)
     else
       trial = draft
       call complete(trial, group, place)
-      call read_draft(trial, path, .false., mechanism, written, diagnostics)
+      call read_draft(trial, path, .false., model, written, diagnostics)
     end if
     call find_faults(diagnostics, written, faults)
     do i = 1, size(faults)

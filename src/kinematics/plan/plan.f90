@@ -125,6 +125,8 @@ module mech9_plan
     integer, allocatable :: frame_of(:)             !< first frame of each link
     type(pose_type), allocatable :: link_in_frame(:)  !< each link's own system in its first frame
     real(wp), allocatable :: unit_of(:)             !< unit of each coordinate: 1 rad, or `length`
+    real(wp), allocatable :: result_unit(:)         !< (M) one unit of each coordinate in results and messages [rad, m]
+    real(wp) :: angle_unit = 1.0_wp                 !< one unit of angle in them [rad]
     integer, allocatable :: independent(:)          !< coordinates, ascending
     type(pair_slot_type), allocatable :: pairs(:)   !< (M) only pairs without a fixed axis are set
     type(planar_plan_type) :: planar                !< the plan in planar arithmetic, if that can be used

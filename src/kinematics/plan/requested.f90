@@ -1,5 +1,6 @@
 !> The coordinates and links whose motion is requested, and the blocks of a plan that can be left out.
 module mech9_requested
+  use mech9_request, only: output_settings_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   implicit none
@@ -17,18 +18,19 @@ contains
 
   !> The motion that the results of a run show: of all coordinates, unless the data file lists some; of links with points,
   !> or of all.
-  pure function requested_by_results(mechanism, pictures) result(requested)
+  pure function requested_by_results(mechanism, output, pictures) result(requested)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(output_settings_type), intent(in) :: output   !< the settings of the results
     logical, intent(in), optional :: pictures       !< there are pictures, which show all links; .false. unless given
     type(requested_type) :: requested
     logical :: whole
 
-    requested%coordinates = mechanism%output%recorded(size(mechanism%pairs))
+    requested%coordinates = output%recorded(size(mechanism%pairs))
     whole = .false.
     if (present(pictures)) whole = pictures
-    allocate (requested%links(mechanism%structure%n_links), source=whole .or. mechanism%output%poses)
+    allocate (requested%links(mechanism%structure%n_links), source=whole .or. output%poses)
     requested%links(mechanism%points%link) = .true.
-    requested%derivatives = merge(2, mechanism%output%derivatives, whole)
+    requested%derivatives = merge(2, output%derivatives, whole)
   end function requested_by_results
 
   !> Request the motion that the equations of motion need: of links with mass, and of all links and coordinates that loads

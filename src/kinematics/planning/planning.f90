@@ -8,6 +8,7 @@ module mech9_planning
   use mech9_tolerances, only: contradicting_rates, inexact_dimensions, rank_tolerance_for
   use mech9_error, only: error_type, raise, exit_structure
   use mech9_failure, only: failure_large_block, failure_undetermined_block, failure_contradictory_inputs
+  use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type, new_state
   use mech9_state, only: state_type
@@ -39,18 +40,20 @@ contains
   !> Make the plan of a mechanism and its assembled start, the positions of all coordinates for the given independent ones.
   !> Fails with exit_structure if the independent coordinates do not determine the dependent ones, and with exit_assembly if
   !> the chains do not close.
-  subroutine make_plan(mechanism, start, plan, state, err, in_space, requested)
+  subroutine make_plan(mechanism, partition, start, plan, state, err, in_space, requested, length)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates, and the order of computation
     real(wp), intent(in) :: start(:)        !< (M) values of the independent coordinates, guesses of the others [rad, m]
     type(plan_type), intent(out) :: plan   !< the plan of the mechanism
     type(state_type), intent(out) :: state  !< the assembled start
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical, intent(in), optional :: in_space   !< use spatial arithmetic even where planar arithmetic is possible
     type(requested_type), intent(in), optional :: requested   !< requested quantities; blocks that do not serve them are left out
+    real(wp), intent(in), optional :: length   !< the mechanism's size, where it is known from an earlier plan [m]
     type(generic_position_type) :: generic
     logical :: spatial
 
-    call lay_out_frames(mechanism, plan)
+    call lay_out_frames(mechanism, partition, start, plan, length)
     call set_in_space(plan)
     state = new_state(plan)
     state%q = start

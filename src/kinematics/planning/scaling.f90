@@ -5,6 +5,7 @@ module mech9_scaling
   use mech9_pose, only: pose_type, inverse
   use mech9_pair, only: screw_factors_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type
   implicit none
   private
@@ -17,8 +18,9 @@ contains
   !> The size is the largest distance between two pairs of one link, or the largest initial slide. Where all links have their
   !> pairs in one point, as in spherical mechanisms, it is the largest distance of a point or pair from the origin of its
   !> link, or 1 m if that is zero.
-  subroutine find_size(mechanism, plan)
+  subroutine find_size(mechanism, start, plan)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    real(wp), intent(in) :: start(:)       !< (M) coordinates at the start [rad, m]
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     real(wp) :: low(3, mechanism%structure%n_links), high(3, mechanism%structure%n_links)
     type(screw_factors_type) :: factors
@@ -47,7 +49,7 @@ contains
     end do
     do k = 1, plan%n_coordinates
       if (.not. mechanism%pairs(k)%pair%angular) &
-        plan%length = max(plan%length, abs(mechanism%initial_position(k)))
+        plan%length = max(plan%length, abs(start(k)))
     end do
     reach = 0.0_wp
     do k = 1, plan%n_links
@@ -60,7 +62,7 @@ contains
     if (plan%length <= 1.0e-14_wp) plan%length = 1.0_wp
   end subroutine find_size
 
-  !> The unit of each coordinate: the size of the mechanism for slides, 1 for all others.
+  !> The unit of each coordinate: the size of the mechanism for slides, 1 for all others; and its unit in results.
   subroutine find_units(mechanism, plan)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
@@ -73,5 +75,7 @@ contains
       call mechanism%pairs(k)%pair%as_screw(factors, is_screw)
       if (is_screw .and. .not. mechanism%pairs(k)%pair%angular) plan%unit_of(k) = plan%length
     end do
+    plan%angle_unit = mechanism%angle_unit
+    plan%result_unit = [(unit_of(mechanism, k), k=1, plan%n_coordinates)]
   end subroutine find_units
 end module mech9_scaling

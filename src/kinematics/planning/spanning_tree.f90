@@ -9,6 +9,7 @@ module mech9_spanning_tree
   use mech9_pose, only: pose_type, compose, inverse, identity_pose
   use mech9_pair, only: screw_factors_type
   use mech9_structural_vectors, only: chain_type, chains_of
+  use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, step_type, closure_type
   use mech9_tree_paths, only: find_loop, distance_between
@@ -32,9 +33,12 @@ module mech9_spanning_tree
 contains
 
   !> Lay out steps, frames and closures chain by chain. Ranks and rows of the closures, and the blocks, are found later.
-  subroutine lay_out_frames(mechanism, plan)
+  subroutine lay_out_frames(mechanism, partition, start, plan, length)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates, and the order of computation
+    real(wp), intent(in) :: start(:)                !< (M) coordinates at the start [rad, m]
     type(plan_type), intent(out) :: plan   !< the plan of the mechanism
+    real(wp), intent(in), optional :: length        !< the mechanism's size, where it is known from an earlier plan [m]
     type(chain_type), allocatable :: chains(:)
     type(layout_type) :: layout
     integer :: i
@@ -42,32 +46,34 @@ contains
     associate (structure => mechanism%structure)
       plan%n_links = structure%n_links
       plan%n_coordinates = structure%n_coordinates
-      plan%independent = pack([(i, i=1, structure%n_coordinates)], structure%independent)
+      plan%independent = pack([(i, i=1, structure%n_coordinates)], partition%independent())
     end associate
     plan%data_tolerance = mechanism%data_tolerance
     allocate (plan%steps(plan%n_coordinates), plan%step_of(plan%n_coordinates))
     allocate (plan%frame_of(plan%n_links), source=0)
     allocate (plan%link_in_frame(plan%n_links), plan%pairs(plan%n_coordinates))
     allocate (plan%closures(plan%n_coordinates - plan%n_links + 1))
-    call find_size(mechanism, plan)
+    call find_size(mechanism, start, plan)
+    if (present(length)) plan%length = length
     call find_units(mechanism, plan)
     plan%link_in_frame(1)%p = -plan%origin
     allocate (layout%depth(0:plan%n_coordinates), source=0)
     allocate (layout%link_in(0:plan%n_coordinates))
     allocate (layout%further(most_remembered, plan%n_links), source=0)
     layout%link_in(0) = plan%link_in_frame(1)
-    chains = chains_of(mechanism%vectors)
+    chains = chains_of(partition%vectors)
     do i = 1, size(chains)
-      associate (nrg => mechanism%vectors%nrg(chains(i)%first - 1:chains(i)%last), &
-                 nws => mechanism%vectors%nws(chains(i)%first:chains(i)%last))
-        call lay_out_chain(mechanism, i, nrg, nws, chains(i)%closed, plan, layout)
+      associate (nrg => partition%vectors%nrg(chains(i)%first - 1:chains(i)%last), &
+                 nws => partition%vectors%nws(chains(i)%first:chains(i)%last))
+        call lay_out_chain(mechanism, partition, i, nrg, nws, chains(i)%closed, plan, layout)
       end associate
     end do
   end subroutine lay_out_frames
 
   !> Lay out one chain. Open chains, and the stem of a chain that closes on itself, start at their known end.
-  subroutine lay_out_chain(mechanism, chain, links, coordinates, closed, plan, layout)
+  subroutine lay_out_chain(mechanism, partition, chain, links, coordinates, closed, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
     integer, intent(in) :: chain   !< number of the chain
     integer, intent(in) :: links(0:)   !< (0:) the known link at which the chain starts, then the link of each step
     integer, intent(in) :: coordinates(:)   !< number of the coordinate of each step
@@ -85,16 +91,17 @@ contains
     end if
     frame = plan%frame_of(links(0))
     do i = 1, stem
-      call add_step(mechanism, chain, links(i - 1), links(i), coordinates(i), frame, plan, layout, reached)
+      call add_step(mechanism, partition, chain, links(i - 1), links(i), coordinates(i), frame, plan, layout, reached)
       call make_first(links(i), reached, plan, layout)
       frame = reached
     end do
-    if (closed) call lay_out_loop(mechanism, chain, links(stem:), coordinates(stem + 1:), plan, layout)
+    if (closed) call lay_out_loop(mechanism, partition, chain, links(stem:), coordinates(stem + 1:), plan, layout)
   end subroutine lay_out_chain
 
   !> Lay out new links between two known ones from both ends, and the closure where they meet.
-  subroutine lay_out_loop(mechanism, chain, links, coordinates, plan, layout)
+  subroutine lay_out_loop(mechanism, partition, chain, links, coordinates, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
     integer, intent(in) :: chain   !< number of the chain
     integer, intent(in) :: links(0:)   !< (0:) a known link, the new links, a known link
     integer, intent(in) :: coordinates(:)   !< number of the coordinate of each step
@@ -107,16 +114,16 @@ contains
     from_here = (n + layout%depth(there) - layout%depth(here))/2
     from_here = max(0, min(n - 1, from_here))
     do i = 1, from_here
-      call add_step(mechanism, chain, links(i - 1), links(i), coordinates(i), here, plan, layout, reached)
+      call add_step(mechanism, partition, chain, links(i - 1), links(i), coordinates(i), here, plan, layout, reached)
       call make_first(links(i), reached, plan, layout)
       here = reached
     end do
     do i = n - 1, from_here + 1, -1
-      call add_step(mechanism, chain, links(i + 1), links(i), coordinates(i + 1), there, plan, layout, reached)
+      call add_step(mechanism, partition, chain, links(i + 1), links(i), coordinates(i + 1), there, plan, layout, reached)
       call make_first(links(i), reached, plan, layout)
       there = reached
     end do
-    call add_step(mechanism, chain, links(from_here), links(from_here + 1), coordinates(from_here + 1), here, &
+    call add_step(mechanism, partition, chain, links(from_here), links(from_here + 1), coordinates(from_here + 1), here, &
                   plan, layout, reached)
     layout%closures = layout%closures + 1
     call make_closure(plan, layout, reached, there, plan%closures(layout%closures))
@@ -167,8 +174,9 @@ contains
   end subroutine make_first
 
   !> Add a step from a frame of one link through a pair to a new frame of another.
-  subroutine add_step(mechanism, chain, from, to, coordinate, parent, plan, layout, reached)
+  subroutine add_step(mechanism, partition, chain, from, to, coordinate, parent, plan, layout, reached)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
     integer, intent(in) :: chain   !< number of the chain
     integer, intent(in) :: from   !< number of the link where the step starts
     integer, intent(in) :: to   !< number of the link that it reaches
@@ -182,15 +190,16 @@ contains
     reached = layout%steps
     plan%step_of(coordinate) = reached
     layout%depth(reached) = layout%depth(parent) + 1
-    call make_step(mechanism, from, to, coordinate, layout%link_in(parent), plan, plan%steps(reached), &
+    call make_step(mechanism, partition, from, to, coordinate, layout%link_in(parent), plan, plan%steps(reached), &
                    layout%link_in(reached))
     plan%steps(reached)%parent = parent
     plan%steps(reached)%chain = chain
   end subroutine add_step
 
   !> The step from link `from` to link `to` through the pair of a coordinate.
-  subroutine make_step(mechanism, from, to, coordinate, link_in_frame, plan, step, after)
+  subroutine make_step(mechanism, partition, from, to, coordinate, link_in_frame, plan, step, after)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
     integer, intent(in) :: from   !< number of the link where the step starts
     integer, intent(in) :: to   !< number of the link that it reaches
     integer, intent(in) :: coordinate   !< number of the pair's coordinate
@@ -205,7 +214,7 @@ contains
       step%coordinate = coordinate
       step%link = to
       step%reversed = pair%reference /= from
-      step%dependent = .not. mechanism%structure%independent(coordinate)
+      step%dependent = .not. partition%is_independent(coordinate)
       call pair%as_screw(factors, step%is_screw)
       if (step%is_screw) then
         direction = merge(-1.0_wp, 1.0_wp, step%reversed)

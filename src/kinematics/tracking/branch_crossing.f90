@@ -9,7 +9,7 @@ module mech9_branch_crossing
   use mech9_tolerances, only: near_singular, shorter_crossing, trusted_crossing, trusted_crossing_rates
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite
-  use mech9_mechanism, only: mechanism_type
+  use mech9_drive, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, apply_change
@@ -38,8 +38,8 @@ contains
 
   !> Find the motion through the crossing at time t, on the branch of `stepper`, whose position must be near but regular.
   !> It does not exist where no smooth motion goes on. Fails where a pair has no pose.
-  subroutine build_crossing(mechanism, plan, stepper, t, crossing, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine build_crossing(drives, plan, stepper, t, crossing, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper at a regular position near the crossing
     real(wp), intent(in) :: t   !< time of the crossing [s]
@@ -54,17 +54,17 @@ contains
     do trial = 1, most_trials
       probe = stepper
       probe%with_accelerations = .true.
-      if (trial > 1) call step_until(mechanism, plan, probe, t - half, crossing%exists, err)
+      if (trial > 1) call step_until(drives, plan, probe, t - half, crossing%exists, err)
       if (allocated(err)) return
-      if (trial == 1 .or. crossing%exists) call try_crossing(mechanism, plan, probe, t, half, crossing, err)
+      if (trial == 1 .or. crossing%exists) call try_crossing(drives, plan, probe, t, half, crossing, err)
       if (allocated(err) .or. crossing%exists) return
       half = half*shorter_crossing
     end do
   end subroutine build_crossing
 
   !> Try to find the motion through the crossing by two positions before it and two after it.
-  subroutine try_crossing(mechanism, plan, probe, t, half, crossing, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine try_crossing(drives, plan, probe, t, half, crossing, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: probe   !< a copy of the branch stepper, at time t - half
     real(wp), intent(in) :: t   !< time of the crossing [s]
@@ -78,14 +78,14 @@ contains
 
     times = t + half*[-1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp]
     call take(1)
-    call step_until(mechanism, plan, probe, times(2), crossing%exists, err)
+    call step_until(drives, plan, probe, times(2), crossing%exists, err)
     if (allocated(err) .or. .not. crossing%exists) return
     call take(2)
     crossing%from = times(1)
     crossing%to = times(4)
     crossing%ends = .false.
     call build_hermite(times(:2), q(:, :2), dq(:, :2), ddq(:, :2), crossing%polynomial)
-    call close_all_blocks(mechanism, plan, crossing%polynomial, times(3), 1.0_wp, probe, ok, err, no_drive)
+    call close_all_blocks(drives, plan, crossing%polynomial, times(3), 1.0_wp, probe, ok, err, no_drive)
     crossing%exists = ok
     if (allocated(no_drive)) then
       call end_at_crossing()
@@ -94,7 +94,7 @@ contains
     if (allocated(err) .or. .not. ok) return
     call take(3)
     call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%polynomial)
-    call close_all_blocks(mechanism, plan, crossing%polynomial, times(4), 1.0_wp, probe, ok, err, no_drive)
+    call close_all_blocks(drives, plan, crossing%polynomial, times(4), 1.0_wp, probe, ok, err, no_drive)
     crossing%exists = ok
     if (allocated(err) .or. .not. ok) return
     call take(4)
@@ -115,7 +115,7 @@ contains
     !> Where the drives have no value beyond the crossing, the last output may lie at it: one more position before it.
     subroutine end_at_crossing()
       times(3) = t - 0.25_wp*half
-      call step_until(mechanism, plan, probe, times(3), crossing%exists, err)
+      call step_until(drives, plan, probe, times(3), crossing%exists, err)
       if (allocated(err) .or. .not. crossing%exists) return
       call take(3)
       call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%polynomial)
@@ -124,8 +124,8 @@ contains
   end subroutine try_crossing
 
   !> Take regular steps until a time is reached.
-  subroutine step_until(mechanism, plan, stepper, t, arrived, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine step_until(drives, plan, stepper, t, arrived, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     real(wp), intent(in) :: t   !< time to reach [s]
@@ -136,15 +136,15 @@ contains
 
     stuck = .false.
     do while (abs(t - stepper%predictor%t) > 0.0_wp .and. .not. stuck)
-      call step_towards(mechanism, plan, stepper, t, stuck, refused_by, err)
+      call step_towards(drives, plan, stepper, t, stuck, refused_by, err)
       if (allocated(err)) exit
     end do
     arrived = .not. (stuck .or. allocated(err))
   end subroutine step_until
 
   !> Close all blocks at time t, predicted in a straight line from a start where only positions and rates are known.
-  subroutine close_from_rates(mechanism, plan, t, stepper, ok, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine close_from_rates(drives, plan, t, stepper, ok, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: t   !< time of the position to close [s]
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
@@ -158,14 +158,14 @@ contains
     dq(:, 1) = stepper%state%dq
     ddq = 0.0_wp
     call build_hermite([stepper%state%t], q, dq, ddq, polynomial)
-    call close_all_blocks(mechanism, plan, polynomial, t, 10.0_wp, stepper, ok, err, no_drive)
+    call close_all_blocks(drives, plan, polynomial, t, 10.0_wp, stepper, ok, err, no_drive)
     if (allocated(no_drive)) call move_alloc(no_drive, err)
   end subroutine close_from_rates
 
   !> Close all blocks at time t, predicted by a polynomial. The result is certain (`ok`) if its corrections and the differences
   !> of its rates from those of the polynomial are small.
-  subroutine close_all_blocks(mechanism, plan, polynomial, t, slack, stepper, ok, err, no_drive)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine close_all_blocks(drives, plan, polynomial, t, slack, stepper, ok, err, no_drive)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(hermite_type), intent(in) :: polynomial   !< all coordinates over time
     real(wp), intent(in) :: t   !< time of the position to close [s]
@@ -182,7 +182,7 @@ contains
     call polynomial%evaluate(t, q, dq, ddq)
     stepper%state%t = t
     stepper%state%q = q
-    call set_inputs(mechanism, t, stepper%state%q, stepper%state%dq, stepper%state%ddq, no_drive)
+    call set_inputs(drives, t, stepper%state%q, stepper%state%dq, stepper%state%ddq, no_drive)
     if (allocated(no_drive)) then
       stepper%state%q = stepper%predictor%q
       return
@@ -205,8 +205,8 @@ contains
   end subroutine close_all_blocks
 
   !> Position, rates and accelerations at a time within the crossing.
-  subroutine position_within(mechanism, plan, crossing, t, state, work, monitors, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine position_within(drives, plan, crossing, t, state, work, monitors, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_crossing_type), intent(in) :: crossing   !< the crossing and the motion through it
     real(wp), intent(in) :: t   !< time, within the crossing [s]
@@ -222,7 +222,7 @@ contains
     call crossing%polynomial%evaluate(t, state%q, dq, ddq)
     state%dq = dq
     state%ddq = ddq
-    call set_inputs(mechanism, t, state%q, state%dq, state%ddq, err)
+    call set_inputs(drives, t, state%q, state%dq, state%ddq, err)
     if (allocated(err)) return
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))

@@ -9,7 +9,7 @@ module mech9_branch_stepping
   use mech9_tolerances, only: creeping_move, creeping_step, least_step, longest_drive, longest_move, small_correction, &
     trusted_contraction, trusted_correction, trusted_rate_change
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_drive, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_tree_paths, only: mark_path
   use mech9_state, only: state_type
@@ -50,8 +50,8 @@ module mech9_branch_stepping
 contains
 
   !> Independent coordinates and their derivatives at a time, from the drives.
-  subroutine set_inputs(mechanism, t, q, dq, ddq, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine set_inputs(drives, t, q, dq, ddq, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     real(wp), intent(in) :: t   !< time [s]
     real(wp), intent(inout) :: q(:)   !< (M) coordinates [rad, m]: the driven ones are set
     real(wp), intent(inout) :: dq(:)   !< (M) their rates: the driven ones are set
@@ -59,16 +59,16 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, k
 
-    do i = 1, size(mechanism%drives)
-      k = mechanism%drives(i)%drive%coordinate
-      call mechanism%drives(i)%drive%evaluate(t, q(k), dq(k), ddq(k), err)
+    do i = 1, size(drives)
+      k = drives(i)%drive%coordinate
+      call drives(i)%drive%evaluate(t, q(k), dq(k), ddq(k), err)
       if (allocated(err)) return
     end do
   end subroutine set_inputs
 
   !> A branch stepper at an assembled position, whose rates and accelerations are not known yet.
-  pure function new_branch_stepper(mechanism, plan, assembled) result(stepper)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  pure function new_branch_stepper(drives, plan, assembled) result(stepper)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: assembled   !< an assembled position
     type(branch_stepper_type) :: stepper
@@ -84,15 +84,15 @@ contains
     end do
     allocate (stepper%per_unit(m))
     stepper%per_unit = 1.0_wp/plan%unit_of
-    stepper%drives = drives_of_chains(mechanism, plan)
+    stepper%drives = drives_of_chains(drives, plan)
   end function new_branch_stepper
 
   !> Numbers of the drives whose coordinates belong to closed chains. Those of open chains may move any distance in a step.
-  pure function drives_of_chains(mechanism, plan) result(drives)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  pure function drives_of_chains(drives, plan) result(numbers)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    integer, allocatable :: drives(:)
-    logical :: marked(plan%n_coordinates), drives_chain(size(mechanism%drives))
+    integer, allocatable :: numbers(:)
+    logical :: marked(plan%n_coordinates), drives_chain(size(drives))
     integer :: b, c, i
 
     marked = .false.
@@ -102,10 +102,10 @@ contains
         call mark_path(plan%steps, plan%closures(c)%target, marked)
       end do
     end do
-    do i = 1, size(mechanism%drives)
-      drives_chain(i) = marked(plan%step_of(mechanism%drives(i)%drive%coordinate))
+    do i = 1, size(drives)
+      drives_chain(i) = marked(plan%step_of(drives(i)%drive%coordinate))
     end do
-    drives = pack([(i, i=1, size(mechanism%drives))], drives_chain)
+    numbers = pack([(i, i=1, size(drives))], drives_chain)
   end function drives_of_chains
 
   !> Take the state, complete with its accelerations, as the accepted position; nothing is known of the motion before it.
@@ -121,8 +121,8 @@ contains
   !> Take one accepted step towards time t, as long as can be trusted. `stuck` tells that even the shortest step is
   !> refused, or that too many steps led nearly nowhere; `refused_by` then names the block. Fails where a drive or a pair has
   !> no value.
-  subroutine step_towards(mechanism, plan, stepper, t, stuck, refused_by, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine step_towards(drives, plan, stepper, t, stuck, refused_by, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     real(wp), intent(in) :: t   !< time to go towards [s]
@@ -138,7 +138,7 @@ contains
     do
       remaining = t - stepper%predictor%t
       h = min(abs(remaining), stepper%reach)
-      call limit_by_drives(mechanism, plan, stepper, sign(1.0_wp, remaining), h, driven)
+      call limit_by_drives(drives, plan, stepper, sign(1.0_wp, remaining), h, driven)
       stepper%state%t = stepper%predictor%t + sign(h, remaining)
       ! two equal steps rather than a long one and a short remainder
       if (h < abs(remaining) .and. 2.0_wp*h > abs(remaining)) &
@@ -146,7 +146,7 @@ contains
       if (h >= abs(remaining)) stepper%state%t = t
       h = abs(stepper%state%t - stepper%predictor%t)
       complete = stepper%with_accelerations .or. any(is_near(stepper%monitors))
-      call try_step(mechanism, plan, stepper, complete, worst, refused_by, no_drive, err)
+      call try_step(drives, plan, stepper, complete, worst, refused_by, no_drive, err)
       if (no_drive) return
       if (worst <= 1.0_wp) then
         stepper%reach = min(2.0_wp*min(max(stepper%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
@@ -184,8 +184,8 @@ contains
   end subroutine count_creeping
 
   !> Shorten a step until no driven coordinate of a closed chain can move far within it.
-  subroutine limit_by_drives(mechanism, plan, stepper, direction, h, driven)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine limit_by_drives(drives, plan, stepper, direction, h, driven)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     real(wp), intent(in) :: direction         !< +1, or -1 backwards in time
@@ -196,7 +196,7 @@ contains
 
     driven = .false.
     do i = 1, size(stepper%drives)
-      associate (drive => mechanism%drives(stepper%drives(i))%drive)
+      associate (drive => drives(stepper%drives(i))%drive)
         ! the bound of the rate depends on the step, so that the length is found by iteration
         do trial = 1, 100
           part = h*drive%greatest_rate(stepper%predictor%t, direction*h)/(longest_drive*plan%unit_of(drive%coordinate))
@@ -210,8 +210,8 @@ contains
   end subroutine limit_by_drives
 
   !> Predict, correct and judge one step of all blocks, from the last accepted position to the time in the state.
-  subroutine try_step(mechanism, plan, stepper, complete, worst, refused_by, no_drive, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine try_step(drives, plan, stepper, complete, worst, refused_by, no_drive, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     logical, intent(in) :: complete             !< find accelerations too
@@ -224,7 +224,7 @@ contains
 
     refused_by = 0
     worst = 0.0_wp
-    call set_inputs(mechanism, stepper%state%t, stepper%state%q, stepper%state%dq, stepper%state%ddq, err)
+    call set_inputs(drives, stepper%state%t, stepper%state%q, stepper%state%dq, stepper%state%ddq, err)
     no_drive = allocated(err)
     if (no_drive) return
     stepper%correction = 0.0_wp

@@ -5,8 +5,7 @@ module mech9_driven_motion
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
     failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
-  use mech9_mechanism, only: mechanism_type
-  use mech9_result_units, only: unit_of
+  use mech9_drive, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: solve_rates, solve_accelerations
@@ -42,8 +41,8 @@ module mech9_driven_motion
 contains
 
   !> Begin at an assembled position, with rates and accelerations there. Later outputs need no accelerations.
-  subroutine start_driven_motion(mechanism, plan, assembled, t, driven, err, with_accelerations)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine start_driven_motion(drives, plan, assembled, t, driven, err, with_accelerations)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: assembled   !< an assembled position
     real(wp), intent(in) :: t   !< time of the start [s]
@@ -54,17 +53,17 @@ contains
     logical :: starts_singular
 
     starts_singular = .false.
-    driven%branch_stepper_type = new_branch_stepper(mechanism, plan, assembled)
+    driven%branch_stepper_type = new_branch_stepper(drives, plan, assembled)
     if (present(with_accelerations)) driven%with_accelerations = with_accelerations
     driven%slides = has_slides(plan%blocks, plan)
     driven%state%t = t
-    call set_inputs(mechanism, t, driven%state%q, driven%state%dq, driven%state%ddq, err)
+    call set_inputs(drives, t, driven%state%q, driven%state%dq, driven%state%ddq, err)
     if (allocated(err)) return
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b), work => driven%work(b))
         call factorize_trial(plan, block, driven%state, work, driven%monitors(b))
         if (work%equations%conditioning() < singular_conditioning) then
-          call find_rates_off_start(mechanism, plan, block, starts_singular, driven, err)
+          call find_rates_off_start(plan, block, starts_singular, driven, err)
           if (allocated(err)) return
           starts_singular = .true.
         else
@@ -74,7 +73,7 @@ contains
       end associate
     end do
     if (starts_singular) then
-      call begin_crossing(mechanism, plan, driven, err)
+      call begin_crossing(drives, plan, driven, err)
       if (allocated(err)) return
     else
       call accept_start(driven%branch_stepper_type)
@@ -84,8 +83,7 @@ contains
   end subroutine start_driven_motion
 
   !> Find the rates of a block that starts in a singular position. Fails unless exactly one branch leads through it.
-  subroutine find_rates_off_start(mechanism, plan, block, another_is_singular, driven, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine find_rates_off_start(plan, block, another_is_singular, driven, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     logical, intent(in) :: another_is_singular   !< an earlier block starts in a singular position too
@@ -114,26 +112,26 @@ contains
     call raise(err, exit_singular, kind)
     err%failure%chains = block%chains
     err%failure%coordinates = block%coordinates
-    if (kind == failure_start_on_branches) call add_rates(mechanism, starting, err)
+    if (kind == failure_start_on_branches) call add_rates(plan, starting, err)
   end subroutine find_rates_off_start
 
   !> Add the rates by which a block could go on to a failure that has its coordinates.
-  pure subroutine add_rates(mechanism, starting, err)
-    type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+  pure subroutine add_rates(plan, starting, err)
+    type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
     type(starting_rates_type), intent(in) :: starting       !< the rates of the block's coordinates
     type(error_type), intent(inout) :: err                  !< gets them, in units of the data file
     integer :: i
 
     err%failure%values = starting%rates(:, :starting%count)
     do i = 1, size(err%failure%coordinates)
-      err%failure%values(i, :) = err%failure%values(i, :)/unit_of(mechanism, err%failure%coordinates(i))
+      err%failure%values(i, :) = err%failure%values(i, :)/plan%result_unit(err%failure%coordinates(i))
     end do
-    err%failure%angle_unit = mechanism%angle_unit
+    err%failure%angle_unit = plan%angle_unit
   end subroutine add_rates
 
   !> Find the motion off a singular start.
-  subroutine begin_crossing(mechanism, plan, driven, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine begin_crossing(drives, plan, driven, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -141,21 +139,21 @@ contains
     driven%predictor%t = driven%state%t
     driven%predictor%q = driven%state%q
     driven%predictor%dq = driven%state%dq
-    call start_crossing(mechanism, plan, driven%branch_stepper_type, driven%crossing, err)
+    call start_crossing(drives, plan, driven%branch_stepper_type, driven%crossing, err)
     if (allocated(err)) return
     if (.not. driven%crossing%exists) then
       call raise(err, exit_singular, failure_start_not_left)
       return
     end if
     driven%monitors = driven%crossing%stepper_beyond%monitors
-    call position_within(mechanism, plan, driven%crossing, driven%predictor%t, driven%state, driven%work, &
+    call position_within(drives, plan, driven%crossing, driven%predictor%t, driven%state, driven%work, &
                          driven%monitors, err)
   end subroutine begin_crossing
 
   !> Go on to a time on the same branch; the state then has position, rates and accelerations there. Fails with exit_singular
   !> where the motion cannot go on; the state is then the last one that was reached.
-  subroutine advance(mechanism, plan, driven, t, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine advance(drives, plan, driven, t, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     real(wp), intent(in) :: t   !< time to go to [s]
@@ -168,7 +166,7 @@ contains
       direction = sign(1.0_wp, t - driven%predictor%t)
       if (driven%crossing%exists) then
         if (.not. (t - driven%crossing%to)*direction > 0.0_wp .or. driven%crossing%ends) then
-          call position_within(mechanism, plan, driven%crossing, t, driven%state, driven%work, driven%monitors, err)
+          call position_within(drives, plan, driven%crossing, t, driven%state, driven%work, driven%monitors, err)
           exit
         end if
         call leave_crossing(driven)
@@ -176,19 +174,19 @@ contains
       end if
       if (driven%ahead%kind == dead_point .and. .not. (driven%ahead%t - t)*direction > 0.0_wp .and. &
           (driven%ahead%t - driven%predictor%t)*direction > 0.0_wp) then
-        call end_motion(mechanism, plan, driven, err)
+        call end_motion(drives, plan, driven, err)
         exit
       end if
-      call step_towards(mechanism, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
+      call step_towards(drives, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
       if (allocated(err)) exit
       if (stuck) then
         ! an escape that was found before explains why no step is accepted
         if (driven%ahead%kind /= escape .or. driven%ahead%block /= refused_by) &
           driven%ahead = finding_type(uncertain, refused_by, driven%predictor%t)
-        call fail_at_end(mechanism, plan, driven, err)
+        call fail_at_end(drives, plan, driven, err)
         exit
       end if
-      call look_ahead_if_near(mechanism, plan, driven, direction, err)
+      call look_ahead_if_near(drives, plan, driven, direction, err)
       if (allocated(err)) exit
     end do
     if (allocated(err)) then
@@ -199,8 +197,8 @@ contains
   end subroutine advance
 
   !> Look ahead after a step if a block has come near a singular position.
-  subroutine look_ahead_if_near(mechanism, plan, driven, direction, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine look_ahead_if_near(drives, plan, driven, direction, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     real(wp), intent(in) :: direction   !< +1, or -1 backwards in time
@@ -214,7 +212,7 @@ contains
       if (driven%slides(b)) call find_escape(plan, driven%branch_stepper_type, b, .false., ahead)
       if (ahead%kind == escape) then
         driven%ahead = ahead
-        call fail_at_end(mechanism, plan, driven, err)
+        call fail_at_end(drives, plan, driven, err)
         return
       end if
       if (.not. is_near(driven%monitors(b))) cycle
@@ -222,16 +220,16 @@ contains
       if (driven%ahead%kind /= nothing_special) exit
       if ((driven%clear_until(b) - driven%predictor%t)*direction > 0.0_wp) cycle
       call add_accelerations(plan, driven%branch_stepper_type)
-      call look_ahead(mechanism, plan, driven%branch_stepper_type, b, direction, ahead)
+      call look_ahead(drives, plan, driven%branch_stepper_type, b, direction, ahead)
       driven%clear_until(b) = ahead%t
       driven%ahead = ahead
       if (ahead%kind == branch_point) then
-        call build_crossing(mechanism, plan, driven%branch_stepper_type, ahead%t, driven%crossing, err)
+        call build_crossing(drives, plan, driven%branch_stepper_type, ahead%t, driven%crossing, err)
         if (allocated(err)) return
         if (.not. driven%crossing%exists) driven%ahead%kind = uncertain
       end if
       ! the motion goes on up to a dead point, or until a coordinate that escapes is far away
-      if (driven%ahead%kind == uncertain) call fail_at_end(mechanism, plan, driven, err)
+      if (driven%ahead%kind == uncertain) call fail_at_end(drives, plan, driven, err)
       if (allocated(err)) return
     end do
   end subroutine look_ahead_if_near
@@ -259,8 +257,8 @@ contains
   end subroutine leave_crossing
 
   !> Go as near to the end of the motion as regular steps lead, and fail with the reason.
-  subroutine end_motion(mechanism, plan, driven, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine end_motion(drives, plan, driven, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -271,9 +269,9 @@ contains
     t = driven%ahead%t - just_short_of_end*(driven%ahead%t - driven%predictor%t)
     stuck = .false.
     do while (abs(t - driven%predictor%t) > 0.0_wp .and. .not. stuck .and. .not. allocated(err))
-      call step_towards(mechanism, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
+      call step_towards(drives, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
     end do
-    call fail_at_end(mechanism, plan, driven, err)
+    call fail_at_end(drives, plan, driven, err)
   end subroutine end_motion
 
   !> Count an output, and keep its closure error and conditioning.
@@ -288,8 +286,8 @@ contains
   end subroutine count_output
 
   !> Fail where and why the motion cannot go on, and keep the independent coordinates there.
-  subroutine fail_at_end(mechanism, plan, driven, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine fail_at_end(drives, plan, driven, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -298,7 +296,7 @@ contains
     integer :: i, k, kind
 
     q = driven%predictor%q
-    call set_inputs(mechanism, driven%ahead%t, q, dq, ddq, no_value)
+    call set_inputs(drives, driven%ahead%t, q, dq, ddq, no_value)
     driven%limit = q
     select case (driven%ahead%kind)
     case (escape)
@@ -319,7 +317,7 @@ contains
       allocate (failure%values(size(plan%independent), 1))
       do i = 1, size(plan%independent)
         k = plan%independent(i)
-        failure%values(i, 1) = q(k)/unit_of(mechanism, k)
+        failure%values(i, 1) = q(k)/plan%result_unit(k)
       end do
     end associate
   end subroutine fail_at_end

@@ -10,7 +10,7 @@ module mech9_special_position
   use mech9_tolerances, only: clear_pivot, crossing_growth, crossing_pivot, dead_growth, escape_law, escaped_slide, &
     escaping_speed, far_slide, last_pivot, longest_growth, probe_move, stuck_pivot
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_drive, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_predictor, only: acceleration_of
   use mech9_branch_stepping, only: branch_stepper_type, step_towards
@@ -41,8 +41,8 @@ module mech9_special_position
 contains
 
   !> Look ahead from a position that is near a singular one of block b.
-  subroutine look_ahead(mechanism, plan, stepper, b, direction, finding)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine look_ahead(drives, plan, stepper, b, direction, finding)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper, near a singular position of block b
     integer, intent(in) :: b   !< number of the block
@@ -70,7 +70,7 @@ contains
       step = min(probe%reach, probe_move/speed, longest_growth*probe%predictor%before)
       do trial = 1, most_trials
         t = t_before + direction*step
-        call step_towards(mechanism, plan, probe, t, stuck, refused_by, err)
+        call step_towards(drives, plan, probe, t, stuck, refused_by, err)
         if (.not. allocated(err)) exit
         step = step/longest_growth                      ! a drive may end before the special position, or just at it
       end do

@@ -9,7 +9,7 @@ module mech9_special_start
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
   use mech9_hermite, only: build_hermite
-  use mech9_mechanism, only: mechanism_type
+  use mech9_drive, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
@@ -148,8 +148,8 @@ contains
 
   !> The motion off a singular start whose rates are in `stepper`, by three regular positions beside it. It does not exist
   !> where they cannot be reached with certainty.
-  subroutine start_crossing(mechanism, plan, stepper, crossing, err)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  subroutine start_crossing(drives, plan, stepper, crossing, err)
+    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(in) :: stepper   !< the branch stepper at the singular start, with its rates
     type(branch_crossing_type), intent(inout) :: crossing   !< gets the motion off the start
@@ -169,9 +169,9 @@ contains
       times = stepper%state%t + step*[1.0_wp, 2.0_wp, 3.0_wp]
       do i = 1, 3
         if (i == 1) then
-          call close_from_rates(mechanism, plan, times(1), probe, ok, err)
+          call close_from_rates(drives, plan, times(1), probe, ok, err)
         else
-          call step_until(mechanism, plan, probe, times(i), ok, err)
+          call step_until(drives, plan, probe, times(i), ok, err)
         end if
         if (allocated(err)) return
         if (.not. ok) exit

@@ -7,8 +7,7 @@ module mech9_xdmf
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_path, only: name_of, with_ending
-  use mech9_mechanism, only: mechanism_type
-  use mech9_settings, only: time_grid_type
+  use mech9_request, only: time_grid_type
   use mech9_poses, only: poses_type
   use mech9_result_sink, only: result_sink_type
   use mech9_page, only: page_type
@@ -39,16 +38,17 @@ module mech9_xdmf
 contains
 
   !> The description of an HDF5 file that will be written. It has the name of this file with the ending .xdmf.
-  pure function new_xdmf(hdf5_path, mechanism, poses) result(sink)
+  pure function new_xdmf(hdf5_path, title, grid, poses) result(sink)
     character(len=*), intent(in) :: hdf5_path      !< name of the HDF5 file
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    character(len=*), intent(in) :: title          !< title of the mechanism
+    type(time_grid_type), intent(in) :: grid       !< times of the results
     type(poses_type), intent(in) :: poses          !< vertices and lines that show the links
     type(xdmf_type) :: sink
 
     sink%data_name = name_of(hdf5_path)
     sink%path = xdmf_path(hdf5_path)
-    sink%title = mechanism%title
-    sink%grid = mechanism%time
+    sink%title = title
+    sink%grid = grid
     sink%n_vertices = size(poses%vertex_link)
     sink%n_lines = size(poses%lines, 2)
     sink%is_open = .true.

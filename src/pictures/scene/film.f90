@@ -25,6 +25,7 @@ module mech9_film
 
   !> Frames and paths are in the system of link 1. Outputs that are not kept are left out evenly.
   type :: film_type
+    logical, allocatable :: independent(:)       !< (M) the coordinate is independent at the start
     integer :: n_frames = 0                      !< number taken so far
     integer :: n_path_points = 0                 !< number taken so far
     real(wp), allocatable :: times(:)            !< times of the frames [s]
@@ -50,14 +51,16 @@ module mech9_film
 contains
 
   !> A new film with room for the frames of a run, and for the values of its columns if these are given.
-  pure function new_film(mechanism, outputs, columns) result(film)
+  pure function new_film(mechanism, independent, outputs, columns) result(film)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+    logical, intent(in) :: independent(:)                !< (M) the coordinate is independent
     integer, intent(in) :: outputs                       !< expected number of outputs
     type(columns_type), intent(in), optional :: columns  !< columns of the rows that are taken, the time first
     type(film_type) :: film
     integer :: n, frames, points
 
     n = mechanism%structure%n_links
+    film%independent = independent
     film%expected = outputs
     frames = max(2, min(most_frames, most_poses/n))
     film%frame_stride = max(1, (outputs + frames - 2)/max(frames - 1, 1))

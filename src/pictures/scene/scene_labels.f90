@@ -67,7 +67,7 @@ contains
       do i = 1, size(symbols%joint)
         if (symbols%joint(i) /= i) cycle
         n = n + 1
-        call enter_coordinates(i, mechanism%structure%independent, symbols, scene, drawing, projection, entries(n), labels(n))
+        call enter_coordinates(i, film%independent, symbols, scene, drawing, projection, entries(n), labels(n))
       end do
     end if
     if (size(shapes, 2) <= most_labelled) then
@@ -79,7 +79,7 @@ contains
     end if
     call place_labels(obstacles, [projection%width, projection%height], labels(:n))
     do i = 1, n
-      call add_entry(entries(i), labels(i), mechanism%structure%independent, film, drawing, projection, scene)
+      call add_entry(entries(i), labels(i), film%independent, film, drawing, projection, scene)
     end do
   end subroutine add_labels
 

@@ -1,7 +1,7 @@
 !> Notes about options without effect, which are no errors.
 module mech9_unused_options
   use mech9_command_line, only: command_line_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   implicit none
   private
   public :: print_unused_options
@@ -13,11 +13,11 @@ module mech9_unused_options
 contains
 
   !> Write a line for each reason why options are without effect.
-  subroutine print_unused_options(unit, program_name, options, mechanism)
+  subroutine print_unused_options(unit, program_name, options, model)
     integer, intent(in) :: unit                     !< Fortran unit to write to
     character(len=*), intent(in) :: program_name    !< mech9k or mech9d
     type(command_line_type), intent(in) :: options  !< the command line
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism, whose data file may request pictures, too
+    type(model_type), intent(in) :: model       !< the model, whose data file may request pictures, too
     character(len=:), allocatable :: answer, names
     logical :: drawn
 
@@ -33,18 +33,18 @@ contains
     if (options%has('starts') .and. (answer == 'structure' .or. .not. options%has('branches'))) &
       write (unit, '(a)') program_name//': without effect: --starts; it is the number of guesses of --branches'
     drawn = options%has('sketch')
-    if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(mechanism)
+    if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(model)
     if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
       write (unit, '(a)') program_name//': without effect: --view; no picture of the mechanism is drawn'
   end subroutine print_unused_options
 
   !> Whether the data file requests pictures of the mechanism.
-  pure logical function pictures_of(mechanism)
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+  pure logical function pictures_of(model)
+    type(model_type), intent(in) :: model      !< the model
 
     pictures_of = .false.
-    if (allocated(mechanism%output%sketch)) pictures_of = mechanism%output%sketch /= ''
-    if (allocated(mechanism%output%animation)) pictures_of = pictures_of .or. mechanism%output%animation /= ''
+    if (allocated(model%request%output%sketch)) pictures_of = model%request%output%sketch /= ''
+    if (allocated(model%request%output%animation)) pictures_of = pictures_of .or. model%request%output%animation /= ''
   end function pictures_of
 
   !> The given ones of some options, as a list: "--table, --hdf5".

@@ -2,7 +2,7 @@
 module mech9_hdf5_record
   use mech9_text, only: to_text
   use mech9_lapack, only: ilaver
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
   use mech9_command_line, only: command_line_type
   use mech9_version, only: version, revision, compiler, sundials_version
@@ -16,14 +16,14 @@ module mech9_hdf5_record
 contains
 
   !> Write the origin of the results, with all data that are needed to compute them again.
-  subroutine write_provenance(file, program_name, options, mechanism, data_text)
+  subroutine write_provenance(file, program_name, options, model, data_text)
     type(hdf5_file_type), intent(inout) :: file      !< the open file
     character(len=*), intent(in) :: program_name     !< mech9k or mech9d
     type(command_line_type), intent(in) :: options   !< the command line
-    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(model_type), intent(in) :: model        !< the model
     character(len=*), intent(in) :: data_text        !< of the data file, as it is
 
-    call file%add_attribute('/', 'title', mechanism%title)
+    call file%add_attribute('/', 'title', model%mechanism%title)
     call file%add_attribute('/', 'source', program_name//' '//version)
     call file%put('provenance/program', program_name, 'program that wrote this file')
     call file%put('provenance/version', version, 'version of the program')
@@ -56,20 +56,21 @@ contains
   end function present_time
 
   !> Write the first and the second set of structural data.
-  subroutine write_structure(file, mechanism)
+  subroutine write_structure(file, model)
     type(hdf5_file_type), intent(inout) :: file     !< the open file
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer :: links(2, size(mechanism%pairs)), k
+    type(model_type), intent(in) :: model       !< the model
+    integer :: links(2, size(model%mechanism%pairs)), k
 
-    do k = 1, size(mechanism%pairs)
-      links(:, k) = [mechanism%pairs(k)%pair%reference, mechanism%pairs(k)%pair%moving]
+    do k = 1, size(model%mechanism%pairs)
+      links(:, k) = [model%mechanism%pairs(k)%pair%reference, model%mechanism%pairs(k)%pair%moving]
     end do
-    associate (structure => mechanism%structure, vectors => mechanism%vectors)
+    associate (structure => model%mechanism%structure, vectors => model%problem%partition%vectors, &
+               independent => model%problem%partition%independent())
       call file%put('structure/end', [1, 2], 'end of a pair: 1 the reference link, 2 the moving link')
       call file%make_scale('structure/end')
       call file%put('structure/links', links, 'links that each pair joins')
       call file%attach_scales('structure/links', ['/coordinate   ', '/structure/end'])
-      call file%put('structure/independent', merge(1, 0, structure%independent), '1 where the coordinate is independent')
+      call file%put('structure/independent', merge(1, 0, independent), '1 where the coordinate is independent')
       call file%attach_scales('structure/independent', ['/coordinate'])
       call write_matrix(file, structure%n_links, links)
       call file%put('structure/position', [(k, k=1, size(vectors%nrg))], 'position in the structural vectors')

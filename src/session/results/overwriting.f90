@@ -3,7 +3,7 @@ module mech9_overwriting
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type
   use mech9_same_file, only: file_place_type, find_place, find_open_place, same_place, is_fifo
-  use mech9_settings, only: output_settings_type
+  use mech9_request, only: output_settings_type
   use mech9_command_line, only: command_line_type
   use mech9_written_files, only: written_file_type, list_written_files, standard_output_path
   implicit none

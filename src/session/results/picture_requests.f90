@@ -3,7 +3,7 @@ module mech9_picture_requests
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data
   use mech9_path, only: ending_of
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_film, only: film_type, new_film
@@ -43,15 +43,15 @@ contains
 
   !> Read the requests of the options, or those of the data file where the options have none. A wrong view and a wrong
   !> ending of a file's name are errors.
-  subroutine read_picture_requests(options, mechanism, program_name, requests, err)
+  subroutine read_picture_requests(options, model, program_name, requests, err)
     type(command_line_type), intent(in) :: options         !< the command line
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(model_type), intent(in) :: model              !< the model
     character(len=*), intent(in) :: program_name           !< mech9k or mech9d
     type(picture_requests_type), intent(out) :: requests   !< the pictures that are requested
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(result_paths_type) :: paths
 
-    call find_result_paths(options, mechanism%output, paths)
+    call find_result_paths(options, model%request%output, paths)
     requests%sketch = paths%sketch
     requests%animation = paths%animation
     requests%with_masses = program_name == 'mech9d'
@@ -68,9 +68,9 @@ contains
     if (options%has('view')) then
       allocate (requests%view)
       call read_view(options%argument('view'), exit_usage, requests%view, err)
-    else if (mechanism%output%view /= '') then
+    else if (model%request%output%view /= '') then
       allocate (requests%view)
-      call read_view(mechanism%output%view, exit_data, requests%view, err)
+      call read_view(model%request%output%view, exit_data, requests%view, err)
     end if
   end subroutine read_picture_requests
 
@@ -82,26 +82,26 @@ contains
   end function any_wanted
 
   !> Make the sketch of an assembled position, without a run. Errors are exit_file.
-  subroutine save_start(self, mechanism, plan, start, err)
+  subroutine save_start(self, model, plan, start, err)
     class(picture_requests_type), intent(in) :: self    !< the picture requests
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(state_type), intent(in) :: start               !< assembled position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(picture_requests_type) :: sketch_only
     type(film_type) :: film
 
-    film = new_film(mechanism, 1)
-    call film%take(mechanism, plan, start, [start%t])
+    film = new_film(model%mechanism, model%problem%partition%independent(), 1)
+    call film%take(model%mechanism, plan, start, [start%t])
     sketch_only = self
     sketch_only%animation = ''
-    call sketch_only%save(mechanism, film, err)
+    call sketch_only%save(model, film, err)
   end subroutine save_start
 
   !> Make the pictures of a film; a film without frames gives none. Errors are exit_file.
-  subroutine save_pictures(self, mechanism, film, err)
+  subroutine save_pictures(self, model, film, err)
     class(picture_requests_type), intent(in) :: self    !< the picture requests
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(model_type), intent(in) :: model           !< the model
     type(film_type), intent(in) :: film                 !< poses and columns at some outputs
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(skeleton_type) :: skeleton
@@ -109,17 +109,17 @@ contains
     logical :: planar
 
     if (film%n_frames == 0) return
-    call make_skeleton(mechanism, film, skeleton)
-    call place_slides(mechanism, film, skeleton)
-    call choose_view(mechanism, film, skeleton, view, planar)
+    call make_skeleton(model%mechanism, film, skeleton)
+    call place_slides(model%mechanism, film, skeleton)
+    call choose_view(model%mechanism, film, skeleton, view, planar)
     if (allocated(self%view)) then
       ! whether the view is along the normal of the plane
       planar = planar .and. abs(dot_product(self%view%toward, view%toward)) > 1.0_wp - 1.0e-6_wp
       view = self%view
     end if
-    if (self%sketch /= '') call save_one(self, mechanism, film, skeleton, view, planar, self%sketch, .false., err)
+    if (self%sketch /= '') call save_one(self, model, film, skeleton, view, planar, self%sketch, .false., err)
     if (self%animation /= '' .and. .not. allocated(err)) &
-      call save_one(self, mechanism, film, skeleton, view, planar, self%animation, .true., err)
+      call save_one(self, model, film, skeleton, view, planar, self%animation, .true., err)
   end subroutine save_pictures
 
   !> Print which pictures were made.
@@ -132,9 +132,9 @@ contains
   end subroutine print_words
 
   !> Make one picture. The mechanism on a page can be turned unless it is planar; its projection leaves room for that.
-  subroutine save_one(self, mechanism, film, skeleton, view, planar, path, moving, err)
+  subroutine save_one(self, model, film, skeleton, view, planar, path, moving, err)
     class(picture_requests_type), intent(in) :: self    !< the picture requests
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(model_type), intent(in) :: model           !< the model
     type(film_type), intent(in) :: film                 !< poses and columns at some outputs
     type(skeleton_type), intent(in) :: skeleton         !< places of the pairs on their axes
     type(view_type), intent(in) :: view                 !< direction of the view
@@ -147,16 +147,16 @@ contains
     logical :: page
 
     page = moving .and. kind_of(path) == 'html'
-    call fit_projection(mechanism, film, skeleton, view, page .and. .not. planar, projection)
-    call make_scene(mechanism, film, skeleton, projection, planar, self%with_masses, scene)
+    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, projection)
+    call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses, scene)
     if (.not. moving) then
-      call save_sketch(path, mechanism%title, scene, film, projection, 1, err)
+      call save_sketch(path, model%mechanism%title, scene, film, projection, 1, err)
     else if (page) then
-      call save_html_film(path, mechanism%title, scene, film, projection, planar, err)
+      call save_html_film(path, model%mechanism%title, scene, film, projection, planar, err)
     else if (kind_of(path) == 'gif') then
-      call save_gif_film(path, mechanism%title, scene, film, projection, err)
+      call save_gif_film(path, model%mechanism%title, scene, film, projection, err)
     else
-      call save_svg_film(path, mechanism%title, scene, film, projection, err)
+      call save_svg_film(path, model%mechanism%title, scene, film, projection, err)
     end if
   end subroutine save_one
 

@@ -3,7 +3,7 @@ module mech9_recording
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_clock, only: seconds, pacer_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_row_source, only: row_source_type
   use mech9_results, only: results_type
@@ -29,9 +29,9 @@ contains
 
   !> Record the rows at all output times in the results, which stay open. When the motion cannot go on, or the
   !> user interrupts, the computed rows are written first.
-  subroutine record(source, mechanism, results, quiet, outcome, err, kept)
+  subroutine record(source, model, results, quiet, outcome, err, kept)
     type(row_source_type), intent(inout) :: source              !< computes the rows
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(model_type), intent(in) :: model       !< the model
     type(results_type), intent(inout) :: results                !< open
     logical, intent(in) :: quiet                                !< no progress is shown
     type(recording_outcome_type), intent(out) :: outcome        !< how the recording went
@@ -46,15 +46,15 @@ contains
 
     allocate (rows(source%columns%width(), rows_together), source=0.0_wp)
     if (present(kept)) &
-      call kept%begin(mechanism%title, source%columns%names(:source%columns%count), &
-                      source%columns%units(:source%columns%count), mechanism%time%intervals + 1)
+      call kept%begin(model%mechanism%title, source%columns%names(:source%columns%count), &
+                      source%columns%units(:source%columns%count), model%request%time%intervals + 1)
     clock = seconds()
     call progress%start(source%program_name, quiet)
     call pacer%start(longest_wait)
     next = 0
-    do while (next <= mechanism%time%intervals .and. .not. allocated(stopped))
+    do while (next <= model%request%time%intervals .and. .not. allocated(stopped))
       call lap(clock, outcome%seconds_writing)
-      call compute_rows(source, mechanism, progress, pacer, next, rows, count, stopped)
+      call compute_rows(source, model, progress, pacer, next, rows, count, stopped)
       call lap(clock, outcome%seconds_solving)
       outcome%rows = outcome%rows + count
       if (present(kept)) call kept%take(rows(:source%columns%count, :count))
@@ -69,9 +69,9 @@ contains
   end subroutine record
 
   !> Compute the next rows, from output number `next` on; there are fewer where the motion or the run ends, or takes long.
-  subroutine compute_rows(source, mechanism, progress, pacer, next, rows, count, err)
+  subroutine compute_rows(source, model, progress, pacer, next, rows, count, err)
     type(row_source_type), intent(inout) :: source              !< computes the rows
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(model_type), intent(in) :: model       !< the model
     type(progress_type), intent(inout) :: progress              !< is told of each row
     type(pacer_type), intent(inout) :: pacer                    !< says when rows must be written
     integer, intent(inout) :: next                              !< number of the next output, from 0 on
@@ -80,12 +80,12 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     count = 0
-    do while (count < size(rows, 2) .and. next <= mechanism%time%intervals)
-      call source%row_at(mechanism%time%time(next), rows(:, count + 1), err)
+    do while (count < size(rows, 2) .and. next <= model%request%time%intervals)
+      call source%row_at(model%request%time%time(next), rows(:, count + 1), err)
       if (allocated(err)) return
       count = count + 1
       next = next + 1
-      call progress%update(real(next, wp)/max(1, mechanism%time%intervals))
+      call progress%update(real(next, wp)/max(1, model%request%time%intervals))
       if (pacer%due()) return
     end do
   end subroutine compute_rows

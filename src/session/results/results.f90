@@ -3,7 +3,7 @@ module mech9_results
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
   use mech9_table, only: table_type
@@ -39,10 +39,10 @@ module mech9_results
 contains
 
   !> Open all requested results. After an error none is open.
-  subroutine open_results(self, options, mechanism, data_text, program_name, columns, err)
+  subroutine open_results(self, options, model, data_text, program_name, columns, err)
     class(results_type), intent(out) :: self            !< the results
     type(command_line_type), intent(in) :: options      !< the command line
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(model_type), intent(in) :: model           !< the model
     character(len=*), intent(in) :: data_text           !< of the data file
     character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< of the rows to come
@@ -54,14 +54,14 @@ contains
 
     allocate (self%sinks(0))
     self%n_columns = columns%count
-    call find_result_paths(options, mechanism%output, paths)
+    call find_result_paths(options, model%request%output, paths)
     self%table_path = paths%table
     self%hdf5_path = paths%hdf5
     ! a wrong name in a plot is found before a file is touched
-    call self%open_plots(options, mechanism, columns, plots, err)
-    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(mechanism, program_name, columns, err)
+    call self%open_plots(options, model, columns, plots, err)
+    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(model, program_name, columns, err)
     if (.not. allocated(err) .and. self%hdf5_path /= '') &
-      call self%open_hdf5(options, mechanism, data_text, program_name, columns, err)
+      call self%open_hdf5(options, model, data_text, program_name, columns, err)
     if (allocated(err)) then
       call self%close(at_close)
       return
@@ -72,10 +72,10 @@ contains
   end subroutine open_results
 
   !> Open the requested plots.
-  subroutine open_plots(self, options, mechanism, columns, plots, err)
+  subroutine open_plots(self, options, model, columns, plots, err)
     class(results_type), intent(in) :: self                      !< the results
     type(command_line_type), intent(in) :: options               !< the command line
-    type(mechanism_type), intent(in) :: mechanism                !< the mechanism
+    type(model_type), intent(in) :: model                    !< the model
     type(columns_type), intent(in) :: columns                    !< names and units of the columns
     type(sink_slot_type), allocatable, intent(out) :: plots(:)   !< one sink for each plot
     type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
@@ -90,10 +90,10 @@ contains
     do i = 1, size(requests)
       call picture_of_plot(requests(i)%text, self%table_path, options%file, i, picture)
       allocate (plot)
-      call plot%open(requests(i)%text, mechanism%title, columns%names(:columns%count), &
-                     columns%units(:columns%count), mechanism%time%intervals + 1, picture, self%table_path, err)
+      call plot%open(requests(i)%text, model%mechanism%title, columns%names(:columns%count), &
+                     columns%units(:columns%count), model%request%time%intervals + 1, picture, self%table_path, err)
       if (allocated(err)) then
-        if (leaves_out(mechanism)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
+        if (leaves_out(model)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
         return
       end if
       call move_alloc(plot, sink)
@@ -102,17 +102,17 @@ contains
   end subroutine open_plots
 
   !> Whether the results have fewer columns than they could have.
-  pure logical function leaves_out(mechanism)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+  pure logical function leaves_out(model)
+    type(model_type), intent(in) :: model       !< the model
 
-    associate (output => mechanism%output)
-      leaves_out = output%derivatives < 2 .or. .not. (output%energies .and. all(output%recorded(size(mechanism%pairs))))
+    associate (output => model%request%output)
+      leaves_out = output%derivatives < 2 .or. .not. (output%energies .and. all(output%recorded(size(model%mechanism%pairs))))
     end associate
   end function leaves_out
 
-  subroutine open_table(self, mechanism, program_name, columns, err)
+  subroutine open_table(self, model, program_name, columns, err)
     class(results_type), intent(inout) :: self          !< the results
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(model_type), intent(in) :: model           !< the model
     character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< names and units of the columns
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -120,17 +120,17 @@ contains
     class(result_sink_type), allocatable :: sink
 
     allocate (table)
-    call table%open(self%table_path, mechanism%title, program_name//' '//version, &
+    call table%open(self%table_path, model%mechanism%title, program_name//' '//version, &
                     columns%names(:columns%count), columns%units(:columns%count), err)
     if (allocated(err)) return
     call move_alloc(table, sink)
     call append_sink(self%sinks, sink)
   end subroutine open_table
 
-  subroutine open_hdf5(self, options, mechanism, data_text, program_name, columns, err)
+  subroutine open_hdf5(self, options, model, data_text, program_name, columns, err)
     class(results_type), intent(inout) :: self          !< the results
     type(command_line_type), intent(in) :: options      !< the command line
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(model_type), intent(in) :: model           !< the model
     character(len=*), intent(in) :: data_text           !< text of the data file, kept in the file
     character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< names and units of the columns
@@ -139,15 +139,15 @@ contains
     class(result_sink_type), allocatable :: sink
 
     allocate (file)
-    call file%open(self%hdf5_path, mechanism, columns, err)
+    call file%open(self%hdf5_path, model%mechanism, model%request, columns, err)
     if (allocated(err)) return
-    call write_provenance(file%file, program_name, options, mechanism, data_text)
-    call write_structure(file%file, mechanism)
+    call write_provenance(file%file, program_name, options, model, data_text)
+    call write_structure(file%file, model)
     call file%tell(err)
     call move_alloc(file, sink)
     call append_sink(self%sinks, sink)
     if (columns%poses%n_links == 0) return
-    allocate (sink, source=new_xdmf(self%hdf5_path, mechanism, columns%poses))
+    allocate (sink, source=new_xdmf(self%hdf5_path, model%mechanism%title, model%request%time, columns%poses))
     call append_sink(self%sinks, sink)
   end subroutine open_hdf5
 

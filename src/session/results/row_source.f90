@@ -3,7 +3,6 @@ module mech9_row_source
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_system, only: interrupted
-  use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_simulation, only: simulation_type, interruption_type
@@ -31,15 +30,14 @@ module mech9_row_source
 contains
 
   !> The rows of a simulation, which must have the target attribute and outlive them.
-  subroutine new_row_source(program_name, mechanism, simulation, source)
+  subroutine new_row_source(program_name, simulation, source)
     character(len=*), intent(in) :: program_name                   !< for messages and files
-    type(mechanism_type), intent(in) :: mechanism                  !< says which columns there are
     class(simulation_type), intent(inout), target :: simulation    !< made, and not started
     type(row_source_type), intent(out) :: source                   !< its rows
 
     source%program_name = program_name
     source%simulation => simulation
-    source%columns = kinematic_columns(mechanism)
+    source%columns = kinematic_columns(simulation%model%mechanism, simulation%model%request%output)
     if (simulation%with_energies) then
       call source%columns%append('E.kinetic', 'J', 'kinetic energy')
       call source%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
@@ -56,7 +54,6 @@ contains
     real(wp), intent(in) :: t                           !< output time [s]
     real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(mechanism_type), pointer :: mechanism
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
     integer :: next
@@ -67,8 +64,8 @@ contains
       call self%simulation%start(err, signal_interruption_type())
     end if
     if (allocated(err)) return
-    call self%simulation%present(mechanism, plan, state)
-    call self%columns%fill(mechanism, plan, state, row)
+    call self%simulation%present(plan, state)
+    call self%columns%fill(self%simulation%model%mechanism, plan, state, row)
     call self%columns%fill_poses(plan, state, row)
     next = self%columns%motion
     associate (simulation => self%simulation)
@@ -81,7 +78,7 @@ contains
       row(next + 1) = simulation%closure
       if (simulation%with_conditioning) row(next + 2) = simulation%least_conditioning
     end associate
-    if (allocated(self%film)) call self%film%take(mechanism, plan, state, row)
+    if (allocated(self%film)) call self%film%take(self%simulation%model%mechanism, plan, state, row)
   end subroutine row_at
 
   !> Whether the user has interrupted the program.

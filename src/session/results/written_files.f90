@@ -1,7 +1,7 @@
 !> All files that a run or an answer will write, with those made beside them: one list, known before any file is opened.
 module mech9_written_files
   use mech9_text, only: string_type
-  use mech9_settings, only: output_settings_type
+  use mech9_request, only: output_settings_type
   use mech9_replacement, only: path_of_part
   use mech9_plot, only: picture_of_plot, script_of_plot
   use mech9_structure_graph, only: text_of_graph

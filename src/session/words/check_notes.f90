@@ -4,6 +4,7 @@ module mech9_check_notes
   use mech9_error, only: error_type
   use mech9_text, only: to_text, some_of
   use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_result_units, only: unit_of
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
   implicit none
@@ -22,25 +23,26 @@ module mech9_check_notes
 contains
 
   !> Write a line for each note.
-  subroutine print_notes(unit, mechanism, with_masses)
+  subroutine print_notes(unit, model, with_masses)
     integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(model_type), intent(in) :: model      !< the model
     logical, intent(in) :: with_masses  !< true: notes for mech9d, on bodies and initial velocities; false: for mech9k, on drives
     type(error_type), allocatable :: err
     real(wp) :: q, dq, ddq
     integer :: i, k
 
     if (with_masses) then
-      do k = 1, size(mechanism%pairs)
-        if (mechanism%structure%independent(k)) &
-          call note_angle(unit, mechanism, k, 'the start', mechanism%initial_position(k), mechanism%initial_velocity(k))
+      do k = 1, size(model%mechanism%pairs)
+        if (model%problem%partition%is_independent(k)) &
+          call note_angle(unit, model%mechanism, k, 'the start', model%problem%initial%position(k), &
+                          model%problem%initial%velocity(k))
       end do
-      call note_bodies(unit, mechanism)
+      call note_bodies(unit, model%mechanism)
     else
-      do i = 1, size(mechanism%drives)
-        k = mechanism%drives(i)%drive%coordinate
-        call mechanism%drives(i)%drive%evaluate(mechanism%time%start, q, dq, ddq, err)
-        if (.not. allocated(err)) call note_angle(unit, mechanism, k, 'the drive', q, dq)
+      do i = 1, size(model%problem%drives)
+        k = model%problem%drives(i)%drive%coordinate
+        call model%problem%drives(i)%drive%evaluate(model%request%time%start, q, dq, ddq, err)
+        if (.not. allocated(err)) call note_angle(unit, model%mechanism, k, 'the drive', q, dq)
       end do
     end if
   end subroutine print_notes
@@ -48,7 +50,7 @@ contains
   !> Note an angle or a rate that seems to be in the other unit.
   subroutine note_angle(unit, mechanism, k, what, q, dq)
     integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
     integer, intent(in) :: k                       !< number of the coordinate
     character(len=*), intent(in) :: what           !< 'the drive' or 'the start'
     real(wp), intent(in) :: q                      !< value of the coordinate [rad]
@@ -77,7 +79,7 @@ contains
   !> Note a body of the frame, and links without mass beside links with mass.
   subroutine note_bodies(unit, mechanism)
     integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     logical :: massless(mechanism%structure%n_links)
     integer :: i

@@ -1,7 +1,7 @@
 !> Assembly of a mechanism at the start of a motion, with an error that explains oddities of its geometry where it fails.
 module mech9_explained_assembly
   use mech9_error, only: error_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_driven_simulation, only: assemble_driven
@@ -14,24 +14,24 @@ module mech9_explained_assembly
 contains
 
   !> Plan and closed position at the start of a driven motion.
-  subroutine assemble_driven_start(mechanism, plan, state, err)
-    type(mechanism_type), intent(in) :: mechanism      !< the mechanism, with a drive for each independent coordinate
+  subroutine assemble_driven_start(model, plan, state, err)
+    type(model_type), intent(in) :: model          !< the model, with a drive for each independent coordinate
     type(plan_type), intent(out) :: plan               !< the plan of the mechanism
     type(state_type), intent(out) :: state             !< the closed position
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
-    call assemble_driven(mechanism, plan, state, err)
-    call explain_geometry(mechanism, err)
+    call assemble_driven(model, plan, state, err)
+    call explain_geometry(model%mechanism, err)
   end subroutine assemble_driven_start
 
   !> Plan and closed position at the start of a free motion, with the rates of the independent coordinates.
-  subroutine assemble_free_start(mechanism, plan, state, err)
-    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+  subroutine assemble_free_start(model, plan, state, err)
+    type(model_type), intent(in) :: model          !< the model
     type(plan_type), intent(out) :: plan               !< the plan of the mechanism
     type(state_type), intent(out) :: state             !< the closed position and these rates
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
-    call assemble_free(mechanism, plan, state, err)
-    call explain_geometry(mechanism, err)
+    call assemble_free(model, plan, state, err)
+    call explain_geometry(model%mechanism, err)
   end subroutine assemble_free_start
 end module mech9_explained_assembly

@@ -2,7 +2,7 @@
 module mech9_range_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -21,9 +21,9 @@ module mech9_range_text
 contains
 
   !> Write a line for each independent coordinate: start, lower and upper end, unit, and the cause of its limits.
-  subroutine print_ranges(unit, mechanism, plan, start)
+  subroutine print_ranges(unit, model, plan, start)
     integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(model_type), intent(in) :: model      !< the model
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: start          !< the closed position at the start
     type(motion_range_type) :: range
@@ -36,9 +36,9 @@ contains
       'unit  limited by'
     do i = 1, size(plan%independent)
       k = plan%independent(i)
-      call find_range(mechanism, plan, start, k, range)
-      factor = 1.0_wp/unit_of(mechanism, k)
-      name = trim(unit_name(mechanism, k))
+      call find_range(plan, start, k, range)
+      factor = 1.0_wp/unit_of(model%mechanism, k)
+      name = trim(unit_name(model%mechanism, k))
       write (unit, '(a)') column('q'//to_text(k), 6)//column(to_text(factor*range%start, digits), width)// &
         column(value_of(range%lower, factor), width)//column(value_of(range%upper, factor), width)// &
         column(name, 6)//reasons(plan, range, factor, name)

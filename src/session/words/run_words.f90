@@ -6,7 +6,7 @@ module mech9_run_words
   use mech9_json, only: json_type
   use mech9_source, only: span_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_version, only: version, revision, compiler
   implicit none
@@ -40,15 +40,15 @@ contains
   end function duration
 
   !> Write the beginning of a report: the program, the mechanism, the exit code and the errors.
-  subroutine begin_report(json, program_name, mechanism, diagnostics, table_path)
+  subroutine begin_report(json, program_name, model, diagnostics, table_path)
     type(json_type), intent(inout) :: json             !< the report, which is being composed
     character(len=*), intent(in) :: program_name       !< mech9k or mech9d
-    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(model_type), intent(in) :: model          !< the model
     type(diagnostics_type), intent(in) :: diagnostics  !< all errors, which determine the exit code
     character(len=*), intent(in) :: table_path         !< path of the table; '-' is standard output; empty: no table
 
     call json%begin_object()
-    call add_outcome(json, program_name, mechanism, diagnostics%code())
+    call add_outcome(json, program_name, model, diagnostics%code())
     call json%add('table', table_path)
     call json%begin_array('errors')
     call add_errors(json, diagnostics)
@@ -56,10 +56,10 @@ contains
   end subroutine begin_report
 
   !> Write the report of a program that made no run, because of an option such as --check or because of an error.
-  subroutine save_short_report(path, program_name, mechanism, exit_code, choice, diagnostics, err)
+  subroutine save_short_report(path, program_name, model, exit_code, choice, diagnostics, err)
     character(len=*), intent(in) :: path               !< path of the report
     character(len=*), intent(in) :: program_name       !< mech9k or mech9d
-    type(mechanism_type), intent(in) :: mechanism      !< the mechanism, as far as it was read
+    type(model_type), intent(in) :: model          !< the model, as far as it was read
     integer, intent(in) :: exit_code                   !< exit code of the program
     type(diagnostics_type), intent(in) :: choice       !< errors of the choice of the independent coordinates
     type(diagnostics_type), intent(in) :: diagnostics  !< errors of the data file
@@ -67,7 +67,7 @@ contains
     type(json_type) :: json
 
     call json%begin_object()
-    call add_outcome(json, program_name, mechanism, exit_code)
+    call add_outcome(json, program_name, model, exit_code)
     call json%begin_array('errors')
     call add_errors(json, choice)
     call add_errors(json, diagnostics)
@@ -77,17 +77,17 @@ contains
   end subroutine save_short_report
 
   !> Add the program with its version, and the exit code.
-  subroutine add_outcome(json, program_name, mechanism, exit_code)
+  subroutine add_outcome(json, program_name, model, exit_code)
     type(json_type), intent(inout) :: json         !< the report, which is being composed
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(model_type), intent(in) :: model      !< the model
     integer, intent(in) :: exit_code               !< exit code of the program
 
     call json%add('program', program_name)
     call json%add('version', version)
     call json%add('revision', revision)
     call json%add('compiler', compiler())
-    if (allocated(mechanism%title)) call json%add('title', mechanism%title)
+    if (allocated(model%mechanism%title)) call json%add('title', model%mechanism%title)
     call json%add('exit_code', exit_code)
   end subroutine add_outcome
 
@@ -119,19 +119,19 @@ contains
   end subroutine add_errors
 
   !> Add the structural vectors and the blocks.
-  subroutine add_structure(json, mechanism, plan)
+  subroutine add_structure(json, model, plan)
     type(json_type), intent(inout) :: json         !< the report, which is being composed
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(model_type), intent(in) :: model      !< the model
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     integer :: b, i
 
     call json%add('links', plan%n_links)
     call json%add('coordinates', plan%n_coordinates)
     call add_integers(json, 'independent', plan%independent)
-    call add_integers(json, 'nrg', mechanism%vectors%nrg)
-    call add_integers(json, 'nws', mechanism%vectors%nws)
-    call add_integers(json, 'rdw', mechanism%vectors%rdw)
-    call add_integers(json, 'nrw', mechanism%vectors%nrw)
+    call add_integers(json, 'nrg', model%problem%partition%vectors%nrg)
+    call add_integers(json, 'nws', model%problem%partition%vectors%nws)
+    call add_integers(json, 'rdw', model%problem%partition%vectors%rdw)
+    call add_integers(json, 'nrw', model%problem%partition%vectors%nrw)
     call json%begin_array('blocks')
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))

@@ -1,9 +1,9 @@
-!> Settings of a run for the times of outputs, the solver and the results.
-module mech9_settings
+!> The request: the times of the results, their accuracy, and where they go.
+module mech9_request
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: time_grid_type, solver_settings_type, output_settings_type
+  public :: request_type, time_grid_type, solver_settings_type, output_settings_type
 
   !> Results are given at start + (end - start) i/intervals, i = 0 .. intervals.
   type :: time_grid_type
@@ -39,6 +39,13 @@ module mech9_settings
     procedure :: recorded
   end type output_settings_type
 
+  !> The results of a problem that the user wants.
+  type :: request_type
+    type(time_grid_type) :: time
+    type(solver_settings_type) :: solver
+    type(output_settings_type) :: output
+  end type request_type
+
 contains
 
   !> Whether each coordinate is recorded: all are, unless some are listed.
@@ -65,4 +72,4 @@ contains
       time = self%start + (self%end - self%start)*i/real(self%intervals, wp)
     end if
   end function time
-end module mech9_settings
+end module mech9_request

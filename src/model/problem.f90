@@ -1,0 +1,23 @@
+!> The problem that is posed on a mechanism: the motion of its driven coordinates, and the start of the others.
+module mech9_problem
+  use mech9_kinds, only: wp
+  use mech9_partition, only: partition_type
+  use mech9_drive, only: drive_slot_type
+  implicit none
+  private
+  public :: problem_type, initial_type
+
+  !> Coordinates and rates at the start.
+  type :: initial_type
+    real(wp), allocatable :: position(:)         !< (M) values of independent, guesses of dependent coordinates [rad, m]
+    real(wp), allocatable :: velocity(:)         !< (M) of independent coordinates [rad/s, m/s]
+    logical, allocatable :: position_given(:)    !< (M) the data file gives the position
+    logical, allocatable :: velocity_given(:)    !< (M) the data file gives the velocity
+  end type initial_type
+
+  type :: problem_type
+    type(partition_type) :: partition                 !< driven, free and dependent coordinates
+    type(drive_slot_type), allocatable :: drives(:)   !< in the order of the data file
+    type(initial_type) :: initial
+  end type problem_type
+end module mech9_problem
