@@ -12,6 +12,7 @@ module mech9_motion_system
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_integrated_vector, only: length_of_vector, pack_state, pack_rates, unpack_state
   use mech9_block_solver, only: newton_outcome_type, close_block
   use mech9_ode_system, only: ode_system_type
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
@@ -81,7 +82,7 @@ contains
   pure integer function size_of_vector(self)
     class(motion_system_type), intent(in) :: self   !< the motion system
 
-    size_of_vector = self%plan%n_coordinates + size(self%plan%independent)
+    size_of_vector = length_of_vector(self%plan)
   end function size_of_vector
 
   !> The vector of the present state.
@@ -89,8 +90,7 @@ contains
     class(motion_system_type), intent(in) :: self   !< the motion system
     real(wp) :: y(self%plan%n_coordinates + size(self%plan%independent))
 
-    y(:self%plan%n_coordinates) = self%state%q
-    y(self%plan%n_coordinates + 1:) = self%state%dq(self%plan%independent)
+    call pack_state(self%plan, self%state, y)
   end function vector
 
   !> Derivatives of the vector. A trial state in a singular position fails with exit_singular.
@@ -100,9 +100,8 @@ contains
     real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the independent ones
     real(wp), intent(out) :: ydot(:)                    !< its rate of change
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    integer :: i, m
 
-    call take(self, t, y)
+    call unpack_state(self%plan, t, y, self%state)
     call place_all(self%plan, self%state, err)
     if (allocated(err)) return
     call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
@@ -112,13 +111,7 @@ contains
       return
     end if
     if (self%just_settled) call remember(self)
-    m = self%plan%n_coordinates
-    do i = 1, m
-      ydot(i) = self%state%dq(i)
-    end do
-    do i = 1, size(self%work%accelerations)
-      ydot(m + i) = self%work%accelerations(i)
-    end do
+    call pack_rates(self%plan, self%state, self%work%accelerations, ydot)
   end subroutine rate
 
   !> Keep the accelerations of the first evaluation after an accepted step.
@@ -131,32 +124,15 @@ contains
     call self%work%expectation%remember(self%state%t, self%work%jacobian%b, self%state%ddq)
   end subroutine remember
 
-  !> Put the positions and independent rates of a vector into the state.
-  pure subroutine take(self, t, y)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    real(wp), intent(in) :: t                          !< time [s]
-    real(wp), intent(in) :: y(:)                       !< the vector: all coordinates, and the rates of the independent ones
-    integer :: i, m
-
-    self%state%t = t
-    m = self%plan%n_coordinates
-    do i = 1, m
-      self%state%q(i) = y(i)
-    end do
-    do i = 1, size(self%plan%independent)
-      self%state%dq(self%plan%independent(i)) = y(m + i)
-    end do
-  end subroutine take
-
   !> Close the chains after an accepted step, and put the closed positions into the vector.
   subroutine settle(self, t, y, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time of the end of the step [s]
     real(wp), intent(inout) :: y(:)   !< the vector: all coordinates, and the rates of the independent ones; closed on return
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    integer :: failed, i
+    integer :: failed
 
-    call take(self, t, y)
+    call unpack_state(self%plan, t, y, self%state)
     call close_chains(self, trusted_closing, failed, err)
     if (allocated(err)) return
     if (failed > 0) then
@@ -165,9 +141,7 @@ contains
       err%failure%t = t
       return
     end if
-    do i = 1, self%plan%n_coordinates
-      y(i) = self%state%q(i)
-    end do
+    call pack_state(self%plan, self%state, y)
     self%just_settled = .true.
   end subroutine settle
 
@@ -202,7 +176,7 @@ contains
     integer :: failed
 
     ok = .false.
-    call take(self, t, y)
+    call unpack_state(self%plan, t, y, self%state)
     call close_chains(self, trusted_between_steps, failed, err)
     if (allocated(err) .or. failed > 0) return
     call self%present(err)
@@ -216,7 +190,7 @@ contains
     real(wp), intent(in) :: y(:)                        !< as settled
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call take(self, t, y)
+    call unpack_state(self%plan, t, y, self%state)
     call place_all(self%plan, self%state, err)
     if (.not. allocated(err)) call self%present(err)
   end subroutine move_to

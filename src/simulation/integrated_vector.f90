@@ -1,0 +1,69 @@
+!> The vector that is integrated: all coordinates, and after them the rates of the independent ones.
+module mech9_integrated_vector
+  use mech9_kinds, only: wp
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  implicit none
+  private
+  public :: length_of_vector, pack_state, pack_rates, unpack_state
+
+contains
+
+  !> The length of the vector.
+  pure integer function length_of_vector(plan)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+
+    length_of_vector = plan%n_coordinates + size(plan%independent)
+  end function length_of_vector
+
+  !> The vector of a state.
+  pure subroutine pack_state(plan, state, y)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< coordinates, and rates of the independent ones
+    real(wp), intent(out) :: y(:)           !< the vector
+    integer :: i, m
+
+    m = plan%n_coordinates
+    do i = 1, m
+      y(i) = state%q(i)
+    end do
+    do i = 1, size(plan%independent)
+      y(m + i) = state%dq(plan%independent(i))
+    end do
+  end subroutine pack_state
+
+  !> The derivative of the vector in time.
+  pure subroutine pack_rates(plan, state, accelerations, ydot)
+    type(plan_type), intent(in) :: plan          !< the plan of the mechanism
+    type(state_type), intent(in) :: state        !< with the rates of all coordinates
+    real(wp), intent(in) :: accelerations(:)     !< of the independent coordinates [rad/s^2, m/s^2]
+    real(wp), intent(out) :: ydot(:)             !< the derivative
+    integer :: i, m
+
+    m = plan%n_coordinates
+    do i = 1, m
+      ydot(i) = state%dq(i)
+    end do
+    do i = 1, size(accelerations)
+      ydot(m + i) = accelerations(i)
+    end do
+  end subroutine pack_rates
+
+  !> Put time, coordinates and independent rates of a vector into a state.
+  pure subroutine unpack_state(plan, t, y, state)
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    real(wp), intent(in) :: t                  !< time [s]
+    real(wp), intent(in) :: y(:)               !< the vector
+    type(state_type), intent(inout) :: state   !< gets them
+    integer :: i, m
+
+    state%t = t
+    m = plan%n_coordinates
+    do i = 1, m
+      state%q(i) = y(i)
+    end do
+    do i = 1, size(plan%independent)
+      state%dq(plan%independent(i)) = y(m + i)
+    end do
+  end subroutine unpack_state
+end module mech9_integrated_vector
