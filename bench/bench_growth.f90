@@ -1,4 +1,4 @@
-!> How time and memory grow with the number of links: ladders of four-bars, and open chains.
+!> Time and memory against the number of links: ladders of four-bars, and open chains.
 !>
 !> usage: bench_growth ladder|chain N FILE
 !> Writes the data file of the mechanism, reads it again, and prints one row: N, links, seconds to read, seconds to plan,

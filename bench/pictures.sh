@@ -2,7 +2,7 @@
 
 colours=('#0072b2' '#d55e00' '#009e73' '#cc79a7' '#e69f00' '#56b4e9' '#000000')
 
-# What all of them have in common: picture, height.
+# The beginning that all of them have in common: picture, height.
 begin_picture() {
   cat <<EOT
 set encoding utf8

@@ -1,4 +1,4 @@
-# What `cmake --install` puts where, and the command mech9-link for the build and the install tree.
+# The files that `cmake --install` puts into place, and the command mech9-link for the build and the install tree.
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/mech9")

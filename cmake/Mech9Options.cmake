@@ -1,4 +1,4 @@
-# What can be chosen when configuring, and the compiler flags of each kind of build.
+# Options to choose when configuring, and the compiler flags of each kind of build.
 # The user's own flags (FFLAGS, CMAKE_Fortran_FLAGS) are left as they are and come first.
 option(MECH9_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(MECH9_BUILD_BENCH "build the benchmarks of bench/run" OFF)
@@ -36,8 +36,8 @@ if(MECH9_NATIVE)
   add_compile_options(-march=native)
 endif()
 
-# Across files: the library carries both kinds of code (fat objects). mech9k and mech9d are linked with the one,
-# which takes seconds; unit tests and users' programs with the other, at once.
+# Optimisation across files: the library carries both kinds of code (fat objects). mech9k and mech9d are linked with the one,
+# in some seconds; unit tests and users' programs with the other, at once.
 if(MECH9_LTO AND CMAKE_BUILD_TYPE STREQUAL "Release")
   set(MECH9_LTO_COMPILE -flto -ffat-lto-objects)
   # in one piece: as fast as several in parallel, for which the compiler would want make

@@ -43,7 +43,7 @@ contains
 
     if (dynamics%open_chains) then
       call move_open_chains(mechanism, plan, dynamics, state, work, found, err)
-      ! where a coordinate has no inertia, the coefficients show its number
+      ! the coefficients show the number of a coordinate without inertia
       if (allocated(err) .or. found) return
     end if
     call find_equations(mechanism, plan, dynamics, state, work, err)

@@ -106,7 +106,7 @@ contains
   !> of the two others. All principal minors of such a matrix are zero or positive.
   pure subroutine judge_tensor(inertia, problem, at)
     real(wp), intent(in) :: inertia(3, 3)  !< tensor of inertia about the mass centre, in the axes of the link [kg m^2]
-    character(len=:), allocatable, intent(out) :: problem  !< what is wrong, in words; not allocated where nothing is
+    character(len=:), allocatable, intent(out) :: problem  !< the error in words; not allocated where there is none
     integer, intent(out) :: at                             !< position of the wrong number in the list of the data file
     real(wp) :: s(3, 3), scale
     integer :: i

@@ -13,7 +13,7 @@ module mech9_grammar
     character(len=9) :: name
     logical :: repeats           !< may stand more than once
     character(len=10) :: key     !< the name whose value tells its groups apart; empty: none does
-    character(len=6) :: program  !< which program uses it: both, mech9k or mech9d
+    character(len=6) :: program  !< program that uses it: both, mech9k or mech9d
     character(len=120) :: help
   end type group_row_type
 
@@ -35,7 +35,7 @@ module mech9_grammar
     character(len=120) :: help
     character(len=44) :: example  !< a value as it would be written
     logical :: seldom = .false.   !< the conversation asks for it only on request
-    character(len=6) :: program = 'both'   !< which program uses it; the conversation of the other one does not ask for it
+    character(len=6) :: program = 'both'   !< program that uses it; the conversation of the other one does not ask for it
   end type item_row_type
 
   integer, parameter :: unlimited = huge(1)

@@ -43,7 +43,7 @@ contains
     integer, intent(out) :: at                            !< number of the first byte after the point
     integer, intent(in) :: source                         !< number of the setting as a source, for spans
     type(span_type), intent(out) :: span                  !< place of the name of the group in the setting
-    integer, intent(out) :: occurrence                    !< which group of that name, from 1; 0: not given
+    integer, intent(out) :: occurrence                    !< place among the groups of that name, from 1; 0: not given
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(subscript_type), allocatable :: subscripts(:)
     logical :: ok
@@ -126,7 +126,7 @@ contains
     type(document_type), intent(inout) :: document        !< the data file as groups and items
     character(len=*), intent(in) :: text                  !< the whole setting
     type(span_type), intent(in) :: span                   !< place of the name of the group in the setting
-    integer, intent(in) :: occurrence                     !< which group of that name, from 1; 0: not given
+    integer, intent(in) :: occurrence                     !< place among the groups of that name, from 1; 0: not given
     integer, intent(out) :: number                        !< position of the group in the document; 0 where an error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     character(len=:), allocatable :: name

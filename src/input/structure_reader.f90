@@ -244,7 +244,7 @@ contains
   end subroutine compare_independent
 
 
-  !> Where the structure does not come from the pairs, they must agree with it, one for each coordinate.
+  !> The pairs must agree with a structure that does not come from them, one for each coordinate.
   pure subroutine compare_with_pairs(document, data, structure, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups

@@ -106,7 +106,7 @@ contains
   pure subroutine has_link(self, link, procedure, exists)
     class(force_sum_type), intent(inout) :: self   !< the force sum
     integer, intent(in) :: link                    !< its number
-    character(len=*), intent(in) :: procedure      !< that was given the number
+    character(len=*), intent(in) :: procedure      !< name of the procedure to which the number was given
     logical, intent(out) :: exists                 !< there is a link of this number
 
     exists = link >= 1 .and. link <= size(self%force, 2)

@@ -120,7 +120,7 @@ contains
     real(wp), intent(in) :: b       !< the exponent
     real(wp) :: first, second
 
-    ! where the factor is zero the power may be infinite, and their product not a number: x**1.0 at 0
+    ! the power may be infinite where the factor is zero, and their product not a number: x**1.0 at 0
     first = 0.0_wp
     second = 0.0_wp
     if (abs(b) > 0.0_wp) first = b*a%value**(b - 1.0_wp)

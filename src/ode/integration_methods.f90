@@ -54,7 +54,7 @@ contains
   !> Part of the tolerances by which the steps of a method are judged; larger where round-off would decide otherwise.
   pure real(wp) function tolerance_share(method, relative_tolerance)
     type(integration_method_type), intent(in) :: method   !< the method
-    real(wp), intent(in) :: relative_tolerance            !< that the user gave
+    real(wp), intent(in) :: relative_tolerance            !< as the user gave it
     real(wp), parameter :: least = 1.0e-14_wp   ! relative tolerance at which an error still stands above round-off
 
     tolerance_share = max(method%share, min(1.0_wp, least/relative_tolerance))

@@ -148,7 +148,7 @@ contains
   subroutine step(self, t_stop, t, y, err, farthest)
     class(integrator_type), intent(inout) :: self       !< the integrator
     real(wp), intent(in) :: t_stop                      !< may lie before the start [s]
-    real(wp), intent(inout) :: t                        !< where it ends [s]
+    real(wp), intent(inout) :: t                        !< end of the step [s]
     real(wp), intent(inout) :: y(:)                     !< values there
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), intent(in), optional :: farthest          !< in the same direction [s]
@@ -183,7 +183,7 @@ contains
   !> Count the steps to each stop. Fails when there were too many.
   subroutine count_steps(self, t_stop, err)
     class(integrator_type), intent(inout) :: self       !< the integrator
-    real(wp), intent(in) :: t_stop                      !< where the steps are to end [s]
+    real(wp), intent(in) :: t_stop                      !< time at which the steps end [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (abs(t_stop - self%t_stop) > 0.0_wp) then
@@ -201,7 +201,7 @@ contains
   !> Make one accepted step. A step that the system refuses is made again, shorter.
   subroutine take_step(self, t_last, err)
     class(integrator_type), intent(inout) :: self       !< the integrator
-    real(wp), intent(in) :: t_last                      !< where the step ends at the latest [s]
+    real(wp), intent(in) :: t_last                      !< latest end of the step [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: t_stop, t_new, reach
     integer :: outcome, trials
@@ -253,7 +253,7 @@ contains
   !> remain, because the methods need many steps to recover from a very short one.
   real(wp) function next_stop(self, t_stop)
     class(integrator_type), intent(inout) :: self   !< the integrator
-    real(wp), intent(in) :: t_stop                  !< where the steps are to end, from the origin [s]
+    real(wp), intent(in) :: t_stop                  !< time at which the steps end, from the origin [s]
     real(wp) :: h, rest, half, enough
 
     next_stop = t_stop

@@ -43,7 +43,7 @@ module mech9_stepper
     subroutine advance_interface(self, t_stop, t, y, outcome)
       import :: stepper_type, wp
       class(stepper_type), intent(inout) :: self   !< the method at work
-      real(wp), intent(in) :: t_stop               !< where the step ends at the latest, on either side of the last step's end [s]
+      real(wp), intent(in) :: t_stop               !< latest end of the step, on either side of the last step's end [s]
       real(wp), intent(out) :: t                   !< end of the step [s]
       real(wp), intent(out) :: y(:)                !< values there
       integer, intent(out) :: outcome              !< `stepped`, or why it failed
@@ -72,7 +72,7 @@ module mech9_stepper
     subroutine restart_interface(self, t, y, first_step, outcome)
       import :: stepper_type, wp
       class(stepper_type), intent(inout) :: self   !< the method at work
-      real(wp), intent(in) :: t                    !< where it begins [s]
+      real(wp), intent(in) :: t                    !< time of the beginning [s]
       real(wp), intent(in) :: y(:)                 !< values there
       real(wp), intent(in) :: first_step           !< length of the first step with its sign; 0: to be found [s]
       integer, intent(out) :: outcome              !< `stepped`, or why it failed

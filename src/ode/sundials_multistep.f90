@@ -89,7 +89,7 @@ contains
     flag = CV_MEM_FAIL
     absolute => self%new_vector(absolute_tolerance)
     if (.not. associated(absolute)) return
-    flag = FCVodeSVtolerances(self%memory, relative_tolerance, absolute)   ! which keeps a copy
+    flag = FCVodeSVtolerances(self%memory, relative_tolerance, absolute)   ! SUNDIALS keeps a copy
     call FN_VDestroy(absolute)
   end subroutine set_tolerances
 
@@ -153,7 +153,7 @@ contains
   !> A step against the direction of the last one needs a restart.
   subroutine advance(self, t_stop, t, y, outcome)
     class(multistep_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t_stop                 !< where the step ends at the latest [s]
+    real(wp), intent(in) :: t_stop                 !< latest end of the step [s]
     real(wp), intent(out) :: t                     !< end of the step [s]
     real(wp), intent(out) :: y(:)                  !< values there
     integer, intent(out) :: outcome                !< `stepped`, or why it failed
@@ -234,7 +234,7 @@ contains
   !> The method falls back to the first order, as all multistep methods must.
   subroutine restart(self, t, y, first_step, outcome)
     class(multistep_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t                      !< where it begins [s]
+    real(wp), intent(in) :: t                      !< time of the beginning [s]
     real(wp), intent(in) :: y(:)                   !< values there
     real(wp), intent(in) :: first_step             !< its length with its sign; 0: to be found [s]
     integer, intent(out) :: outcome                !< `stepped`, or why it failed

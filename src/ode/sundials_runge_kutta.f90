@@ -82,7 +82,7 @@ contains
     flag = ARK_MEM_FAIL
     absolute => self%new_vector(absolute_tolerance)
     if (.not. associated(absolute)) return
-    flag = FERKStepSVtolerances(self%memory, relative_tolerance, absolute)   ! which keeps a copy
+    flag = FERKStepSVtolerances(self%memory, relative_tolerance, absolute)   ! SUNDIALS keeps a copy
     call FN_VDestroy(absolute)
   end subroutine set_tolerances
 
@@ -124,7 +124,7 @@ contains
                                         int(table%embedded_order, c_int), c, a, b, d)
     flag = ARK_MEM_FAIL
     if (.not. c_associated(handed)) return
-    flag = FERKStepSetTable(self%memory, handed)   ! which keeps a copy
+    flag = FERKStepSetTable(self%memory, handed)   ! SUNDIALS keeps a copy
     call FARKodeButcherTable_Free(handed)
   end subroutine set_own_table
 
@@ -172,7 +172,7 @@ contains
   !> A step against the direction of the last one is prepared by turn_back.
   subroutine advance(self, t_stop, t, y, outcome)
     class(runge_kutta_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t_stop                   !< where the step ends at the latest [s]
+    real(wp), intent(in) :: t_stop                   !< latest end of the step [s]
     real(wp), intent(out) :: t                       !< end of the step [s]
     real(wp), intent(out) :: y(:)                    !< values there
     integer, intent(out) :: outcome                  !< `stepped`, or why it failed
@@ -194,7 +194,7 @@ contains
   !> way to the stop at most; as it can only become smaller, it needs no stop.
   subroutine turn_back(self, t_stop, flag)
     class(runge_kutta_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t_stop                   !< where the step ends at the latest [s]
+    real(wp), intent(in) :: t_stop                   !< latest end of the step [s]
     integer(c_int), intent(out) :: flag              !< 0 when all is well
     real(wp) :: half
 
@@ -249,7 +249,7 @@ contains
   !> The next step starts from the given values.
   subroutine restart(self, t, y, first_step, outcome)
     class(runge_kutta_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t                        !< where it begins [s]
+    real(wp), intent(in) :: t                        !< time of the beginning [s]
     real(wp), intent(in) :: y(:)                     !< values there
     real(wp), intent(in) :: first_step               !< its length with its sign; 0: to be found [s]
     integer, intent(out) :: outcome                  !< `stepped`, or why it failed

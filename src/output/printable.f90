@@ -44,7 +44,7 @@ contains
   pure integer function escaped_length(text, letters, escapes) result(length)
     character(len=*), intent(in) :: text        !< any bytes
     character(len=*), intent(in) :: letters     !< the letters that are replaced
-    character(len=*), intent(in) :: escapes(:)  !< what replaces each of them, without trailing blanks
+    character(len=*), intent(in) :: escapes(:)  !< replacement of each of them, without trailing blanks
     integer :: i, k
 
     length = len(text)
@@ -58,7 +58,7 @@ contains
   pure function with_escapes(text, letters, escapes) result(safe)
     character(len=*), intent(in) :: text        !< any bytes
     character(len=*), intent(in) :: letters     !< the letters that are replaced
-    character(len=*), intent(in) :: escapes(:)  !< what replaces each of them, padded with blanks
+    character(len=*), intent(in) :: escapes(:)  !< replacement of each of them, padded with blanks
     character(len=:), allocatable :: safe
     integer :: i, k, n, length
 

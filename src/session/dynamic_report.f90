@@ -126,7 +126,7 @@ contains
     type(model_type), intent(in) :: model                 !< the model
     type(plan_type), intent(in) :: plan                       !< at the start
     character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
-    type(diagnostics_type), intent(in) :: diagnostics         !< what the program is going to say and answer
+    type(diagnostics_type), intent(in) :: diagnostics         !< messages and exit code of the run
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed

@@ -91,7 +91,7 @@ contains
     type(model_type), intent(in) :: model             !< the model
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
-    type(diagnostics_type), intent(in) :: diagnostics     !< what the program is going to say and answer
+    type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed

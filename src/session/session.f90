@@ -138,7 +138,7 @@ contains
   !> The files that are read: the data file, and those of drives.
   pure subroutine list_inputs(path, document, inputs)
     character(len=*), intent(in) :: path                       !< of the data file
-    type(document_type), intent(in) :: document                !< what stands in it
+    type(document_type), intent(in) :: document                !< its groups and items
     type(string_type), allocatable, intent(out) :: inputs(:)   !< paths of the files that are read
     type(string_type), allocatable :: of_drives(:)
     integer :: i

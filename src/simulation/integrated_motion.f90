@@ -102,7 +102,7 @@ contains
   !> Whether there is a failure. One that has nothing to do with the choice of coordinates is handed on.
   logical function gives_up(failure, err)
     type(error_type), allocatable, intent(inout) :: failure   !< of trying other coordinates
-    type(error_type), allocatable, intent(inout) :: err       !< that ends the motion
+    type(error_type), allocatable, intent(inout) :: err       !< the failure that ends the motion
 
     gives_up = allocated(failure)
     if (.not. gives_up) return

@@ -119,7 +119,7 @@ contains
     class(motion_system_type), intent(inout) :: self   !< the motion system
 
     self%just_settled = .false.
-    ! where all coordinates are independent there are no accelerations to expect
+    ! there are no accelerations to expect where all coordinates are independent
     if (size(self%plan%closures) == 0) return
     call self%work%expectation%remember(self%state%t, self%work%jacobian%b, self%state%ddq)
   end subroutine remember
@@ -227,8 +227,8 @@ contains
     end do
   end function conditioning
 
-  !> Of the determinants of the blocks' Jacobians at the last evaluation; those of a branch change in singular positions
-  !> only.
+  !> The signs of the determinants of the blocks' Jacobians at the last evaluation; those of a branch change in singular
+  !> positions only.
   subroutine signs(self, found)
     class(motion_system_type), intent(inout) :: self   !< the motion system
     integer, intent(out) :: found(:)                   !< (blocks)

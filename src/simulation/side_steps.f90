@@ -14,7 +14,7 @@ module mech9_side_steps
     private
     type(integrator_type) :: integrator
     logical :: begun = .false.
-    real(wp), public :: t = 0.0_wp                    !< where they led [s]
+    real(wp), public :: t = 0.0_wp                    !< end of the last side step [s]
     real(wp), allocatable, public :: y(:)             !< there
   contains
     procedure :: reach

@@ -20,7 +20,7 @@ module mech9_simulation
 
   !> The work that a motion took since its start. Driven motions have no evaluations, free ones no halvings and crossings.
   type :: simulation_statistics_type
-    integer(long) :: positions = 0           !< that were worked out, the start included
+    integer(long) :: positions = 0           !< positions that were worked out, the start included
     integer(long) :: steps = 0               !< of the integrator, or of branch stepping
     integer(long) :: evaluations = 0         !< of the accelerations by an integrator
     integer(long) :: newton_iterations = 0   !< of all blocks
@@ -37,7 +37,7 @@ module mech9_simulation
   !> A motion. Times are given in order, from the mechanism's start in the direction of its end. It must not be copied.
   type, abstract :: simulation_type
     type(model_type), pointer :: model => null()   !< constant: the mechanism, its problem, and the request for results
-    type(requested_type) :: requested              !< what is worked out of the motion
+    type(requested_type) :: requested              !< the part of the motion that is worked out
     logical :: with_energies = .false.             !< the energies are worked out at each time
     logical :: with_conditioning = .false.         !< the conditioning is worked out at each time
     logical :: started = .false.                   !< the position at the start is worked out
@@ -50,7 +50,7 @@ module mech9_simulation
     real(wp) :: energy_at_start = 0.0_wp           !< sum of both energies, with_energies [J]
     real(wp) :: largest_energy_change = 0.0_wp     !< of this sum, against the start, with_energies [J]
     type(coordinate_change_type), allocatable :: events(:)   !< changes of the independent coordinates so far
-    integer(long), private :: positions = 0        !< that were worked out
+    integer(long), private :: positions = 0        !< positions that were worked out
     real(wp), private :: direction = 1.0_wp        !< 1, or -1 where time runs backwards
     class(interruption_type), allocatable, private :: interruption
   contains

@@ -198,7 +198,7 @@ contains
   end subroutine check_symmetry
 
   !> Links of each coordinate, with findings for numbers out of range, repeated or missing.
-  !> Where C is not symmetric, a number counts as present but not as repeated, so that one error makes one finding.
+  !> A number counts as present but not as repeated where C is not symmetric, so that one error makes one finding.
   pure subroutine take_links(c, links, list)
     integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
     integer, intent(inout) :: links(:, :)            !< (2,M) zeros on entry

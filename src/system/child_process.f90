@@ -12,7 +12,7 @@ module mech9_child_process
   private
   public :: child_outcome_type, run_child
 
-  !> How a program ended.
+  !> The end of a program.
   type :: child_outcome_type
     logical :: found = .false.                      !< there is a program of that name, and it was started
     integer :: code = 0                             !< its exit code; 128 + the signal's number where one ended it
@@ -115,7 +115,7 @@ contains
     character(len=*), intent(in) :: input               !< contents of its standard input
     type(child_outcome_type), intent(out) :: outcome    !< how the program ended
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    character(len=*), intent(in), optional :: folder    !< where it works; here unless given
+    character(len=*), intent(in), optional :: folder    !< its working folder; the present one unless given
     logical, intent(in), optional :: drop_output        !< nobody sees its standard output
     integer(c_int) :: from, to, drop, failure, process, status, ignored
 
@@ -177,7 +177,7 @@ contains
     integer(c_int), intent(in) :: drop                 !< its standard output
     integer(c_int), intent(in) :: failure              !< file that gets the number of the error where it cannot be started
     integer(c_int), intent(out) :: process             !< negative: it could not be made
-    character(len=*), intent(in), optional :: folder   !< where it works; here unless given
+    character(len=*), intent(in), optional :: folder   !< its working folder; the present one unless given
     character(kind=c_char, len=:), allocatable, target :: letters
     character(len=:), allocatable :: place
     type(c_ptr), allocatable :: list(:)

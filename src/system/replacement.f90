@@ -18,7 +18,7 @@ module mech9_replacement
 
   !> A file that is being written and will replace another one.
   type :: replacement_type
-    character(len=:), allocatable :: path            !< where the file is to be written
+    character(len=:), allocatable :: path            !< path at which the file is to be written
     character(len=:), allocatable, private :: name   !< path of the file that it becomes; empty: it is that file
     integer, private :: permissions = -1             !< of the file that is there; -1: none
   contains

@@ -73,7 +73,7 @@ contains
   !> The place to which a path leads, through all folders and links.
   subroutine find_place(path, place)
     character(len=*), intent(in) :: path          !< any name of a file
-    type(file_place_type), intent(out) :: place   !< where it leads to; `exists` false and an empty path where it leads nowhere
+    type(file_place_type), intent(out) :: place   !< the file that it names; `exists` false and an empty path where it names none
 
     place%path = ''
     if (path == '' .or. index(path, c_null_char) > 0) return
@@ -88,7 +88,7 @@ contains
   !> The place of an open file, such as standard output.
   subroutine find_open_place(descriptor, place)
     integer, intent(in) :: descriptor             !< its number
-    type(file_place_type), intent(out) :: place   !< where it leads to; without a path
+    type(file_place_type), intent(out) :: place   !< the file that it names; without a path
 
     place%path = ''
     call ask(int(descriptor, c_int), '', empty_path, place)

@@ -11,7 +11,7 @@ module mech9_system_error
   integer(c_int), parameter :: no_such_file = 2
 
   interface
-    ! where the C library of Linux keeps errno for this thread
+    ! the place at which the C library of Linux keeps errno for this thread
     type(c_ptr) function c_errno_location() bind(c, name='__errno_location')
       import :: c_ptr
     end function c_errno_location

@@ -11,7 +11,7 @@ module mech9_choice_words
 
 contains
 
-  !> What is wrong with a choice of independent coordinates, and what would serve.
+  !> The error in a choice of independent coordinates, and the choices that would serve.
   pure subroutine explain_choice(failure, text)
     type(failure_type), intent(in) :: failure           !< of the kind failure_wrong_choice
     character(len=:), allocatable, intent(out) :: text  !< the message

@@ -88,7 +88,7 @@ contains
 
   !> Say where the integration stood that a failure ended, before the message of that.
   pure subroutine explain_stop(stopped, text)
-    type(integration_stop_type), intent(in) :: stopped    !< where it stood
+    type(integration_stop_type), intent(in) :: stopped    !< the times at which it stood and failed
     character(len=:), allocatable, intent(inout) :: text  !< the message
 
     text = stands(stopped%t)//' at t = '//to_text(stopped%t_failed, 10)//' s: '//text
@@ -96,14 +96,14 @@ contains
 
   !> Length of the beginning of a message.
   pure integer function stands_length(t) result(length)
-    real(wp), intent(in) :: t        !< where the integration stands [s]
+    real(wp), intent(in) :: t        !< end of the last step [s]
 
     length = len('the integration cannot go on from t =  s:') + len(to_text(t, 10))
   end function stands_length
 
-  !> Where the integration stands, as the beginning of a message.
+  !> The time at which the integration stands, as the beginning of a message.
   pure function stands(t) result(text)
-    real(wp), intent(in) :: t        !< where it stands [s]
+    real(wp), intent(in) :: t        !< end of the last step [s]
     character(len=stands_length(t)) :: text
 
     text = 'the integration cannot go on from t = '//to_text(t, 10)//' s:'

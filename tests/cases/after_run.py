@@ -1,4 +1,4 @@
-"""What follows a run in a conversation: the table's end, a plot, a comparison, a change and another run.
+"""The end of a conversation, after a run: the table's end, a plot, a comparison, a change and another run.
 
 usage: after_run.py MECH9K MECH9D
 

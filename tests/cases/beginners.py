@@ -1,4 +1,4 @@
-"""What --check shows of beginners' mistakes: dimensions of links, odd axes and links with their places, notes.
+"""The report of --check on beginners' mistakes: dimensions of links, odd axes and links with their places, notes.
 
 The dimensions are held against closed forms: the lengths of a four-bar that was laid out from them in any plane, and the
 lengths and twists of Denavit-Hartenberg parameters.

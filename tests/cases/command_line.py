@@ -220,7 +220,7 @@ def without_effect(s):
 
 
 def overwriting(s):
-    """What is read is not written over, by whatever name; nor one result by another."""
+    """A file that is read is not written over, by whatever name; nor is one result by another."""
     data = s.write('mine.nml', text_of(FIG1))
     os.makedirs(s.path('beside'))
     os.symlink(data, s.path('link.dat'))

@@ -137,7 +137,7 @@ def interrupted_at_a_terminal(talks):
 
 
 def transcript(said, steps):
-    """What was said to a pipe, with the answers behind their prompts, up to the saved file."""
+    """The conversation through a pipe, with the answers behind their prompts, up to the saved file."""
     answers = [answer for _, answer in steps]
     lines = []
     for line in said.splitlines():
@@ -189,7 +189,7 @@ def structure_and_start(talks):
            ('which of them', 'default'), ('Pair 1', 'quit')]
     with tempfile.TemporaryDirectory() as folder:
         talks.pipe(talks.mech9k, arm, 'too few independent coordinates', folder=folder)
-    # what is seldom about the mechanism is not asked for, but can be given by its name wherever an answer can be changed
+    # rare items of the mechanism are not asked for, but can be given by their names wherever an answer can be changed
     steps = apart + [('link 6 is not connected', 'mechanism data_tolerance = 1e-6'), ('link 6 is not connected', 'list'),
                      ('data_tolerance 1e-6', 'quit')]
     with tempfile.TemporaryDirectory() as folder:

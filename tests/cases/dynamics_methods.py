@@ -59,7 +59,7 @@ def main():
         check_multistep(checks, mech9d, name)
     ends = {method: [end_of(mech9d, method, tolerance) for tolerance in TOLERANCES]
             for method in [*ORDERS, 'adams', 'bdf']}
-    # where two methods of different kind agree best is the motion itself
+    # the motion itself is the one in which two methods of different kind agree best
     truth = ends['prince-dormand'][-1][0]
     checks.true(np.max(np.abs(truth - ends['dormand-prince'][-1][0])) < 1e-9, 'two methods end at one motion',
                 np.abs(truth - ends['dormand-prince'][-1][0]))

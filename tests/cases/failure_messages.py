@@ -293,7 +293,7 @@ def free_cases():
         ('short_step', SPRING.format(1e6, 0, 1e15, 1e15 + 1), (), INTEGRATOR,
          [f'{stops}1e15 s: the steps have become too short for time to advance. The motion becomes infinitely fast there, or comes '
           'to a position that it cannot pass; or times are so large that they should begin at 0']),
-        # what the spring does at once is more than any step can follow
+        # the spring changes the motion faster than any step can follow
         ('inaccurate_step', SPRING.format(1e100, 0, 0, 1), (), INTEGRATOR,
          [f'{stops}0 s: however short the step, its error stays too large. Look for a force that jumps or grows without limit there; '
           'or raise the tolerances']),

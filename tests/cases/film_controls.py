@@ -20,7 +20,7 @@ from mech9_cases import TREE, Checks, read_table, run, skip, text_of
 
 FRAME = 'Number(document.getElementById("frame").value)'
 SHIFT = 8
-# where the joint with a coordinate stands in the window
+# the place of the joint with a coordinate in the window
 JOINT = '''(() => {{ const box = document.querySelector('[data-joint="{}"]').getBoundingClientRect();
            return [box.x + box.width/2, box.y + box.height/2]; }})()'''
 LISTED = '''[...document.querySelectorAll("#list div")].map(row => [...row.children].map(cell => cell.textContent))'''
@@ -110,7 +110,7 @@ def check_values(page, rows):
 
 
 def check_zoom(page):
-    """What is under the mouse stays there; the bar of the scale tells the same length."""
+    """The point under the mouse stays there; the bar of the scale tells the same length."""
     browser, checks = page.browser, page.checks
     page.press('Home', '0')
     at, other = page.joint('q4'), page.joint('q6')

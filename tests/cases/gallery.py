@@ -31,7 +31,7 @@ FUNCTIONS.update(rad=np.radians, deg=np.degrees, first=lambda x: x[0],
 
 
 def names_of(table):
-    """What an expression may name: columns, with P.x spelt P_x, and points as their three components."""
+    """Names that an expression may hold: columns, with P.x spelt P_x, and points as their three components."""
     known = dict(FUNCTIONS)
     for column, values in table.items():
         known[column.replace('.', '_')] = values
@@ -93,7 +93,7 @@ def check_example(checks, example, program):
 
 
 def check_options(checks, example, program):
-    """What the README says to try: the options between backticks are understood, whatever comes of them."""
+    """The commands that the README says to try: the options between backticks are understood, whatever comes of them."""
     page = text_of(os.path.join(os.path.dirname(example.data), 'README.md'))
     tried = [text for text in re.findall(r'`(--[^`]+)`', page) if '...' not in text]
     with tempfile.TemporaryDirectory() as folder:

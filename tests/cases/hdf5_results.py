@@ -249,7 +249,7 @@ def test_events(session):
 
 
 def test_dead_point(session):
-    """What was computed up to a dead point, and the exit code."""
+    """The results up to a dead point are kept, and so is the exit code."""
     checks = session.checks
     data = os.path.join(REFERENCE, 'kinematics_fig1_driven_at_q1.nml')
     done = run(session.mech9k, data, '--table', 'run.dat', '--hdf5', 'run.h5', '--set', 'time.end=30', '--set',

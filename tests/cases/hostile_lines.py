@@ -18,7 +18,7 @@ from mech9_cases import TREE, Checks
 from terminal import Terminal, available, random_keys
 
 LINES, PER_SESSION, MOST_SESSIONS = 10000, 500, 300
-BLOCK = 4096     # what the program may have taken from its input without having asked for it
+BLOCK = 4096     # bytes that the program may have taken from its input without having asked for them
 ALLOWED = {0, 2, 3, 4, 5, 6, 7, 8, 130}
 TROUBLE = ('Backtrace', 'backtrace', 'Fortran runtime error', 'SIGSEGV', 'Sanitizer', 'runtime error:', 'signal')
 # no number is so large that a run with it would take long, or fill the disk

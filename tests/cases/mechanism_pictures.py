@@ -27,7 +27,7 @@ PX = 0.02
 
 
 def joints_of(svg):
-    """Where each joint is drawn, by the names of its coordinates."""
+    """The place of each joint in the picture, by the names of its coordinates."""
     joints = {}
     for group in svg.iter(SVG + 'g'):
         for name in group.get('data-joint', '').split():
@@ -166,7 +166,7 @@ def check_fixed_end(checks, programs, folder):
 
 
 def check_symbols(checks, programs, folder):
-    """How many of which symbols: what the pairs of each mechanism are says how many there must be."""
+    """The numbers of symbols in each picture are those of the pairs of its mechanism."""
     screw = os.path.join(folder, 'screw.nml')
     with open(screw, 'w', encoding='utf-8') as file:
         file.write(SCREW)
@@ -384,7 +384,7 @@ def polygons_of(script):
 
 
 def check_gif_script(checks, words, folder):
-    """What gnuplot is told: the frames of the whole run, one after the other, each with its own picture."""
+    """The script for gnuplot: the frames of the whole run, one after the other, each with its own picture."""
     place = os.path.join(folder, 'told')
     os.mkdir(place)
     script, fake = os.path.join(place, 'script'), os.path.join(place, 'gnuplot')

@@ -1,4 +1,4 @@
-"""What --check says of mobility, the errors of a wrong choice of independent coordinates, and --branches.
+"""The mobility that --check reports, the errors of a wrong choice of independent coordinates, and --branches.
 
 usage: mobility.py MECH9K MECH9D
 """
@@ -137,7 +137,7 @@ def reports(s):
     s.says(done.stdout, 'mobility by the count: 0 = 9 coordinates - 9', 'mobility by the rank: 1 = 9 coordinates - rank 8',
            'block 1: closed chains 1, 2, 3 together, 9 equations, rank 8', 'closed chain 2: 1 of its 3 equations redundant')
     s.checks.equal(done.stdout.count('redundant'), 1, 'the third crank alone is one too many')
-    # what moves, moves in a mechanism of any size
+    # a mechanism that moves does so in any size
     for size in (1e-12, 1.0, 1e12):
         done = s.ends(s.mech9k, DONE, SLIDER_CRANK.format(size=size), '--check')
         s.says(done.stdout, 'mobility by the rank: 1', 'could be independent instead of 1: 2, 3, 4')
@@ -158,7 +158,7 @@ def wrong_choices(s):
     done = s.ends(s.mech9k, STRUCTURE, ROD.format(spin=8), '--check')
     s.says(done.stderr, 'the mobility is 2', 'take 1 of the coordinates 1, 8 off',
            '1 more of the coordinates 2, 3, 4, 5, 6, 7 must be independent')
-    # where the choice is wrong it is told besides the drives that it leaves out, and before them
+    # a wrong choice is told before the drives that it leaves out
     done = s.ends(s.mech9k, STRUCTURE, four_bar('1, 2', drives=still.format(1)), '--check')
     s.says(done.stderr, 'the mobility is 1', 'take 1 of the coordinates 1, 2 off', 'coordinate 2 has no drive')
     s.checks.true(done.stderr.index('mobility') < done.stderr.index('no drive'), 'the choice before the drives', done.stderr)

@@ -1,4 +1,4 @@
-"""Where the system has no memory left, a program says so in one line and ends with code 8, wherever that happens; a small
+"""A program to which the system gives no more memory says so in one line and ends with code 8, wherever that happens; a small
 stack is enough for a large mechanism.
 
 usage: out_of_memory.py MECH9K MECH9D PROGRAM_D    PROGRAM_D: mech9d with a user's force
@@ -64,7 +64,7 @@ def check_between(checks, why, program, words):
     for i in range(1, LIMITS):
         limit = least + (enough - least) * i // LIMITS
         done = run([program, *words], limit)
-        if done.returncode == DONE:   # how much is enough depends on where the system puts it
+        if done.returncode == DONE:   # the memory that is enough depends on where the system puts it
             continue
         refused += 1
         checks.equal(done.returncode, FILE, f'{why}, {limit // 1024} KiB: exit code; {done.stderr[:400]}')

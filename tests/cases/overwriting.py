@@ -79,7 +79,7 @@ def inputs(checks, program):
         folder.refuses('a table behind the data', 'mine.nml', names=('mine.nml',), stdout=file)
         folder.refuses('an answer behind the data', 'mine.nml', '--check', names=('mine.nml',), stdout=file)
         folder.does('nothing on standard output', 'mine.nml', '--table', 'a.dat', stdout=file)
-    # what is made beside a result
+    # files that are made beside a result
     for name, words in (('a.gp', ('--plot', 'a.svg:q1')), ('a.dot', ('--graph', 'a.svg')),
                         ('a.xdmf', ('--hdf5', 'a.h5', '--set', 'output.poses=T')), ('a.svg', ('--plot', 'q1')),
                         ('a.svg', ('--sketch', 'a.svg', '--check')), ('a.html', ('--animate', 'a.html'))):

@@ -54,7 +54,7 @@ def test_manual(name, program):
 
 
 def completed(name, words, folder):
-    """What bash is offered for the last of the words, which it cut at each `=`."""
+    """The completions offered to bash for the last of the words, which it cut at each `=`."""
     quoted = ' '.join("'" + word.replace("'", "'\\''") + "'" for word in [name, *words])
     script = (f'compopt() {{ :; }}\nsource "{FOLDER}/{name}.bash"\nCOMP_WORDS=({quoted})\n'
               f'COMP_CWORD={len(words)}\n_{name}\nprintf "%s\\n" "${{COMPREPLY[@]}}"\n')

@@ -1,4 +1,4 @@
-"""What --plan says of the motions that a closed chain spans: the directions that it turns about and slides along, in the
+"""The motions that a closed chain spans, as --plan shows them: the directions that it turns about and slides along, in the
 link that carries it.
 
 usage: plan_directions.py MECH9K

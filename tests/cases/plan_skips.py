@@ -1,4 +1,4 @@
-"""What --plan says is left out, and that leaving it out changes no result.
+"""Parts that --plan tells to be left out. Leaving them out changes no result.
 
 Compares the program with itself: one mechanism in two planes, and in planar and spatial arithmetic.
 

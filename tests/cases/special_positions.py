@@ -16,7 +16,7 @@ import numpy as np
 
 from mech9_cases import Checks, read_table, run, text_of
 
-# What is promised of limits; the program does a thousand times better.
+# The promised accuracy of limits; the program does a thousand times better.
 LIMIT = 1e-9
 # Ground, crank, coupler and rocker of the four-bar whose conditioning is looked at.
 CONDITIONED = (0.4, 0.15, 0.35, 0.3)
@@ -115,7 +115,7 @@ SLOT = """
 
 
 def escaping(s):
-    """Where slot and line become parallel the block is nowhere: it is followed far out, and then the end is told."""
+    """The block is nowhere when slot and line become parallel: it is followed far out, and then the end is told."""
     for intervals in (3, 30, 3000):
         done = s.run(SLOT.format(intervals=intervals), '--table', '-')
         s.checks.equal(done.returncode, 6, 'a slide without bounds: exit code 6')

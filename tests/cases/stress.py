@@ -285,7 +285,7 @@ class Stress:
         self.checks.failed += other['failed']
 
     def parts(self):
-        """What `add` takes, plain enough to be sent from one process to another."""
+        """The counts for `add`, plain enough to be sent from one process to another."""
         return {'counts': dict(self.counts), 'worst': dict(self.worst), 'unsettled': self.unsettled,
                 'passed': self.checks.passed, 'failed': self.checks.failed}
 

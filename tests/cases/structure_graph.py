@@ -33,7 +33,7 @@ def pairs_of(data):
 
 
 def check_graph(program, data, folder, extra=()):
-    """What dot reads in the text is what the data file says."""
+    """The graph that dot reads from the text is that of the data file."""
     name = os.path.basename(data)
     done = run(program, data, '--graph', 'x.dot', *extra, folder=folder)
     if not checks.equal((done.returncode, done.stdout), (0, ''), f'{name}: a graph, and no run'):

@@ -85,7 +85,7 @@ def in_degrees(groups):
 
 
 def degrees_in(column, slides):
-    """What a column of an angle is divided by to be in radians; 1 for others."""
+    """The divisor that turns a column of an angle into radians; 1 for others."""
     coordinate = re.fullmatch(r'd{0,2}q(\d+)', column)
     return math.degrees(1.0) if coordinate and int(coordinate.group(1)) not in slides else 1.0
 
@@ -123,7 +123,7 @@ class Units:
             with open(report, encoding='utf-8') as file:
                 kept = json.load(file)
         if rows and 'evaluations' in (kept or {}):
-            # how an integration goes on depends on tolerances in m and rad: of it only the start
+            # the course of an integration depends on tolerances in m and rad: of it only the start
             rows = {name: values[:1] for name, values in rows.items()}
         return done.returncode, done.stderr, rows, kept, plan
 

@@ -1,4 +1,4 @@
-"""What is left out, by counts of the work done; and that leaving it out changes no result.
+"""Work that is left out, by counts of the work done. Leaving it out changes no result.
 
 Compares the program with itself: results with and without the blocks and derivatives that nothing needs.
 
@@ -307,7 +307,7 @@ def test_changed_coordinates(case):
     checks.true(loose['refusals'] > 0, 'steps that are refused are counted', loose['refusals'])
     again = loose['error_test_failures'] + loose['convergence_failures'] + loose['refusals']
     checks.true(f"{loose['steps']} steps, {again} made again" in text, 'and in words, with the others', text)
-    # where other coordinates are taken, between two rows, the conditioning jumps up
+    # the conditioning jumps up where other coordinates are taken, between two rows
     table, report_of_second = table_and_report(case.dynamics, FIVE_BAR, '--set', 'time.end=1', '--set', 'time.intervals=4000',
                                                '--set', 'output.conditioning=.true.')
     jumps = np.flatnonzero(table['conditioning'][1:] > 2*table['conditioning'][:-1])
@@ -339,7 +339,7 @@ def test_chain_beside(case):
 
 
 def test_refused(case):
-    """What cannot be recorded."""
+    """Requests for columns that cannot be recorded are refused."""
     path = case.file(SIX_AND_TWO, more='')
     for setting, words in (('coordinates=11', 'there is no coordinate 11; they are 1 to 10'),
                            ('coordinates=3,3', 'coordinate 3 is there already'),

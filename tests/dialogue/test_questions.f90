@@ -180,7 +180,7 @@ contains
     ends_sentence = text(1:1) >= 'A' .and. text(1:1) <= 'Z' .and. text(len(text):) == '.'
   end function ends_sentence
 
-  !> What stands before the parenthesis of an example can be typed.
+  !> The text before the parenthesis of an example can be typed.
   subroutine is_answer(tester, row, example)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, intent(in) :: row                   !< in item_table
@@ -205,7 +205,7 @@ contains
     call tester%is_true(index(help_on('load(4).rest', 'revolute', 'deg'), '30 (a twelfth of a turn)') > 0, 'rest in degrees')
   end subroutine units_of_examples
 
-  !> What ? says of a question in a four-bar whose first pair is of this kind.
+  !> The help on a question in a four-bar whose first pair is of this kind.
   function help_on(label, kind, angle_unit) result(text)
     character(len=*), intent(in) :: label        !< of the question
     character(len=*), intent(in) :: kind         !< of the first pair
@@ -281,7 +281,7 @@ contains
     call tester%is_true(proposal(interview, 'body(2).mass') == '', 'the mass of the body before')
   end subroutine proposals
 
-  !> What Enter answers to a question, as a data file writes it; empty: nothing.
+  !> The answer that Enter gives to a question, as a data file writes it; empty: none.
   function proposal(interview, label) result(text)
     type(interview_type), intent(in) :: interview   !< at the question
     character(len=*), intent(in) :: label           !< of the question
@@ -293,7 +293,7 @@ contains
     text = default%text
   end function proposal
 
-  !> Where other coordinates become independent, a drive of which something was entered is named as dropped; others are not.
+  !> A drive of which something was entered is named as dropped when other coordinates become independent; others are not.
   subroutine dropped_drives(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(interview_type) :: interview

@@ -16,11 +16,11 @@ contains
   !> Compare the full form of an answer with what it should be.
   subroutine becomes(tester, group, name, kind, typed, full)
     type(tester_type), intent(inout) :: tester   !< counts the checks
-    character(len=*), intent(in) :: group        !< that is asked about
-    character(len=*), intent(in) :: name         !< that is asked about
+    character(len=*), intent(in) :: group        !< the group that is asked about
+    character(len=*), intent(in) :: name         !< the item that is asked about
     character(len=*), intent(in) :: kind         !< of the group; empty: of any
     character(len=*), intent(in) :: typed        !< the short answer
-    character(len=*), intent(in) :: full         !< what a data file should hold
+    character(len=*), intent(in) :: full         !< text that a data file should hold
 
     call tester%is_true(full_form(item_table(item_row_for_kind(group, name, kind)), typed) == full, &
                         group//' '//name//': '//typed//' is '//full)

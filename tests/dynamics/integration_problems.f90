@@ -256,7 +256,7 @@ contains
 
   !> From (0, y) to t_end, with one tolerance for everything, or with equal steps that pass every error test.
   subroutine integrate(system, method, tolerance, t_end, y, statistics, err, equal_step, outputs)
-    class(ode_system_type), intent(inout), target :: system        !< that is integrated
+    class(ode_system_type), intent(inout), target :: system        !< system that is integrated
     character(len=*), intent(in) :: method                         !< name of the method
     real(wp), intent(in) :: tolerance                              !< relative and absolute
     real(wp), intent(in) :: t_end                                  !< end of the integration [s]

@@ -87,7 +87,7 @@ contains
   subroutine neighbours(plan, centre, coordinate, around, err)
     type(plan_type), intent(in) :: plan                               !< its plan
     type(state_type), intent(in) :: centre                            !< a closed position
-    integer, intent(in) :: coordinate                                 !< that is changed
+    integer, intent(in) :: coordinate                                 !< coordinate that is changed
     type(state_type), intent(out) :: around(-half_width:half_width)   !< closed positions at i h
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
     integer :: i, side

@@ -196,7 +196,7 @@ contains
   !> Points with mass on a link: together as one body, by its mass, centre and tensor, or a body each.
   subroutine add_point_masses(model, link, points, together)
     type(model_type), intent(inout) :: model       !< the model
-    integer, intent(in) :: link                        !< that carries the points
+    integer, intent(in) :: link                        !< link that carries the points
     real(wp), intent(in) :: points(:, :)               !< (4, n): x, y, z, mass
     logical, intent(in) :: together                    !< one body, not one for each point
     real(wp) :: mass, centre(3), inertia(3, 3), arm(3)
@@ -232,7 +232,7 @@ contains
 
   subroutine add_load(model, load)
     type(model_type), intent(inout) :: model       !< the model
-    class(load_type), intent(in) :: load               !< that is added
+    class(load_type), intent(in) :: load               !< load that is added
     type(load_slot_type), allocatable :: longer(:)
     integer :: i
 

@@ -94,7 +94,7 @@ contains
     call test%near(maxval(abs(a%forces - b%forces))/maxval(abs(a%forces)), 0.0_wp, tolerance, why//': forces')
   end subroutine check_same
 
-  !> Of the lower triangle, which alone is kept.
+  !> The largest entry of the lower triangle, which alone is kept.
   pure real(wp) function largest(a)
     real(wp), intent(in) :: a(:, :)   !< symmetric
     integer :: i

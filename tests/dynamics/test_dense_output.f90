@@ -93,7 +93,7 @@ contains
   !> Compare what is found at time t with the closed form.
   subroutine check_swing(system, dense_output, t, expected, why)
     type(motion_system_type), intent(inout) :: system        !< closes the chains at time t
-    type(dense_output_type), intent(inout) :: dense_output   !< that is checked
+    type(dense_output_type), intent(inout) :: dense_output   !< the dense output that is checked
     real(wp), intent(in) :: t                                !< [s]
     logical, intent(in) :: expected                          !< it is found
     character(len=*), intent(in) :: why                      !< the statement that is checked, printed where it is wrong
@@ -180,8 +180,8 @@ contains
     deallocate (upper%model, lower%model)
   end subroutine branches
 
-  !> How far closing may move what an integrator or a polynomial found, and where a state is too near to a
-  !> singular one.
+  !> The limit of the change that closing makes to a state of an integrator or a polynomial, and the nearness of a singular
+  !> state at which it is refused.
   subroutine trust()
     type(motion_system_type) :: system
     type(error_type), allocatable :: err

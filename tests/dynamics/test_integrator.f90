@@ -144,7 +144,7 @@ contains
     call test%is_true(error < 100.0e-10_wp, integration_methods(method)%name//': a pendulum''s quarter period')
   end subroutine check_pendulum
 
-  !> Where time alone acts, the error estimates of some methods see less than elsewhere; Fehlberg's sees
+  !> The error estimates of some methods see less than elsewhere where time alone acts; Fehlberg's sees
   !> nothing at all, as its coefficients tell, and is told not to be used.
   subroutine check_push(test, method)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -209,7 +209,7 @@ contains
   !> The largest error at the end of an integration.
   subroutine run(test, system, start, t_end, method, tolerance, expected, error, statistics, equal_step)
     type(tester_type), intent(inout) :: test                       !< counts the checks
-    class(ode_system_type), intent(inout), target :: system        !< that is integrated
+    class(ode_system_type), intent(inout), target :: system        !< system that is integrated
     real(wp), intent(in) :: start(:)                               !< vector at the start
     real(wp), intent(in) :: t_end                                  !< end of the integration [s]
     real(wp), intent(in) :: tolerance                              !< relative and absolute

@@ -96,7 +96,7 @@ contains
     call integrator%destroy()
   end subroutine check_obstacles
 
-  !> What fails at the start fails at once.
+  !> A system that fails at the start ends the integration at once.
   subroutine check_start(test, method)
     type(tester_type), intent(inout) :: test   !< counts the checks
     character(len=*), intent(in) :: method     !< name of the method

@@ -68,7 +68,7 @@ contains
     end do
   end subroutine check_stops
 
-  !> Steps may pass a stop, up to where they are told. What a method tells of the orbit inside a step is as good as the
+  !> Steps may pass a stop, up to where they are told. The values that a method gives inside a step are as good as the
   !> ends of the step, but for ten times the error that a step may make, relative and absolute.
   subroutine check_inside_steps(test, method)
     type(tester_type), intent(inout) :: test   !< counts the checks

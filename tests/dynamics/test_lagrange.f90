@@ -81,7 +81,7 @@ contains
   !> Agreement against the largest number of its kind.
   subroutine check_numbers(test, numbers, expected, scale, tolerance, why)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    real(wp), intent(in) :: numbers(:)         !< that are checked
+    real(wp), intent(in) :: numbers(:)         !< numbers that are checked
     real(wp), intent(in) :: expected(:)        !< the right numbers, as many
     real(wp), intent(in) :: scale              !< the largest number of their kind
     real(wp), intent(in) :: tolerance          !< over the scale

@@ -192,7 +192,7 @@ contains
     this%state%dq(this%plan%independent) = [(1.3_wp*cos(2.0_wp*i), i=1, size(this%plan%independent))]
   end subroutine prepare
 
-  !> The accelerations satisfy a ddq = Q - h. What is left over is round-off of the terms: of sums over all links
+  !> The accelerations satisfy a ddq = Q - h. The rest is round-off of the terms: of sums over all links
   !> along a chain, some hundreds of units.
   subroutine check_motion(this, why)
     type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
@@ -298,7 +298,7 @@ contains
     call test%is_true(index(message_of(err), 'coordinate 3 ') > 0, 'the last coordinate is named: '//message_of(err))
   end subroutine check_refusal
 
-  !> Where chains are closed, in the plane or in space, the coefficients are needed.
+  !> Closed chains, in the plane or in space, need the coefficients.
   subroutine closed_chains()
     type(case_type) :: closed
 

@@ -193,7 +193,7 @@ contains
   end subroutine evaluate
 
   subroutine check(numbers, expected, tolerance, why)
-    real(wp), intent(in) :: numbers(:)    !< that are checked
+    real(wp), intent(in) :: numbers(:)    !< numbers that are checked
     real(wp), intent(in) :: expected(:)   !< the right numbers, as many
     real(wp), intent(in) :: tolerance     !< over the largest number
     character(len=*), intent(in) :: why   !< the statement that is checked, printed where it is wrong

@@ -1,4 +1,4 @@
-!> What the tests of the input floor share: documents from texts, and what diagnostics print.
+!> Tools that the tests of the input floor share: documents from texts, and the text that diagnostics print.
 module mech9_input_support
   use mech9_source, only: source_from_text
   use mech9_document, only: document_type
@@ -67,7 +67,7 @@ contains
   !> The mechanism that the text of a data file describes.
   subroutine mechanism_from_text(text, model, diagnostics)
     character(len=*), intent(in) :: text                 !< of a data file
-    type(model_type), intent(out) :: model       !< that it describes
+    type(model_type), intent(out) :: model       !< the mechanism that it describes
     type(diagnostics_type), intent(out) :: diagnostics   !< errors in it
     type(document_type) :: document
 

@@ -1,6 +1,6 @@
 !> The documentation of the data file is what the table of names says. Argument: the path of docs/data-file.md.
 !>
-!> What it should be is left in `data-file.md` of the current folder, to be copied over an outdated one.
+!> The right text is left in `data-file.md` of the current folder, to be copied over an outdated one.
 program test_data_help
   use mech9_error, only: error_type, exit_usage
   use mech9_source, only: source_type, read_source

@@ -1,4 +1,4 @@
-!> How errors are shown: place, line, carets, order, number, exit code.
+!> The display of errors: place, line, carets, order, number, exit code.
 program test_diagnostics
   use mech9_error, only: error_type, place_type, raise, exit_data, exit_structure, exit_file, exit_assembly, exit_done
   use mech9_source, only: span_type, source_from_text

@@ -152,8 +152,8 @@ contains
   subroutine check_text(row, assignment, errors, text)
     type(item_row_type), intent(in) :: row               !< of the grammar
     character(len=*), intent(in) :: assignment           !< text within the group
-    integer, intent(out) :: errors                       !< that name this item or stand in its place
-    character(len=:), allocatable, intent(out) :: text   !< what is printed
+    integer, intent(out) :: errors                       !< number of errors that name this item or stand in its place
+    character(len=:), allocatable, intent(out) :: text   !< text that is printed
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     character(len=:), allocatable :: kind
@@ -172,7 +172,7 @@ contains
   subroutine accepted(row, assignment, what)
     type(item_row_type), intent(in) :: row       !< of the grammar
     character(len=*), intent(in) :: assignment   !< text within the group
-    character(len=*), intent(in) :: what         !< that is tried, for the report of a failure
+    character(len=*), intent(in) :: what         !< name of the trial, for the report of a failure
     character(len=:), allocatable :: text
     integer :: errors
 
@@ -184,7 +184,7 @@ contains
   subroutine refused(row, assignment, what)
     type(item_row_type), intent(in) :: row       !< of the grammar
     character(len=*), intent(in) :: assignment   !< text within the group
-    character(len=*), intent(in) :: what         !< that is tried, for the report of a failure
+    character(len=*), intent(in) :: what         !< name of the trial, for the report of a failure
     character(len=:), allocatable :: text
     integer :: errors
 

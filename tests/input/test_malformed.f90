@@ -57,7 +57,7 @@ contains
 
   subroutine next_field(text, at, field)
     character(len=*), intent(in) :: text                  !< the line of the list
-    integer, intent(inout) :: at                          !< where the field begins; then where the next one does
+    integer, intent(inout) :: at                          !< place of the field; then of the next one
     character(len=:), allocatable, intent(out) :: field   !< without blanks around it
     integer :: bar
 

@@ -30,7 +30,7 @@ contains
   subroutine read_well(text, model, why)
     character(len=*), intent(in) :: text             !< of a good data file
     character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
-    type(model_type), intent(out) :: model   !< that it describes
+    type(model_type), intent(out) :: model   !< the mechanism that it describes
     type(diagnostics_type) :: diagnostics
 
     call mechanism_from_text(text, model, diagnostics)
@@ -274,7 +274,7 @@ contains
     call tester%near(m%request%time%time(1), 0.01_wp, round_off, 'times by default')
   end subroutine single_position
 
-  !> What the scanner, the grammar, the structure and the model object to, in one go and in the order of the lines.
+  !> The errors that the scanner, the grammar, the structure and the model find are told in one go, in the order of the lines.
   subroutine all_errors_at_once()
     type(model_type) :: m
     type(diagnostics_type) :: g

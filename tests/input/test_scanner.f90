@@ -82,7 +82,7 @@ contains
   end subroutine number_is
 
   subroutine is_no_number(text, reason)
-    character(len=*), intent(in) :: text     !< that is no number
+    character(len=*), intent(in) :: text     !< text that is no number
     character(len=*), intent(in) :: reason   !< part of the message
     type(numeral_type) :: numeral
 

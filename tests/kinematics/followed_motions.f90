@@ -40,7 +40,7 @@ contains
     end if
   end subroutine begin_motion
 
-  !> How far two angles are apart, whole turns aside [rad].
+  !> The distance of two angles, whole turns aside [rad].
   elemental real(wp) function angle_between(a, b)
     real(wp), intent(in) :: a   !< first angle [rad]
     real(wp), intent(in) :: b   !< second angle [rad]

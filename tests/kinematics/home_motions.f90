@@ -1,4 +1,4 @@
-!> Which rates a mechanism allows in its home position, worked out from the axes alone: the oracle for ranks, choices of
+!> The rates that a mechanism allows in its home position, worked out from the axes alone: the oracle for ranks, choices of
 !> independent coordinates and rates.
 !>
 !> Twists are written in the fixed frame, moments about its origin. Along a tree of links each twist is
@@ -13,7 +13,7 @@ module mech9_home_motions
   private
   public :: loop_equations, choose_dependent, rates_from
 
-  !> What is left of a column in elimination counts as nothing below this: the entries are of order one,
+  !> The rest of a column in elimination counts as nothing below this: the entries are of order one,
   !> and elimination with pivots taken as they come multiplies round-off by some thousands.
   real(wp), parameter :: nothing = 1.0e-9_wp
 

@@ -74,7 +74,7 @@ contains
     angle = acos((bar%ground**2 + bar%crank**2 - diagonal**2)/(2.0_wp*bar%ground*bar%crank))
   end function four_bar_limit
 
-  !> Where circles about two points meet; the branch +1 lies left of the way from the first to the second.
+  !> The point where circles about two points meet; the branch +1 lies left of the way from the first to the second.
   pure function two_circles(a, radius_a, b, radius_b, branch) result(c)
     real(wp), intent(in) :: a(2)       !< centre of the first [m]
     real(wp), intent(in) :: radius_a   !< of the first [m]

@@ -52,7 +52,7 @@ contains
     integer, intent(in) :: k                           !< coordinate of the pair
     integer, intent(in) :: reference                   !< number of its reference link
     integer, intent(in) :: moving                      !< number of its moving link
-    type(screw_pair_type), intent(in) :: pair          !< that is added
+    type(screw_pair_type), intent(in) :: pair          !< pair that is added
 
     allocate (model%mechanism%pairs(k)%pair, source=pair)
     model%mechanism%pairs(k)%pair%coordinate = k

@@ -51,7 +51,7 @@ program test_blocks
   call stewart_platform(model)
   call check('Stewart platform', [30])
   call long_rows()
-  ! what a main program holds is never given back by itself, and a leak to the sanitizer
+  ! memory that a main program holds is never given back by itself, and a leak to the sanitizer
   deallocate (assembled)
   if (allocated(err)) deallocate (err)
   call test%finish()

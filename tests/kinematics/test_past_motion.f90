@@ -77,10 +77,10 @@ contains
 
   !> A prediction is exact for polynomials of a degree, and not for the next.
   subroutine check_degree(times, with_positions, t, degree, why)
-    real(wp), intent(in) :: times(:)        !< that are kept, in order [s]
+    real(wp), intent(in) :: times(:)        !< times that are kept, in order [s]
     logical, intent(in) :: with_positions   !< positions are used, not rates alone
     real(wp), intent(in) :: t               !< of the prediction
-    integer, intent(in) :: degree           !< that is predicted exactly
+    integer, intent(in) :: degree           !< degree of a polynomial that is predicted exactly
     character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
     type(past_motion_type) :: past
     real(wp) :: q(2)

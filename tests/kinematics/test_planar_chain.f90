@@ -106,7 +106,7 @@ contains
   end subroutine check_same_motion
 
   subroutine check_close(values, expected, allowed, name)
-    real(wp), intent(in) :: values(:)      !< that are checked
+    real(wp), intent(in) :: values(:)      !< values that are checked
     real(wp), intent(in) :: expected(:)    !< the right ones, as many
     real(wp), intent(in) :: allowed        !< largest difference
     character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure

@@ -71,7 +71,7 @@ program test_planning
   call four_bar(5.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
   call test%has_error(err, exit_assembly, 'links too short to meet')
-  ! what a main program holds is never given back by itself, and a leak to the sanitizer
+  ! memory that a main program holds is never given back by itself, and a leak to the sanitizer
   deallocate (assembled)
   if (allocated(err)) deallocate (err)
   call test%finish()

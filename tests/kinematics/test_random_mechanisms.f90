@@ -69,7 +69,7 @@ contains
     integer, intent(in) :: n_links                  !< links, the frame included
     integer, intent(in) :: links(:, :)              !< (2,M) reference and moving link of each pair
     type(axis_type), intent(in) :: axes(:)          !< of each pair in the home position
-    type(model_type), intent(in) :: model   !< that is given in other units
+    type(model_type), intent(in) :: model   !< mechanism that is given in other units
     real(wp), parameter :: units(2) = [1.0e-4_wp, 1.0e3_wp]
     type(axis_type) :: scaled(size(axes))
     type(model_type) :: other

@@ -35,8 +35,8 @@ contains
 
   subroutine range_of(model, coordinate, range)
     type(model_type), intent(in) :: model       !< the model
-    integer, intent(in) :: coordinate               !< that is moved
-    type(motion_range_type), intent(out) :: range   !< that it has
+    integer, intent(in) :: coordinate               !< coordinate that is moved
+    type(motion_range_type), intent(out) :: range   !< range that it has
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
@@ -48,7 +48,7 @@ contains
   end subroutine range_of
 
   subroutine check_limits(range, lower, upper, name)
-    type(motion_range_type), intent(in) :: range   !< that was found
+    type(motion_range_type), intent(in) :: range   !< range that was found
     real(wp), intent(in) :: lower                  !< the right lower end [rad, m]
     real(wp), intent(in) :: upper                  !< the right upper end [rad, m]
     character(len=*), intent(in) :: name           !< of the mechanism, for the report of a failure

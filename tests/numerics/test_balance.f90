@@ -48,7 +48,7 @@ contains
     end do
   end subroutine units_are_of_no_account
 
-  !> What a triangular matrix has beside its diagonal is of no account to its eigenvalues.
+  !> The entries of a triangular matrix beside its diagonal have no part in its eigenvalues.
   subroutine triangular_ones_become_diagonal()
     type(random_type) :: random
     real(wp) :: a(5, 5), before

@@ -130,7 +130,7 @@ contains
     end do
   end subroutine rational
 
-  !> Where truncation rules, half the step divides the error by 2^16, and the estimate is above it.
+  !> Half the step divides the error by 2^16 where truncation dominates, and the estimate is above it.
   subroutine order_and_estimate(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp), parameter :: x = 0.3_wp

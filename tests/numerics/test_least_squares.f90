@@ -37,8 +37,8 @@ contains
     if (info /= 0) error stop 'singular values did not converge'
   end function singular_values
 
-  !> How far x is from least squares: A^T (b - A x), in quadruple precision, against what a solution of a
-  !> problem changed in its last digits leaves there, |A| (|A| |x| + |b|).
+  !> The distance of x from least squares: A^T (b - A x), in quadruple precision, over |A| (|A| |x| + |b|), which the solution
+  !> of a problem changed in its last digits leaves there.
   real(wp) function normality(a, b, x)
     real(wp), intent(in) :: a(:, :)   !< matrix of the problem
     real(wp), intent(in) :: b(:)      !< right-hand side

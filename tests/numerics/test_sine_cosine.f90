@@ -50,7 +50,7 @@ contains
     end do
   end subroutine all_sizes
 
-  !> Where one of them vanishes, and where the nearest whole quarter changes.
+  !> Angles at which one of them vanishes, and at which the nearest whole quarter changes.
   subroutine about_quarter_turns()
     real(wp) :: angles(7), turned(2, 7)
     integer :: eighths

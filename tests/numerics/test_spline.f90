@@ -79,7 +79,7 @@ contains
         if (i == 1 .or. i == n) cycle
         call spline%evaluate(nearest(x(i), -1.0_wp), left(1), left(2), left(3))
         ! curvatures reach some hundred and third derivatives some thousand: roundings of these, and
-        ! what they change over the distance to the neighbouring number
+        ! their change over the distance to the neighbouring number
         call test%near(left(1), right(1), 1.0e-14_wp, 'value from both sides')
         call test%near(left(2), right(2), 1.0e-12_wp, 'slope from both sides')
         call test%near(left(3), right(3), 1.0e-11_wp, 'second derivative from both sides')

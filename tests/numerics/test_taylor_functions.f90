@@ -143,7 +143,7 @@ contains
     u%second = random%symmetric()
   end function random_argument
 
-  !> What one function does the other undoes, with both derivatives.
+  !> Each function undoes its inverse, with both derivatives.
   subroutine inverse_functions(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random

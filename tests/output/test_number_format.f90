@@ -81,7 +81,7 @@ contains
   subroutine expect(tester, format, number, text, why)
     type(tester_type), intent(inout) :: tester       !< counts the checks
     type(number_format_type), intent(in) :: format   !< of the numbers
-    real(wp), intent(in) :: number                   !< that is written
+    real(wp), intent(in) :: number                   !< number that is written
     character(len=*), intent(in) :: text             !< the right text, without blanks before it
     character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
     character(len=number_width) :: field
@@ -157,7 +157,7 @@ contains
   !> Whether a number's text is that of the compiler's formatted write, with a short exponent.
   logical function agrees(format, number)
     type(number_format_type), intent(in) :: format   !< of the numbers
-    real(wp), intent(in) :: number                   !< that is written
+    real(wp), intent(in) :: number                   !< number that is written
     character(len=number_width) :: field, expected
 
     write (expected, '(es25.16e3)') number

@@ -63,7 +63,7 @@ contains
     call tester%is_true(number == 0 .and. meant == '', 'or nothing')
   end subroutine test_kept
 
-  !> Of a run too long for the memory every so-manieth row is kept, the first one included.
+  !> A run that is too long for the memory is kept in part: the first row, and then every n-th one.
   subroutine test_thinned(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(kept_rows_type) :: kept

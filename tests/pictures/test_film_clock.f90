@@ -17,7 +17,7 @@ contains
     call check_film(tester, 0.0_wp, 1.0_wp/30.0_wp, 31, 2, 't = 0.00 s', 't = 1.00 s')
     call check_film(tester, 0.0_wp, 1.0_wp/120.0_wp, 121, 3, 't = 0.000 s', 't = 1.000 s')
     call check_film(tester, 2.0_wp, -0.1_wp, 21, 1, 't = 2.0 s', 't = 0.0 s')
-    ! what a plain number cannot show: four digits, and a power of ten
+    ! numbers that need more than a plain one: four digits, and a power of ten
     call check_film(tester, 0.0_wp, 1.0e-9_wp, 11, -1, 't = 0 s', 't = 1e-8 s')
     call check_film(tester, 0.0_wp, 1.0e6_wp, 11, -1, 't = 0 s', 't = 1e7 s')
     call tester%is_true(clock_text(-1.0e-9_wp, 2) == 't = 0.00 s', 'a zero has no sign')
@@ -31,7 +31,7 @@ contains
     real(wp), intent(in) :: start                !< time of the first frame [s]
     real(wp), intent(in) :: step                 !< between frames [s]
     integer, intent(in) :: frames                !< how many
-    integer, intent(in) :: decimals              !< that are expected
+    integer, intent(in) :: decimals              !< decimals that are expected
     character(len=*), intent(in) :: first        !< time of the first frame as the clock shows it
     character(len=*), intent(in) :: last         !< time of the last frame as the clock shows it
     type(film_type) :: film

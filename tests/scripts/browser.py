@@ -125,7 +125,7 @@ class Browser:
             self.call('Page.removeScriptToEvaluateOnNewDocument', identifier=script)
 
     def value(self, expression):
-        """What an expression is in the page; of a promise, what it comes to."""
+        """The value of an expression in the page; of a promise, the value that it comes to."""
         result = self.call('Runtime.evaluate', expression=expression, awaitPromise=True, returnByValue=True, userGesture=True)
         if 'exceptionDetails' in result:
             details = result['exceptionDetails']
@@ -149,7 +149,7 @@ class Browser:
                                                                      for i, (x, y) in enumerate(points)])
 
     def screenshot(self, path):
-        """What the window shows, as PNG."""
+        """The picture in the window, as PNG."""
         with open(path, 'wb') as file:
             file.write(base64.b64decode(self.call('Page.captureScreenshot', format='png')['data']))
 

@@ -5,7 +5,8 @@ private; the list of public names. Above each public procedure, type and interfa
 that begins with !>. Operators, and intrinsic functions extended to other types, explain themselves; a type that
 has its module's name is explained by the head.
 
-No name in an `only` list is left unused, in the tests neither.
+No name in an `only` list is left unused, in the tests neither. No comment begins with a word such as "what" or "where" in place of
+its subject, in whatever language.
 """
 import glob
 import os
@@ -23,6 +24,9 @@ DEFINITION = re.compile(
 METADATA = re.compile(r'!> [\w-]+:\s')
 ONLY = re.compile(r'^\s*use\b[^\n]*?\bonly\s*:(.*)$', re.M)
 STRING = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"")
+# a comment that begins a block of them, or stands behind code; a docstring
+COMMENT = {'.f90': r'!+[<>]?[ \t]*(.*)', '.nml': r'!+[ \t]*(.*)', '': r'(?:#+[ \t]+|""")(.*)'}
+NO_SUBJECT = re.compile(r'(?:what|where|that|which|whose|likewise|as good as)\b', re.I)
 INTRINSIC = set('sqrt exp log sin cos tan asin acos atan atan2 sinh cosh tanh abs min max'.split())
 
 
@@ -46,6 +50,18 @@ def unused_names(text):
     rest = ONLY.sub('', code)
     names = re.findall(r'(\w+)\s*(?:=>[^,]*)?(?:,|$)', ','.join(ONLY.findall(code)))
     return sorted({name for name in names if not re.search(rf'(?:\b|\d_){name}\b', rest, re.I)})
+
+
+def beginnings(path, text):
+    """The first lines of all comments of a file, with their numbers. Lines of comments only that follow others go on with them."""
+    kind = os.path.splitext(re.sub(r'\.in$', '', path))[1]
+    pattern = COMMENT.get(kind, COMMENT[''])
+    goes_on = False
+    for number, line in enumerate(text.split('\n'), 1):
+        match = re.search(pattern, STRING.sub('', line) if kind in COMMENT else line)
+        if match and not goes_on:
+            yield number, match[1]
+        goes_on = bool(match) and re.match(r'\s*[!#]', line) is not None and match[1] != ''
 
 
 def explained(lines, number):
@@ -102,6 +118,14 @@ def main():
         for path in glob.glob(os.path.join(TREE, folder, '**', '*.f90'), recursive=True):
             with open(path, encoding='utf-8') as file:
                 checks.equal(unused_names(file.read()), [], f'{path}: every name in an only list is used')
+    for folder in ('src', 'tests', 'bench', 'cmake', 'user_procs', 'examples'):
+        for path in glob.glob(os.path.join(TREE, folder, '**', '*'), recursive=True):
+            if not re.search(r'\.(f90|py|sh|cmake|f90\.in|nml)$|CMakeLists\.txt$|expected\.txt$|mech9-link\.in$', path):
+                continue
+            with open(path, encoding='utf-8', errors='replace') as file:
+                for number, comment in beginnings(path, file.read()):
+                    if NO_SUBJECT.match(comment):
+                        checks.true(False, f'{path}:{number}: the comment begins with its subject: {comment}')
     checks.finish()
 
 

@@ -45,7 +45,7 @@ class Loops:
         return np.stack(rotation, 1), np.stack(shift, 1), twists
 
     def gap(self, q):
-        """How far any loop is from closing: the largest entry of R - 1 and of p."""
+        """The largest gap of a loop: the largest entry of R - 1 and of p."""
         rotation, shift, _ = self.around(q)
         return np.maximum(np.max(np.abs(rotation - np.eye(3)), axis=(1, 2, 3)), np.max(np.abs(shift), axis=(1, 2)))
 
@@ -115,7 +115,7 @@ def fundamental_loops(links):
 
 
 class Course:
-    """How one mechanism goes on from home: positions z, unit tangents and arc lengths along its curve, and how it
+    """The motion of one mechanism from home: positions z, unit tangents and arc lengths along its curve, and how it
     ends: 'end' (t = 1 is reached), 'dead' (t turns back at `limit`), 'special' (branches meet) or 'unknown'."""
 
     def __init__(self, z, tangent):

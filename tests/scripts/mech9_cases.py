@@ -1,4 +1,4 @@
-"""What the scripts in tests/cases share: running a program, reading tables, counting checks.
+"""Tools that the scripts in tests/cases share: running a program, reading tables, counting checks.
 
 Needs numpy only. A script makes a Checks, checks, and leaves through its finish().
 """
@@ -16,7 +16,7 @@ TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 TREE = os.path.dirname(TESTS)
 REFERENCE = os.path.join(TESTS, 'reference')
 
-# What the reference values are held against: |difference| / max(1, |value|). A position is closed to
+# Allowed deviations from the reference values: |difference| / max(1, |value|). A position is closed to
 # round-off (1e-16 times the conditioning of a well-posed chain, some hundreds); each derivative in time
 # brings one more solution with the same matrix and factors of the driving rate.
 POSITION, VELOCITY, ACCELERATION = 1e-12, 1e-11, 1e-10

@@ -1,4 +1,4 @@
-"""What tests read from pictures of mechanisms in SVG."""
+"""Shapes and numbers that tests read from pictures of mechanisms in SVG."""
 import os
 import re
 

@@ -134,7 +134,7 @@ class Mechanism:
         return q
 
     def gaps(self, q):
-        """What the loops are open by: (orders, times, 12 loops)."""
+        """The gaps of the loops: (orders, times, 12 loops)."""
         count = q.shape[2]
         home = np.zeros((ORDERS, count, 3, 3), REAL)
         home[0] = np.eye(3)

@@ -1,4 +1,4 @@
-"""What can only be seen from outside a process: exit codes, signals, terminals, broken pipes.
+"""Behaviour that can only be seen from outside a process: exit codes, signals, terminals, broken pipes.
 
 usage: session_behaviour.py PROBE    (the program of session_probe.f90)
 """
@@ -106,7 +106,7 @@ def test_progress():
     check(len(shown) >= 3, "a long run shows progress", got)
     check(all(len(line) <= 79 for line in lines), "within 80 columns")
     check(all(line.startswith("probe ") for line in shown), "with its label")
-    # what is echoed of Ctrl-C then stands over the line, and goes with it
+    # the echo of Ctrl-C then stands over the line, and goes with it
     check(all(after == "" for line, after in zip(lines, lines[1:]) if "left" in line), "the cursor waits at its beginning", got)
     # from the first line, after a second, the third of the work is done
     check(shown and 33 <= int(shown[0].split()[1]) < 80, "not before a second has passed", shown[:1])

@@ -25,7 +25,7 @@ contains
   subroutine parse(line, options, err, program_name)
     character(len=*), intent(in) :: line                     !< words with `|` between them
     character(len=*), intent(in), optional :: program_name   !< mech9k unless given
-    type(command_line_type), intent(out) :: options          !< that it asks for
+    type(command_line_type), intent(out) :: options          !< options that it asks for
     type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
     type(string_type), allocatable :: words(:)
     integer :: first, next, i

@@ -35,7 +35,7 @@ contains
   subroutine count_calls(model, blocks, why)
     type(model_type), intent(in), target :: model   !< with closed chains, bodies and loads of all kinds
     integer, intent(in) :: blocks                   !< number of its blocks with closed chains
-    character(len=*), intent(in) :: why             !< what it is, printed where a check fails
+    character(len=*), intent(in) :: why             !< its name, printed where a check fails
     type(motion_system_type) :: system
     type(plan_type) :: plan
     type(state_type) :: state

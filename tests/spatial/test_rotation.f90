@@ -176,7 +176,8 @@ contains
     end do
   end subroutine half_turns
 
-  !> There and back, for random rotations and for half turns, about axes and diagonals, where w vanishes.
+  !> Rotations turned into quaternions and back stay the same: random ones, and half turns about axes and diagonals, where w
+  !> vanishes.
   subroutine quaternion_of_any_rotation(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random

@@ -11,7 +11,7 @@ program test_screw
   implicit none
   !> A few roundings of numbers of order one.
   real(wp), parameter :: round_off = 1.0e-14_wp
-  !> What the program takes for zero in directions of screws.
+  !> Components of directions below this are zero for the program.
   real(wp), parameter :: tolerance = 1.0e-9_wp
   type(tester_type) :: test
 
@@ -134,8 +134,8 @@ contains
   subroutine check_basis(test, basis, rank, screws, why)
     type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp), intent(in) :: basis(6, 6)        !< its columns are orthonormal; only the first `rank` count
-    real(wp), intent(in) :: screws(:, :)       !< that span the space
-    integer, intent(in) :: rank                !< that was found
+    real(wp), intent(in) :: screws(:, :)       !< screws that span the space
+    integer, intent(in) :: rank                !< the rank that was found
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp) :: product(rank, rank)
     integer :: i
@@ -151,7 +151,7 @@ contains
   !> Whether all columns are combinations of the first `rank` columns of an orthonormal basis.
   pure logical function within(basis, rank, screws)
     real(wp), intent(in) :: basis(6, 6)    !< orthonormal columns
-    real(wp), intent(in) :: screws(:, :)   !< that are looked for in the space
+    real(wp), intent(in) :: screws(:, :)   !< screws that are looked for in the space
     integer, intent(in) :: rank            !< number of its columns that count
     real(wp) :: outside(6, size(screws, 2))
 
@@ -194,7 +194,7 @@ contains
   subroutine check_algebra(test, random, screws, dimension, why)
     type(tester_type), intent(inout) :: test     !< counts the checks
     type(random_type), intent(inout) :: random   !< source of the random numbers
-    real(wp), intent(in) :: screws(:, :)         !< that generate the algebra
+    real(wp), intent(in) :: screws(:, :)         !< screws that generate the algebra
     integer, intent(in) :: dimension             !< the right one
     character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
     type(pose_type) :: frame
@@ -272,7 +272,7 @@ contains
   subroutine check_split(test, random, screws, n_turns, n_slides, by_screwing, axis, why)
     type(tester_type), intent(inout) :: test     !< counts the checks
     type(random_type), intent(inout) :: random   !< source of the random numbers
-    real(wp), intent(in) :: screws(:, :)         !< that span the space
+    real(wp), intent(in) :: screws(:, :)         !< screws that span the space
     integer, intent(in) :: n_turns               !< right number of directions of turning
     integer, intent(in) :: n_slides              !< right number of directions of sliding
     logical, intent(in) :: by_screwing           !< it turns only together with a slide
@@ -299,7 +299,7 @@ contains
                                      why//': its axis')
   end subroutine check_split
 
-  !> What the subgroups of rigid motions turn about and slide along.
+  !> The directions about which the subgroups of rigid motions turn, and along which they slide.
   subroutine split_spaces(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random

@@ -13,7 +13,7 @@ contains
   function what_is_wrong(structure, independent, vectors) result(text)
     type(structure_type), intent(in) :: structure          !< from which the vectors come
     logical, intent(in) :: independent(:)   !< (M) the coordinate is independent
-    type(structural_vectors_type), intent(in) :: vectors   !< that are held against the definitions
+    type(structural_vectors_type), intent(in) :: vectors   !< vectors that are held against the definitions
     character(len=:), allocatable :: text
     logical :: known(structure%n_links), used(structure%n_coordinates)
     logical :: closes, over

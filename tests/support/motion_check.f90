@@ -91,7 +91,7 @@ contains
 
   subroutine check_numbers(test, numbers, expected, tolerance, why)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    real(wp), intent(in) :: numbers(:)         !< that are checked
+    real(wp), intent(in) :: numbers(:)         !< numbers that are checked
     real(wp), intent(in) :: expected(:)        !< the right numbers, as many
     real(wp), intent(in) :: tolerance          !< over the larger of one and the largest number
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong

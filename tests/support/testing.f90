@@ -35,7 +35,7 @@ contains
   !> Check that a condition holds.
   subroutine is_true(self, condition, why)
     class(tester_type), intent(inout) :: self   !< counts the checks
-    logical, intent(in) :: condition            !< that must hold
+    logical, intent(in) :: condition            !< condition that must hold
     character(len=*), intent(in) :: why         !< the statement that is checked, printed where it is wrong
 
     if (condition) then
@@ -50,7 +50,7 @@ contains
   !> divided by their size before they are compared.
   subroutine near(self, value, expected, tol, why)
     class(tester_type), intent(inout) :: self   !< counts the checks
-    real(wp), intent(in) :: value               !< that is checked
+    real(wp), intent(in) :: value               !< value that is checked
     real(wp), intent(in) :: expected            !< the right value
     real(wp), intent(in) :: tol                 !< over the larger of one and the right value
     character(len=*), intent(in) :: why         !< the statement that is checked, printed where it is wrong

@@ -152,7 +152,7 @@ def test_stopped():
 
 
 def test_simple_terminal():
-    """What cannot move its cursor gets no sequences that would move it."""
+    """A terminal that cannot move its cursor gets no sequences that would move it."""
     for term in ('dumb', ''):
         dialogue(f'TERM={term}', ['abc\r', '\r'], ['abc', ''], term=term)
         dialogue(f'TERM={term}: Ctrl-C', ['abc\r'], ['abc'], end='interrupted', leave='\x03', term=term)

@@ -43,7 +43,7 @@ contains
   end subroutine run_probe
 
   pure function hexadecimal(bytes) result(text)
-    character(len=*), intent(in) :: bytes   !< that were read
+    character(len=*), intent(in) :: bytes   !< bytes that were read
     character(len=:), allocatable :: text
     integer :: i
 

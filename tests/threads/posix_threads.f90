@@ -7,7 +7,7 @@ module posix_threads
   private
   public :: share_type, run_in_threads
 
-  !> What one thread works on.
+  !> The runs of one thread.
   type :: share_type
     type(run_type), allocatable :: runs(:)
   end type share_type

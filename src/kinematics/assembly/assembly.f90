@@ -94,7 +94,7 @@ contains
     type(newton_outcome_type) :: newton
     real(wp) :: before(size(block%unknowns)), residual_norm, small_enough
 
-    ! where inexact redundant equations stay open, the residual must be the least one
+    ! the residual must be the least one where inexact redundant equations stay open
     small_enough = newton_radius
     if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) small_enough = closed_to_round_off
     call reduce_errors(plan, block, state, work, small_enough, 1.0e-2_wp, residual_norm, err)

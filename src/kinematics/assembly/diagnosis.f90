@@ -62,7 +62,7 @@ contains
       if (any(held)) call find_motions(plan, trial, held, motions)
       call choose_coordinates(motions, wanted, chosen)
       if (all(chosen .eqv. wanted)) return
-      ! where branches of different mobility meet, the least mobile one counts
+      ! the least mobile branch counts where branches of different mobility meet
       if (.not. allocated(best)) best = motions
       if (size(motions, 2) < size(best, 2)) best = motions
     end do

@@ -21,7 +21,7 @@ module mech9_spanning_tree
   !> Number of second frames of a link that are kept, the latest ones.
   integer, parameter :: most_remembered = 3
 
-  !> What is known of frames while they are laid out.
+  !> The frames that are laid out so far.
   type :: layout_type
     integer :: steps = 0                               !< number of steps made so far
     integer :: closures = 0                            !< number of closures made so far
@@ -79,7 +79,7 @@ contains
     integer, intent(in) :: coordinates(:)   !< number of the coordinate of each step
     logical, intent(in) :: closed   !< the chain is closed
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(inout) :: layout   !< what is known of the frames made so far
+    type(layout_type), intent(inout) :: layout   !< the frames that are laid out so far
     integer :: i, n, stem, frame, reached
 
     n = size(coordinates)
@@ -106,7 +106,7 @@ contains
     integer, intent(in) :: links(0:)   !< (0:) a known link, the new links, a known link
     integer, intent(in) :: coordinates(:)   !< number of the coordinate of each step
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(inout) :: layout   !< what is known of the frames made so far
+    type(layout_type), intent(inout) :: layout   !< the frames that are laid out so far
     integer :: n, here, there, from_here, i, reached
 
     n = size(coordinates)
@@ -133,7 +133,7 @@ contains
   !> A frame of each of two links, chosen so that there are few steps from one to the other.
   pure subroutine nearest_frames(plan, layout, a, b, frame_a, frame_b)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(in) :: layout   !< what is known of the frames made so far
+    type(layout_type), intent(in) :: layout   !< the frames that are laid out so far
     integer, intent(in) :: a   !< number of the first link
     integer, intent(in) :: b   !< number of the second link
     integer, intent(out) :: frame_a   !< frame of the first link
@@ -167,7 +167,7 @@ contains
     integer, intent(in) :: link   !< number of the link
     integer, intent(in) :: frame   !< its frame, made last
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(in) :: layout   !< what is known of the frames made so far
+    type(layout_type), intent(in) :: layout   !< the frames that are laid out so far
 
     plan%frame_of(link) = frame
     plan%link_in_frame(link) = layout%link_in(frame)
@@ -183,7 +183,7 @@ contains
     integer, intent(in) :: coordinate   !< number of the pair's coordinate
     integer, intent(in) :: parent   !< number of the frame of link `from` where the step starts
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(inout) :: layout   !< what is known of the frames made so far
+    type(layout_type), intent(inout) :: layout   !< the frames that are laid out so far
     integer, intent(out) :: reached   !< number of the new frame
 
     layout%steps = layout%steps + 1
@@ -239,7 +239,7 @@ contains
   !> The closure where two frames of a link must coincide, and the loop it belongs to.
   subroutine make_closure(plan, layout, closing, target, closure)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
-    type(layout_type), intent(in) :: layout   !< what is known of the frames made so far
+    type(layout_type), intent(in) :: layout   !< the frames that are laid out so far
     integer, intent(in) :: closing   !< number of the frame that the last step made
     integer, intent(in) :: target   !< number of the link's other frame, with which it must coincide
     type(closure_type), intent(out) :: closure   !< the closure, with its loop

@@ -112,7 +112,7 @@ contains
       ddq(:, i) = probe%predictor%ddq
     end subroutine take
 
-    !> Where the drives have no value beyond the crossing, the last output may lie at it: one more position before it.
+    !> The last output may lie at the crossing where the drives have no value beyond it: one more position before it.
     subroutine end_at_crossing()
       times(3) = t - 0.25_wp*half
       call step_until(drives, plan, probe, times(3), crossing%exists, err)
@@ -212,7 +212,7 @@ contains
     real(wp), intent(in) :: t   !< time, within the crossing [s]
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work(:)   !< scratch of all blocks
-    type(singularity_monitor_type), intent(inout) :: monitors(:)   !< what is known of the Jacobians of all blocks
+    type(singularity_monitor_type), intent(inout) :: monitors(:)   !< the monitors of all blocks
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
     real(wp), dimension(plan%n_coordinates) :: dq, ddq
@@ -252,7 +252,7 @@ contains
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
-    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(in) :: monitor   !< the monitor of the block
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
@@ -271,7 +271,7 @@ contains
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
-    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(in) :: monitor   !< the monitor of the block
 
     associate (k => block%coordinates)
       call spread_velocities(plan, block, state)
@@ -290,7 +290,7 @@ contains
   !> The least change that cancels the right-hand side in `work`, without the directions of the least pivots.
   subroutine solve_where_determined(work, monitor)
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
-    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(in) :: monitor   !< the monitor of the block
 
     work%right = -work%right
     call work%equations%solve(work%right, work%change, tolerance=near_singular*monitor%largest_pivot/work%equations%largest_pivot())

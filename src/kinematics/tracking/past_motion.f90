@@ -1,6 +1,6 @@
 !> Positions and rates at the last few times, and the prediction by the polynomial through them.
 !>
-!> Where no accelerations are recorded, a prediction from several times is cheaper than finding accelerations. It is a weighted
+!> A prediction from several times is cheaper than finding accelerations where these are not recorded. It is a weighted
 !> sum of rates and positions, and the weights depend on the times alone: steps of equal length share them. Where steps are
 !> short, the rates at the last five times predict to round-off. Where steps are long, positions and rates at the last four
 !> times leave a smaller correction.

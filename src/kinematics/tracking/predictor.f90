@@ -197,7 +197,7 @@ contains
       x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
       z = x + d1 + 4.0_wp*d0
       y = d0 + x + z
-      ! where the last term is only round-off of the positions, the polynomial goes without them
+      ! the polynomial goes without the positions where its last term is only their round-off
       is_round_off = abs(z) <= round_off_term*max(unit_of(k), abs(q(k)))
       x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_round_off)
       y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_round_off)

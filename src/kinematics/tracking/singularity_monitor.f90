@@ -43,7 +43,7 @@ contains
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
-    type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(inout) :: monitor   !< the monitor of the block
 
     if (size(block%unknowns) == 0) return
     call factorize_block(plan, block, state, work)
@@ -53,7 +53,7 @@ contains
   !> Take the Jacobian that stands factorized in `work` as that at the end of the trial step.
   subroutine read_factors(work, monitor)
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
-    type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(inout) :: monitor   !< the monitor of the block
 
     monitor%trial_pivot = work%equations%least_pivot()
     monitor%trial_sign = work%equations%determinant_sign()
@@ -67,7 +67,7 @@ contains
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     logical, intent(in) :: factorized   !< the factors in `work` belong to the position in `state`
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
-    type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(inout) :: monitor   !< the monitor of the block
     real(wp), intent(inout) :: worst   !< raised to at least the measure of this step; up to 1 it has no singular matrix
     real(wp) :: change
 
@@ -136,7 +136,7 @@ contains
   !> small; `unbounded_excess` where J is singular.
   real(wp) function relative_change(work, monitor) result(change)
     type(block_work_type), intent(inout) :: work   !< scratch of the block, with its Jacobian and factors
-    type(singularity_monitor_type), intent(inout) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(inout) :: monitor   !< the monitor of the block
     integer :: j, n
 
     change = unbounded_excess
@@ -153,7 +153,7 @@ contains
   !> The step is accepted: the Jacobians at its end are those at the start of the next one.
   pure subroutine accept_jacobians(work, monitors)
     type(block_work_type), intent(in) :: work(:)   !< scratch of all blocks, with their Jacobians at the end of the step
-    type(singularity_monitor_type), intent(inout) :: monitors(:)   !< what is known of the Jacobians of all blocks
+    type(singularity_monitor_type), intent(inout) :: monitors(:)   !< the monitors of all blocks
     integer :: b
 
     do b = 1, size(monitors)
@@ -168,14 +168,14 @@ contains
 
   !> Whether a block is near a singular position.
   pure elemental logical function is_near(monitor)
-    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(in) :: monitor   !< the monitor of the block
 
     is_near = monitor%pivot < near_singular*monitor%largest_pivot
   end function is_near
 
   !> Least pivot at the end of the trial step, divided by the largest least pivot so far.
   pure real(wp) function nearness(monitor)
-    type(singularity_monitor_type), intent(in) :: monitor   !< what is known of the block's Jacobian
+    type(singularity_monitor_type), intent(in) :: monitor   !< the monitor of the block
 
     nearness = monitor%trial_pivot/max(monitor%largest_pivot, tiny(nearness))
   end function nearness

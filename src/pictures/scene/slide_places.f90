@@ -182,7 +182,7 @@ contains
         nearest = distance
         across = off_line(pins%at(:, i), point, axis)
         foot = pins%at(:, i) - across
-        ! where the axis is far from the link only its direction has a meaning, and the block is drawn at the pin
+        ! only the direction of an axis far from the link has a meaning, and the block is drawn at the pin
         if (norm2(across) > 0.75_wp*size .and. place%kind == sliding) foot = pins%at(:, i)
         if (norm2(across) > same*size .and. norm2(foot - point) < 0.3_wp*size) foot = point
       end do

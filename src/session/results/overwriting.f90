@@ -59,7 +59,7 @@ contains
 
   !> Fail if the last file of a list is one of those before it.
   subroutine refuse_output(files, places, err)
-    type(written_file_type), intent(in) :: files(:)     !< that are going to be written
+    type(written_file_type), intent(in) :: files(:)     !< files that are going to be written
     type(file_place_type), intent(in) :: places(:)      !< the places that their names mean
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, last
@@ -83,7 +83,7 @@ contains
   pure logical function follow_each_other(first, second, place)
     type(written_file_type), intent(in) :: first    !< the result that is named first
     type(written_file_type), intent(in) :: second   !< the other result
-    type(file_place_type), intent(in) :: place      !< where both stand
+    type(file_place_type), intent(in) :: place      !< the place of both
     logical :: on_standard_output(2)
 
     on_standard_output = [first%path == standard_output_path, second%path == standard_output_path]

@@ -33,7 +33,7 @@ contains
   !> Begin. Nothing is shown if standard error is not a terminal, or with --quiet.
   subroutine start(self, label, quiet)
     class(progress_type), intent(inout) :: self   !< the progress
-    character(len=*), intent(in) :: label         !< what runs
+    character(len=*), intent(in) :: label         !< name of the run
     logical, intent(in) :: quiet                  !< nothing is to be shown
 
     self%label = label

@@ -18,7 +18,7 @@ module mech9_recording
   !> Time after which computed rows are written even if there are fewer, so that a killed run does not lose them [s].
   real(wp), parameter :: longest_wait = 0.25_wp
 
-  !> How the recording went.
+  !> The outcome of a recording.
   type :: recording_outcome_type
     integer :: rows = 0            !< how many rows were computed
     real(wp) :: seconds_solving = 0.0_wp      !< real time [s]

@@ -212,7 +212,7 @@ contains
   subroutine write_facts(self, facts, exit_code)
     class(results_type), intent(in), target :: self   !< the results
     type(facts_type), intent(in) :: facts             !< named numbers and texts about the run
-    integer, intent(in), optional :: exit_code        !< that the run is going to answer; before it: not given
+    integer, intent(in), optional :: exit_code        !< of the run; not given before its end is known
     type(hdf5_sink_type), pointer :: hdf5
     integer :: code
 

@@ -54,7 +54,7 @@ contains
     type(command_line_type), intent(in) :: options       !< the command line
     character(len=*), intent(in) :: option               !< without the dashes
     character(len=*), intent(in) :: in_data_file         !< the path there; empty: none
-    character(len=:), allocatable, intent(out) :: path   !< that of the option, else that of the data file
+    character(len=:), allocatable, intent(out) :: path   !< path of the option, else of the data file
 
     path = in_data_file
     if (options%has(option)) path = options%argument(option)

@@ -26,7 +26,7 @@ contains
       call loads%add_torque(2, state%velocity(number, x))
     case (6)
       call loads%add_torque(2, state%turned(number, x))
-    case (7)   ! what comes after the first fault is not told
+    case (7)   ! a second fault, which is not told
       call loads%add_torque(number, x)
       call loads%add_torque(-1, x)
     end select
