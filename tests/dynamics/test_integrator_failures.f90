@@ -85,7 +85,7 @@ contains
           call test%near(y(1), sin(t), 3.0e-5_wp, method//' keeps its last good values')
           call test%is_true(statistics%rate_evaluations < 20000, method//' does not run against the wall for ever')
           if (codes(i) == 0) then
-            call check_words(test, err, ['number 2 is not finite', 't = 0.                '], &
+            call check_words(test, err, ['variable 2 is not finite', 't = 0.                  '], &
                              method//' says which number, and when')
           else
             call check_words(test, err, ['the wall is in the way', 't = 0.                '], method//' says why, and when')
