@@ -15,6 +15,7 @@ module mech9_free_simulation
   use mech9_conditioning, only: conditioning_type
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_integrator, only: integration_statistics_type
+  use mech9_integrated_vector, only: coordinate_of
   use mech9_motion_system, only: set_motion_system
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
@@ -175,18 +176,14 @@ contains
     call move_alloc(failure, err)
   end subroutine step
 
-  !> Name the coordinate whose motion is not finite: the integrated vector holds the coordinates, then the rates of the
-  !> independent ones.
+  !> Name the coordinate whose motion is not finite.
   pure subroutine name_coordinate(plan, failure)
     type(plan_type), intent(in) :: plan             !< the plan of the mechanism
     type(error_type), intent(inout) :: failure      !< of an integration; gets the coordinate, if it is of this kind
-    integer :: k
 
     if (.not. allocated(failure%failure)) return
     if (failure%failure%kind /= failure_infinite_rate) return
-    k = failure%failure%number
-    if (k > plan%n_coordinates) k = plan%independent(k - plan%n_coordinates)
-    failure%failure%coordinates = [k]
+    failure%failure%coordinates = [coordinate_of(plan, failure%failure%number)]
   end subroutine name_coordinate
 
   !> Go on in better conditioned independent coordinates, if there are any; that is an event.

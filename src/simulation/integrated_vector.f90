@@ -5,7 +5,7 @@ module mech9_integrated_vector
   use mech9_state, only: state_type
   implicit none
   private
-  public :: length_of_vector, pack_state, pack_rates, unpack_state
+  public :: length_of_vector, coordinate_of, pack_state, pack_rates, unpack_state
 
 contains
 
@@ -15,6 +15,15 @@ contains
 
     length_of_vector = plan%n_coordinates + size(plan%independent)
   end function length_of_vector
+
+  !> The coordinate that a number of the vector belongs to, by itself or by its rate.
+  pure integer function coordinate_of(plan, place)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: place          !< of the number in the vector
+
+    coordinate_of = place
+    if (place > plan%n_coordinates) coordinate_of = plan%independent(place - plan%n_coordinates)
+  end function coordinate_of
 
   !> The vector of a state.
   pure subroutine pack_state(plan, state, y)
