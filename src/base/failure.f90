@@ -17,7 +17,8 @@ module mech9_failure
   public :: failure_infinite_rate, failure_infinite_jacobian, failure_open_position
   public :: failure_few_points, failure_points_order, failure_no_spline
   public :: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
-  public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted, last_failure
+  public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
+  public :: failure_accuracy, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -119,7 +120,10 @@ module mech9_failure
   integer, parameter :: failure_backwards = 48
   !> The user interrupted a motion: t (that comes next).
   integer, parameter :: failure_interrupted = 49
-  integer, parameter :: last_failure = 49
+  !> A motion cannot be as accurate as was asked for: t (of the first position that is not), deviation (estimated error there),
+  !> tolerance (allowed error).
+  integer, parameter :: failure_accuracy = 50
+  integer, parameter :: last_failure = 50
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type
@@ -143,7 +147,8 @@ module mech9_failure
     real(wp) :: size = 1.0_wp                   !< length of the mechanism [m]
     real(wp) :: displacement = 0.0_wp           !< at which a chain opens [rad, lengths of the mechanism]
     real(wp) :: distance = 0.0_wp               !< from dimensions that let a chain move [rad, lengths of the mechanism]
-    real(wp) :: tolerance = 0.0_wp              !< as the user gave it, or a gap that is allowed [m]
+    real(wp) :: deviation = 0.0_wp              !< estimated error of a position [rad, m]
+    real(wp) :: tolerance = 0.0_wp              !< as the user gave it, or an error that is allowed [m; of positions rad, m]
     real(wp) :: angle_unit = 1.0_wp             !< unit of angles in the data file [rad]
   end type failure_type
 

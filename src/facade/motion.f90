@@ -8,9 +8,11 @@ module mech9_motion
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
-  use mech9_simulation, only: simulation_type, simulation_statistics_type, interruption_type, coordinate_change_type
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, interruption_type, &
+    coordinate_change_type, estimated_errors_type, judge_error
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_accuracy, only: find_accuracy
   use mech9_explanation, only: explain
   use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
   use mech9_checked_mechanism, only: checked_mechanism_type
@@ -80,6 +82,7 @@ contains
     allocate (simulation, self%model)
     call mechanism%take(.false., self%model, err)
     if (.not. allocated(err)) call assemble_free_start(self%model, plan, assembled, err)
+    if (.not. allocated(err)) call take_accuracy(self%model, plan, assembled, err, interruption)
     if (.not. allocated(err)) call new_free_simulation(self%model, plan, assembled, simulation, err, pictures=.true.)
     if (.not. allocated(err)) call simulation%start(err, interruption)
     call mechanism%point_at(err)
@@ -89,6 +92,27 @@ contains
       call move_alloc(simulation, self%simulation)
     end if
   end subroutine start_dynamics
+
+  !> Find the tolerances for an accuracy, if one is asked for. It holds at the outputs of &time, and times between them have
+  !> errors like theirs. Fails where it cannot be had.
+  subroutine take_accuracy(model, plan, assembled, err, interruption)
+    type(model_type), intent(inout) :: model                         !< gets the tolerances; the accuracy is met then
+    type(plan_type), intent(in) :: plan                              !< its plan
+    type(state_type), intent(in) :: assembled                        !< its closed position, with the independent rates
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the runs shall stop
+    type(estimated_errors_type) :: errors
+    integer :: i
+
+    if (.not. model%request%solver%accuracy > 0.0_wp) return
+    call find_accuracy(model, plan, assembled, errors, err, pictures=.true., interruption=interruption)
+    if (allocated(err)) return
+    do i = 1, size(errors%at)
+      call judge_error(model%request%time%time(i - 1), errors%at(i), errors%allowed, err)
+      if (allocated(err)) return
+    end do
+    model%request%solver%accuracy = 0.0_wp
+  end subroutine take_accuracy
 
   !> Go on to a time. Times come in the direction of the mechanism's end. Fails with exit_singular where the motion cannot go on,
   !> with exit_integrator where the integration cannot, and with exit_usage for a motion that does not run or a time before the

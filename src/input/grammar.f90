@@ -197,6 +197,9 @@ module mech9_grammar
     item_row_type('solver', 'method', 'text', 1, 1, '', optional, '''prince-dormand''', '', &
                   'prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
                   'the method of integration; bdf for stiff motions', '''adams'''), &
+    item_row_type('solver', 'accuracy', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
+                  'largest error of an output, in rad and m; other runs estimate it, and tolerances follow; 0: tolerances decide', &
+                  '1e-8', seldom=.true.), &
     item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0 and <1', '', '', &
                   'error allowed in each step, relative to coordinates and rates; errors add up, see docs/accuracy.md', &
                   '1e-8', seldom=.true.), &

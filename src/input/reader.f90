@@ -135,6 +135,7 @@ contains
 
     group = group_or_empty(document, 'solver')
     request%solver%method = get_text(group, 'method')
+    request%solver%accuracy = get_real(group, 'accuracy')
     request%solver%relative_tolerance = get_real(group, 'relative_tolerance')
     request%solver%absolute_tolerance = get_real(group, 'absolute_tolerance')
     request%solver%maximum_steps = get_integer(group, 'maximum_steps')

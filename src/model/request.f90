@@ -17,6 +17,7 @@ module mech9_request
   !> The settings of &solver.
   type :: solver_settings_type
     character(len=:), allocatable :: method       !< of integration; empty: the program's default
+    real(wp) :: accuracy = 0.0_wp                 !< largest error at an output [rad, m]; 0: the tolerances decide
     real(wp) :: relative_tolerance = 1.0e-8_wp    !< of each coordinate and rate, in a step
     real(wp) :: absolute_tolerance = 1.0e-10_wp   !< of each coordinate and rate, in its unit
     integer :: maximum_steps = 1000000            !< between two outputs

@@ -3,7 +3,7 @@ module mech9_integration_methods
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: integration_method_type, integration_methods, method_index, tolerance_share
+  public :: integration_method_type, integration_methods, method_index, tolerance_share, least_tolerance
   public :: runge_kutta, multistep
   public :: no_table, prince_dormand_table, dormand_prince_table, verner_table, fehlberg_table, kutta_merson_table
 
@@ -49,16 +49,25 @@ module mech9_integration_methods
     integration_method_type('bdf', multistep, no_table, 5, 0, .false., 3.0e-4_wp, &
                             'backward differences, orders 1 to 5; for stiff motions')]
 
+  !> A relative tolerance at which the error of a step still stands above round-off.
+  real(wp), parameter :: above_round_off = 1.0e-14_wp
+
 contains
 
   !> Part of the tolerances by which the steps of a method are judged; larger where round-off would decide otherwise.
   pure real(wp) function tolerance_share(method, relative_tolerance)
     type(integration_method_type), intent(in) :: method   !< the method
     real(wp), intent(in) :: relative_tolerance            !< as the user gave it
-    real(wp), parameter :: least = 1.0e-14_wp   ! relative tolerance at which an error still stands above round-off
 
-    tolerance_share = max(method%share, min(1.0_wp, least/relative_tolerance))
+    tolerance_share = max(method%share, min(1.0_wp, above_round_off/relative_tolerance))
   end function tolerance_share
+
+  !> The least tolerance of a method; smaller ones change nothing, or only what round-off does.
+  pure real(wp) function least_tolerance(method)
+    type(integration_method_type), intent(in) :: method   !< the method
+
+    least_tolerance = above_round_off/method%share
+  end function least_tolerance
 
   !> Place of a name in the list; 0 where it is not there.
   pure integer function method_index(name)

@@ -37,6 +37,9 @@ contains
     write (unit, '(a)') method_of(simulation)//': '//to_text(counts%steps)//' steps, '// &
       to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
       to_text(counts%rate_evaluations)//' evaluations'//each(outcome%seconds_solving, int(counts%rate_evaluations))
+    if (simulation%with_error) write (unit, '(a)') &
+      'largest error '//to_text(simulation%largest_error, 2)//' (rad, m), estimated by '//to_text(simulation%errors%runs)// &
+      ' other runs; tolerances '//to_text(simulation%model%request%solver%relative_tolerance, 2)
     write (unit, '(a)', advance='no') 'largest closure '//to_text(simulation%worst_closure, 3)//' m'
     if (simulation%motion%system%model%request%output%energies) &
       write (unit, '(a)', advance='no') '; largest change of energy '//to_text(simulation%largest_energy_change, 3)//' J'
@@ -90,6 +93,12 @@ contains
     call facts%add('method', method_of(simulation), 'method of integration')
     call facts%add('relative_tolerance', model%request%solver%relative_tolerance, 'relative error allowed in a step', '1')
     call facts%add('absolute_tolerance', model%request%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
+    if (simulation%with_error) then
+      call facts%add('accuracy', simulation%errors%allowed, 'largest error that was allowed', 'rad,m')
+      call facts%add('error', simulation%largest_error, 'largest estimated error of the outputs', 'rad,m')
+      call facts%add('other_runs', simulation%errors%runs, 'runs that tell the error and the tolerances')
+      call facts%add('other_evaluations', simulation%errors%evaluations, 'evaluations of the accelerations in these runs')
+    end if
     call facts%add('steps', counts%steps, 'steps of the integrator')
     call facts%add('evaluations', counts%rate_evaluations, 'evaluations of the accelerations')
     call facts%add('jacobian_evaluations', counts%jacobian_evaluations, &

@@ -15,7 +15,8 @@ module mech9_dynamic_task
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
-  use mech9_row_source, only: row_source_type, new_row_source
+  use mech9_accuracy, only: find_accuracy
+  use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
   use mech9_recording, only: recording_outcome_type, record
   use mech9_explained_assembly, only: assemble_free_start
   use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients, &
@@ -55,10 +56,11 @@ contains
   subroutine work(self, options, model, diagnostics, reported, kept)
     class(dynamic_task_type), intent(in) :: self            !< the dynamic task
     type(command_line_type), intent(in) :: options          !< the command line
-    type(model_type), intent(in), target :: model               !< the model
+    type(model_type), intent(in), target :: model           !< the model
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
+    type(model_type), target :: used
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
@@ -66,9 +68,10 @@ contains
     type(error_type), allocatable :: err
 
     reported = .false.
+    used = model
     call read_picture_requests(options, model, self%program_name, pictures, err)
     if (.not. allocated(err)) call assemble_free_start(model, plan, start, err)
-    if (.not. allocated(err)) call new_free_simulation(model, plan, start, simulation, err, pictures%any_wanted())
+    if (.not. allocated(err)) call new_free_simulation(used, plan, start, simulation, err, pictures%any_wanted())
     if (allocated(err)) then
       if (options%has('check')) call print_given(model, .true.)
       call diagnostics%add_error(err)
@@ -78,14 +81,14 @@ contains
       if (options%has('check')) call check_motion(model, simulation, err)
       if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, model, plan, simulation, diagnostics, reported, kept)
+      call carry_out(options, pictures, used, plan, start, simulation, diagnostics, reported, kept)
     end if
     call simulation%close()
   end subroutine work
 
   !> Fail in a check where a run would fail at its start.
   subroutine check_motion(model, simulation, err)
-    type(model_type), intent(in), target :: model                         !< the model
+    type(model_type), intent(in), target :: model                     !< the model
     type(free_simulation_type), intent(inout), target :: simulation   !< is started
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
     type(row_source_type) :: source
@@ -97,11 +100,12 @@ contains
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, model, plan, simulation, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, plan, start, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
-    type(model_type), intent(in), target :: model                         !< the model
+    type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
     type(plan_type), intent(in) :: plan                               !< the plan of the mechanism
+    type(state_type), intent(in) :: start                             !< assembled position
     type(free_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics              !< gets what is wrong
     logical, intent(out) :: reported                                  !< the run has written the report
@@ -118,11 +122,13 @@ contains
     call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return
+    if (simulation%with_error) &
+      call find_accuracy(model, plan, start, simulation%errors, err, pictures%any_wanted(), signal_interruption_type())
     call dynamic_facts(model, plan, outcome, simulation, facts)
     call results%write_facts(facts)
     hdf5 => results%hdf5()
     if (associated(hdf5)) call write_dynamics(hdf5, plan, simulation)
-    call record(source, model, results, options%has('quiet'), outcome, err, kept)
+    if (.not. allocated(err)) call record(source, model, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) call print_dynamic_report(error_unit, results%table_path, outcome, simulation)
     if (allocated(err)) call diagnostics%add_error(err)
     call dynamic_facts(model, plan, outcome, simulation, facts)

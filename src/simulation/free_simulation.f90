@@ -82,6 +82,7 @@ contains
     simulation%model => model
     simulation%with_energies = model%request%output%energies
     simulation%with_conditioning = model%request%output%conditioning
+    simulation%with_error = model%request%solver%accuracy > 0.0_wp
     simulation%motion%t = model%request%time%start
     simulation%end = model%request%time%end
     allocate (simulation%events(0))

@@ -1,8 +1,8 @@
 !> A motion in time, driven or free, behind one interface: it starts, advances from time to time, and shows its present position.
 module mech9_simulation
   use mech9_kinds, only: wp, long
-  use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
-  use mech9_failure, only: failure_not_started, failure_backwards, failure_interrupted
+  use mech9_error, only: error_type, raise, exit_usage, exit_integrator, exit_interrupted
+  use mech9_failure, only: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -11,6 +11,7 @@ module mech9_simulation
   implicit none
   private
   public :: simulation_type, interruption_type, simulation_statistics_type, coordinate_change_type
+  public :: estimated_errors_type, judge_error
 
   !> Answers whether a motion shall stop. It is asked before each time and before each step of an integrator.
   type, abstract :: interruption_type
@@ -34,17 +35,30 @@ module mech9_simulation
     integer, allocatable :: independent(:)   !< the independent coordinates from then on, ascending
   end type coordinate_change_type
 
+  !> Errors at the outputs of a motion, as other runs of it tell (mech9_accuracy).
+  type :: estimated_errors_type
+    real(wp) :: allowed = 0.0_wp              !< largest error that is allowed [rad, m]
+    real(wp), allocatable :: at(:)            !< at the outputs, from the start on, as far as these runs led [rad, m]
+    type(error_type), allocatable :: failure  !< of one of these runs, which ended before the last output
+    integer :: runs = 0                       !< how many they were
+    integer(long) :: evaluations = 0          !< of the accelerations in these runs
+  end type estimated_errors_type
+
   !> A motion. Times are given in order, from the mechanism's start in the direction of its end. It must not be copied.
   type, abstract :: simulation_type
     type(model_type), pointer :: model => null()   !< constant: the mechanism, its problem, and the request for results
     type(requested_type) :: requested              !< the part of the motion that is worked out
     logical :: with_energies = .false.             !< the energies are worked out at each time
     logical :: with_conditioning = .false.         !< the conditioning is worked out at each time
+    logical :: with_error = .false.                !< each position is judged by its estimated error
     logical :: started = .false.                   !< the position at the start is worked out
     real(wp) :: t = 0.0_wp                         !< time of the present position [s]
     real(wp) :: closure = 0.0_wp                   !< largest closure error of the present position [m]
     real(wp) :: worst_closure = 0.0_wp             !< largest closure error of all positions [m]
     real(wp) :: least_conditioning = 1.0_wp        !< least singular value of the present position, with_conditioning
+    type(estimated_errors_type) :: errors          !< of the positions; times are then those of the outputs
+    real(wp) :: error = 0.0_wp                     !< estimated for the present position, with_error [rad, m]
+    real(wp) :: largest_error = 0.0_wp             !< estimated, of all positions, with_error [rad, m]
     real(wp) :: kinetic_energy = 0.0_wp            !< of the present position, with_energies [J]
     real(wp) :: potential_energy = 0.0_wp          !< of gravity and springs, with_energies [J]
     real(wp) :: energy_at_start = 0.0_wp           !< sum of both energies, with_energies [J]
@@ -169,12 +183,43 @@ contains
     self%closure = self%present_closure()
     call self%present(plan, state)
     call check_closure(plan, t, self%closure, err)
+    if (.not. allocated(err) .and. self%with_error) call take_error(self, err)
     if (allocated(err)) return
     self%positions = self%positions + 1
     self%worst_closure = max(self%worst_closure, self%closure)
     call self%watch_conditioning(self%with_conditioning)
     if (self%with_energies) call follow_energies(self)
   end subroutine arrive
+
+  !> Keep the estimated error of the position that was reached, and judge it. Fails also where the error is not known, since one
+  !> of the runs that tell the errors could not go on.
+  subroutine take_error(self, err)
+    class(simulation_type), intent(inout) :: self       !< the simulation, at its next output
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (.not. allocated(self%errors%at)) return
+    if (self%positions == size(self%errors%at)) then
+      err = self%errors%failure
+      return
+    end if
+    self%error = self%errors%at(self%positions + 1)
+    call judge_error(self%t, self%error, self%errors%allowed, err)
+    if (.not. allocated(err)) self%largest_error = max(self%largest_error, self%error)
+  end subroutine take_error
+
+  !> Fail where an error is larger than is allowed.
+  pure subroutine judge_error(t, error, allowed, err)
+    real(wp), intent(in) :: t                           !< time of the position [s]
+    real(wp), intent(in) :: error                       !< its estimated error [rad, m]
+    real(wp), intent(in) :: allowed                     !< largest error that is allowed [rad, m]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (error <= allowed) return
+    call raise(err, exit_integrator, failure_accuracy)
+    err%failure%t = t
+    err%failure%deviation = error
+    err%failure%tolerance = allowed
+  end subroutine judge_error
 
   !> Keep the energies of the present position, and how far their sum goes from the start.
   subroutine follow_energies(self)

@@ -14,7 +14,7 @@ module mech9_explanation
     failure_unclosed_step, failure_other_branch, failure_infinite_rate, failure_infinite_jacobian, failure_few_points, &
     failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
-    failure_interrupted
+    failure_interrupted, failure_accuracy
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -263,6 +263,11 @@ contains
              to_text(failure%t_stop, 10)//' s; start it anew'
     case (failure_interrupted)
       text = 'interrupted before t = '//to_text(failure%t, 10)//' s'
+    case (failure_accuracy)
+      text = 'the motion is not as accurate as was asked for at t = '//to_text(failure%t, 10)//' s: with the least '// &
+             'tolerances its error is about '//to_text(failure%deviation, 2)//', and '// &
+             to_text(failure%tolerance, 2)//' is allowed (rad, m). Round-off alone makes such an error, where the motion '// &
+             'enlarges it enough: it may be chaotic. End before this time, or ask for a larger accuracy'
     end select
   end subroutine explain_simulation
 

@@ -300,6 +300,10 @@ def free_cases():
         ('unsolved_step', SPRING.format(1e80, 1e80, 0, 1), settings(method="'bdf'"), INTEGRATOR,
          [f'{stops}0 s: the equations of an implicit step cannot be solved. Look for a force that jumps there; or try another '
           'method']),
+        ('accuracy', swings, settings(accuracy='1e-17'), INTEGRATOR,
+         ['the motion is not as accurate as was asked for at t = 0 s: with the least tolerances its error is about ',
+          ', and 1e-17 is allowed (rad, m). Round-off alone makes such an error, where the motion enlarges it enough: it may be '
+          'chaotic. End before this time, or ask for a larger accuracy']),
         # it grows as exp(1000 t), up to 1e308 at 0.71 s
         ('infinite_rate', SPRING.format(-1e6, 0, 0, 10), (), INTEGRATOR,
          [stops, ': the motion of coordinate 1 is not finite: this motion, or a force, grows beyond all bounds. Look for a spring, a '

@@ -2,7 +2,7 @@
 program test_library
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9, only: wp, mechanism_type, motion_type, error_type, read_text, coordinate_change_type, simulation_statistics_type, &
-    exit_usage, exit_file, read_file
+    exit_usage, exit_file, exit_integrator, read_file
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -15,6 +15,7 @@ program test_library
   call check_nothing_started()
   call check_driven_energies()
   call check_one_after_the_other()
+  call check_accuracy()
   call test%finish()
 
 contains
@@ -97,4 +98,40 @@ contains
     call motion%close()
     call beside%close()
   end subroutine check_one_after_the_other
+
+  !> An accuracy gives tolerances for all of the motion; one below round-off is refused.
+  subroutine check_accuracy()
+    type(mechanism_type) :: loose, accurate, truth, impossible
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+    real(wp) :: q(3)
+
+    call read_text(free//'&solver relative_tolerance=1e-3, absolute_tolerance=1e-3 / &time end=5 /', loose, err)
+    call read_text(free//'&solver accuracy=1e-9 / &time end=5 /', accurate, err)
+    call read_text(free//'&solver relative_tolerance=1e-13, absolute_tolerance=1e-13 / &time end=5 /', truth, err)
+    call read_text(free//'&solver accuracy=1e-17 / &time end=5 /', impossible, err)
+    call test%no_error(err, 'a body that swings')
+    call ride(loose, q(1))
+    call ride(accurate, q(2))
+    call ride(truth, q(3))
+    call test%is_true(abs(q(1) - q(3)) > 1e-6_wp, 'loose tolerances show')
+    call test%near(q(2), q(3), 1e-9_wp, 'the accuracy is kept')
+    call motion%start_dynamics(impossible, err)
+    call test%has_error(err, exit_integrator, 'less than round-off cannot be had')
+    call motion%close()
+  end subroutine check_accuracy
+
+  !> The angle of a free motion after five seconds.
+  subroutine ride(mechanism, q)
+    type(mechanism_type), intent(in) :: mechanism   !< of one coordinate
+    real(wp), intent(out) :: q                      !< its value [rad]
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+
+    call motion%start_dynamics(mechanism, err)
+    call motion%advance(5.0_wp, err)
+    call test%no_error(err, 'it comes to the end')
+    q = motion%q(1)
+    call motion%close()
+  end subroutine ride
 end program test_library

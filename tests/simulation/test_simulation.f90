@@ -14,9 +14,10 @@ program test_simulation
   use mech9_parser, only: parse_document
   use mech9_reader, only: read_model
   use mech9_explanation, only: explain
-  use mech9_simulation, only: simulation_type, simulation_statistics_type
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, estimated_errors_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
+  use mech9_accuracy, only: find_accuracy
   use mech9_testing, only: tester_type
   use simulation_doubles, only: countdown_type, open_chains_type
   implicit none
@@ -31,10 +32,13 @@ program test_simulation
     '&initial coordinate=2, position=0.5 / &initial coordinate=3, position=-2 / '
   character(len=*), parameter :: driven = four_bar//'&drive coordinate=1, kind=''polynomial'', coefficients=0.6,5 / '
   character(len=*), parameter :: masses = '&body link=3, mass=2, centre=0.4,0,0, inertia=0,0,0.1,0,0,0 / '// &
-    '&gravity acceleration=0,-9.81,0 / &solver relative_tolerance=1e-10, absolute_tolerance=1e-12 / &time end=2 / '
-  character(len=*), parameter :: free = four_bar//masses//'&initial coordinate=1, position=0.6, velocity=5 / '
+    '&gravity acceleration=0,-9.81,0 / &time end=2 / '
+  character(len=*), parameter :: tight = '&solver relative_tolerance=1e-10, absolute_tolerance=1e-12 / '
+  character(len=*), parameter :: loaded = four_bar//masses//'&initial coordinate=1, position=0.6, velocity=5 / '
+  character(len=*), parameter :: free = loaded//tight
   !> The same, described by the rocker, which swings: its angle is singular at the ends of its range.
-  character(len=*), parameter :: by_rocker = '&structure cq=4 / '//pairs//masses//'&initial coordinate=1, position=2.1 / '// &
+  character(len=*), parameter :: by_rocker = '&structure cq=4 / '//pairs//masses//tight//&
+    '&initial coordinate=1, position=2.1 / '// &
     '&initial coordinate=2, position=-1.64 / &initial coordinate=3, position=-1.53 / '// &
     '&initial coordinate=4, position=-1.07, velocity=2 / '
 
@@ -49,6 +53,8 @@ program test_simulation
   call check_order_of_times(driven, .true.)
   call check_order_of_times(free, .false.)
   call check_open_chains()
+  call check_accuracy()
+  call check_interrupted_accuracy()
   call test%finish()
 
 contains
@@ -240,4 +246,60 @@ contains
     call simulation%advance(0.1_wp, err)
     call test%has_error(err, exit_singular, 'chains that are open by more')
   end subroutine check_open_chains
+
+  !> The tolerances for an accuracy, and errors that are those of the run with them; where a position has no error that is
+  !> known, the motion ends.
+  subroutine check_accuracy()
+    type(model_type), target :: model
+    type(free_simulation_type), target :: simulation
+    type(plan_type) :: plan
+    type(state_type) :: assembled
+    type(estimated_errors_type) :: errors
+    type(error_type), allocatable :: err
+    integer :: i
+
+    call read(loaded//'&solver accuracy=1e-7 / ', .false., model)
+    call assemble_free(model, plan, assembled, err)
+    call find_accuracy(model, plan, assembled, errors, err)
+    call test%no_error(err, 'an accuracy')
+    call test%is_true(size(errors%at) == 101 .and. maxval(errors%at) <= 1e-7_wp, 'no output is worse')
+    call test%is_true(minval(errors%at) > 0.0_wp, 'and none is exact')
+    call test%is_true(errors%runs >= 2 .and. errors%evaluations > 100, 'the work is counted')
+    call test%is_true(model%request%solver%relative_tolerance < 1e-7_wp .and. &
+                      abs(model%request%solver%relative_tolerance - model%request%solver%absolute_tolerance) <= 0.0_wp, &
+                      'both tolerances are found')
+    call new_free_simulation(model, plan, assembled, simulation, err)
+    simulation%errors = errors
+    simulation%errors%at = errors%at(:3)
+    allocate (simulation%errors%failure)
+    simulation%errors%failure%code = exit_singular
+    call simulation%start(err)
+    do i = 1, 2
+      if (.not. allocated(err)) call simulation%advance(model%request%time%time(i), err)
+    end do
+    call test%no_error(err, 'positions with known errors')
+    call test%near(simulation%largest_error, maxval(errors%at(:3)), 0.0_wp, 'the largest error is kept')
+    call simulation%advance(model%request%time%time(3), err)
+    call test%has_error(err, exit_singular, 'an error that is not known')
+    call simulation%close()
+  end subroutine check_accuracy
+
+  !> The runs for an accuracy stop where the user interrupts.
+  subroutine check_interrupted_accuracy()
+    type(model_type), target :: model
+    type(plan_type) :: plan
+    type(state_type) :: assembled
+    type(estimated_errors_type) :: errors
+    type(countdown_type) :: countdown
+    type(error_type), allocatable :: err
+    integer, target :: left
+
+    call read(loaded//'&solver accuracy=1e-7 / ', .false., model)
+    call assemble_free(model, plan, assembled, err)
+    left = 150
+    countdown%left => left
+    call find_accuracy(model, plan, assembled, errors, err, interruption=countdown)
+    call test%has_error(err, exit_interrupted, 'runs for an accuracy')
+    call test%is_true(errors%runs == 1, 'the first one stops, and no other begins')
+  end subroutine check_interrupted_accuracy
 end program test_simulation

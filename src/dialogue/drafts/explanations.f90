@@ -241,6 +241,10 @@ module mech9_explanations
     explanation_type('solver', 'method', '', &
                   'The method integrates the equations of motion. All but adams and bdf are methods of Runge-Kutta; '// &
                   'prince-dormand, of order 8, serves nearly always. Take bdf for very stiff springs and dampers.', 'adams'), &
+    explanation_type('solver', 'accuracy', '', &
+                  'At each result, no coordinate and no point may be wrong by more than this, in rad and in m. The program '// &
+                  'runs the motion several times, finds the tolerances by which this is so, and tells the error of each '// &
+                  'result in the column error. 0 leaves all to the tolerances.', '1e-8'), &
     explanation_type('solver', 'relative_tolerance', '', &
                   'In each step the error may be this part of the coordinates and of their rates. A smaller number is '// &
                   'more accurate and takes longer.', '1e-10'), &

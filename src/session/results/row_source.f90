@@ -10,7 +10,7 @@ module mech9_row_source
   use mech9_film, only: film_type
   implicit none
   private
-  public :: row_source_type, new_row_source
+  public :: row_source_type, signal_interruption_type, new_row_source
 
   type :: row_source_type
     character(len=6) :: program_name = ''
@@ -46,6 +46,7 @@ contains
     call source%columns%append('closure', 'm', 'largest error of a closed chain')
     if (simulation%with_conditioning) &
       call source%columns%append('conditioning', '1', 'least singular value of the worst chains')
+    if (simulation%with_error) call source%columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
   end subroutine new_row_source
 
   !> Go on to output time t and give its row. Output times come in order, the first one is the start.
@@ -75,8 +76,13 @@ contains
         row(next + 3) = simulation%kinetic_energy + simulation%potential_energy
         next = next + 3
       end if
-      row(next + 1) = simulation%closure
-      if (simulation%with_conditioning) row(next + 2) = simulation%least_conditioning
+      next = next + 1
+      row(next) = simulation%closure
+      if (simulation%with_conditioning) then
+        next = next + 1
+        row(next) = simulation%least_conditioning
+      end if
+      if (simulation%with_error) row(next + 1) = simulation%error
     end associate
     if (allocated(self%film)) call self%film%take(self%simulation%model%mechanism, plan, state, row)
   end subroutine row_at

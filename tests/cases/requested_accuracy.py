@@ -1,0 +1,126 @@
+"""An accuracy that is asked for: no coordinate and no point is wrong by more at any output, and the column `error` tells how
+wrong they are. Where the accuracy cannot be had, the run ends with a message before the first row that would not have it.
+
+usage: requested_accuracy.py MECH9D
+
+Truth is a reference in extended precision, or a run at the least tolerance, whose own error is seen from a run by another method.
+Estimates must be right to a factor of five where the error is above a hundred times this round-off.
+"""
+import os
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import REFERENCE, TREE, Checks, read_csv, read_table, run, table_and_report, table_of, text_of
+from tolerance_factors import MOTIONS
+
+EXAMPLES = os.path.join(TREE, 'examples')
+# data file, reference, columns of both, method
+REFERENCES = {
+    'pendulum': ('pendulum/pendulum', 'a01_pendulum', {'P.x': 'x', 'P.y': 'y'}),
+    'Andrews': ('andrews/andrews', 'a03_andrews_ivp',
+                {'q1': 'beta', 'q2': 'theta', 'q3': 'gamma', 'q4': 'phi', 'q5': 'delta', 'q6': 'omega', 'q7': 'epsilon'}),
+}
+# motions with long tight runs: one accuracy, or none
+STIFF, LONG = 'flyball governor, 10 s', 'spatial slider-crank, 100 s'
+
+
+def check_rows(checks, why, table, report, accuracy, errors, noise):
+    """Errors of all rows against the accuracy and against their estimates."""
+    checks.true(np.max(errors) <= accuracy, f'{why}: the accuracy is kept', np.max(errors))
+    checks.true(np.max(table['error']) <= accuracy, f'{why}: the estimate says so', np.max(table['error']))
+    checks.near(report['error'], np.max(table['error']), 1e-15, f'{why}: the report tells the largest estimate')
+    clear = errors > np.maximum(100 * noise, 1e-13)
+    ratio = table['error'][clear] / errors[clear]
+    print(f'{why}: largest error {np.max(errors):.1e}, tolerance {report["relative_tolerance"]:.1e}, '
+          f'{report["other_runs"]} other runs' + (f', estimates {np.min(ratio):.2f} to {np.max(ratio):.2f} times the error'
+                                                  if any(clear) else ''))
+    checks.true(not any(clear) or (np.min(ratio) > 0.2 and np.max(ratio) < 5), f'{why}: estimates are right to a factor of five',
+                (np.min(ratio), np.max(ratio)) if any(clear) else None)
+
+
+def check_motion(checks, mech9d, name, method, accuracies):
+    data, end = MOTIONS[name]
+    common = ['--set', f'time.end={end!r}', '--set', 'time.intervals=40']
+
+    def tight(by, tolerance):
+        table = table_of(mech9d, data, *common, '--set', f'solver.method={by}', '--set', f'solver.relative_tolerance={tolerance}',
+                         '--set', f'solver.absolute_tolerance={tolerance}')
+        return np.array([column for heading, column in table.items() if heading[0] == 'q' or heading[-2:] in ('.x', '.y', '.z')])
+
+    truth = tight('prince-dormand', 1e-14)
+    noise = np.max(np.abs(tight('verner', 1e-13) - truth), axis=0)
+    for accuracy in accuracies:
+        table, report = table_and_report(mech9d, data, *common, '--set', f'solver.method={method}',
+                                         '--set', f'solver.accuracy={accuracy}')
+        places = np.array([column for heading, column in table.items() if heading[0] == 'q' or heading[-2:] in ('.x', '.y', '.z')])
+        errors = np.max(np.abs(places - truth), axis=0)
+        check_rows(checks, f'{name}, {method}, {accuracy:g}', table, report, accuracy, errors, noise)
+
+
+def check_reference(checks, mech9d, name):
+    data, reference, columns = REFERENCES[name]
+    expected = read_csv(os.path.join(REFERENCE, reference + '.csv'))
+    for accuracy in (1e-5, 1e-8):
+        table, report = table_and_report(mech9d, os.path.join(EXAMPLES, data + '.nml'), '--set', f'solver.accuracy={accuracy}')
+        rows = [int(np.argmin(np.abs(table['t'] - t))) for t in expected['t']]
+        same = np.abs(table['t'][rows] - expected['t']) < 1e-12
+        rows = np.array(rows)[same]
+        errors = np.max([np.abs(table[ours][rows] - expected[theirs][same]) for ours, theirs in columns.items()], axis=0)
+        checks.true(len(rows) > 3 and np.max(errors) <= accuracy, f'{name}, {accuracy:g}: right against the reference',
+                    np.max(errors))
+        largest = np.max(table['error'][rows])
+        checks.true(0.2 * np.max(errors) < largest < 5 * np.max(errors), f'{name}, {accuracy:g}: so is the estimate',
+                    (largest, np.max(errors)))
+        checks.equal(report['accuracy'], accuracy, f'{name}: the report tells what was asked for')
+
+
+def check_chaos(checks, mech9d):
+    """A double pendulum forgets its start within a minute: the rows that are written have the accuracy."""
+    data, _ = MOTIONS['double pendulum, 5 s']
+    words = ['--set', 'solver.accuracy=1e-6', '--set', 'time.end=60', '--set', 'time.intervals=600']
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'table.dat')
+        done = run(mech9d, data, '--table', path, *words, folder=folder)
+        rows = read_table(text_of(path))
+    checks.equal(done.returncode, 7, 'a chaotic motion ends by the code of the integrator')
+    checks.true('not as accurate as was asked for at t = ' in done.stderr and 'chaotic' in done.stderr, 'it says when, and why',
+                done.stderr)
+    last = rows['t'][-1]
+    checks.true(10 < last < 40, 'it is kept for some time', last)
+    checks.true(np.max(rows['error']) <= 1e-6, 'no row is worse', np.max(rows['error']))
+    truth = table_of(mech9d, data, '--set', 'solver.relative_tolerance=1e-14', '--set', 'solver.absolute_tolerance=1e-14',
+                     '--set', f'time.end={last!r}', '--set', f'time.intervals={len(rows["t"]) - 1}')
+    error = np.max([np.abs(truth[name] - rows[name]) for name in ('q1', 'q2')], axis=0)
+    checks.true(np.max(error) <= 5e-6, 'no row is wrong', np.max(error))
+
+
+def check_words(checks, mech9d):
+    data = os.path.join(EXAMPLES, 'pendulum', 'pendulum.nml')
+    done = run(mech9d, data, '--table', '-', '--set', 'solver.accuracy=1e-17')
+    checks.equal(done.returncode, 7, 'less than round-off is refused')
+    checks.true('at t = 0 s' in done.stderr, 'at the start', done.stderr)
+    done = run(mech9d, data, '--set', 'solver.accuracy=-1')
+    checks.equal(done.returncode, 3, 'an accuracy is not negative')
+    table = table_of(mech9d, data)
+    checks.true('error' not in table, 'without an accuracy there is no such column', list(table))
+
+
+def main():
+    mech9d = sys.argv[1]
+    checks = Checks()
+    for name in MOTIONS.keys() - {STIFF, LONG}:
+        check_motion(checks, mech9d, name, 'prince-dormand', (1e-4, 1e-8))
+    check_motion(checks, mech9d, STIFF, 'bdf', (1e-6,))
+    check_motion(checks, mech9d, 'Fig. 1, 1 s', 'merson', (1e-6,))
+    check_motion(checks, mech9d, 'Andrews, 0.03 s', 'adams', (1e-6,))
+    for name in REFERENCES:
+        check_reference(checks, mech9d, name)
+    check_chaos(checks, mech9d)
+    check_words(checks, mech9d)
+    checks.finish()
+
+
+main()
