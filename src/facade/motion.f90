@@ -271,7 +271,7 @@ contains
     if (allocated(self%simulation)) statistics = self%simulation%statistics()
   end function statistics
 
-  !> End the motion and give back what it holds. A motion can then be started again.
+  !> End the motion and free its memory. A motion can then be started again.
   subroutine close_motion(self)
     class(motion_type), intent(inout) :: self   !< the motion
 

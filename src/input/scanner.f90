@@ -276,7 +276,7 @@ contains
     end if
   end subroutine scan_text
 
-  !> From an opening quote to the closing one, or to the end of the line.
+  !> Go on from an opening quote to the closing one, or to the end of the line.
   pure subroutine find_closing_quote(text, at, closed)
     character(len=*), intent(in) :: text  !< the whole text of the source
     integer, intent(inout) :: at          !< number of a byte: where to begin, then the first byte not taken

@@ -302,7 +302,7 @@ contains
     statistics%newton_iterations = self%motion%iterations()
   end subroutine count_work
 
-  !> Give back what the motion holds.
+  !> Free the memory of the motion.
   subroutine close_simulation(self)
     class(free_simulation_type), intent(inout) :: self   !< the simulation
 

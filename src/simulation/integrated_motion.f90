@@ -195,7 +195,7 @@ contains
     if (associated(self%system)) iterations = self%system%iterations
   end function iterations
 
-  !> Keep the counts of the integrators and give back what they hold.
+  !> Keep the counts of the integrators and free their memory.
   subroutine stop_integrators(self)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
 
@@ -204,7 +204,7 @@ contains
     call self%aside%close()
   end subroutine stop_integrators
 
-  !> Give back what the integrators and the system hold.
+  !> Free the memory of the integrators and of the system.
   subroutine close_motion(self)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
 

@@ -204,8 +204,8 @@ contains
     self%just_settled = .false.
   end subroutine resume
 
-  !> With all frames in place: all velocities and accelerations of the state, and the state as
-  !> loads see it in work%view, for results.
+  !> Find all velocities and accelerations of a state whose frames are in place, and show the state in work%view as loads see
+  !> it, for results.
   subroutine present(self, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed

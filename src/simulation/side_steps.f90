@@ -75,7 +75,7 @@ contains
     statistics = self%integrator%statistics()
   end function statistics
 
-  !> Give back what they hold.
+  !> Free the memory of the side steps.
   subroutine close_side_steps(self)
     class(side_steps_type), intent(inout) :: self   !< the side steps
 

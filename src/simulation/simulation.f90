@@ -253,7 +253,7 @@ contains
     call self%count_work(statistics)
   end function statistics
 
-  !> Give back what the simulation holds beside its own components: nothing.
+  !> Free the memory beside the simulation's own components. There is none unless a simulation says so.
   subroutine close_nothing(self)
     class(simulation_type), intent(inout) :: self   !< the simulation
 

@@ -108,8 +108,8 @@ contains
     if (found) call self%trace(graph, self%closing%top(), chain)
   end subroutine next_closed_chain
 
-  !> After a link became known or got its label: offer the chains that its pairs close, and labels
-  !> to its neighbours.
+  !> Offer the chains that the pairs of a link close, and labels to its neighbours, after the link became known or got its
+  !> label.
   pure subroutine look_around(self, graph, link)
     class(chain_search_type), intent(inout) :: self   !< the search
     type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism

@@ -28,7 +28,7 @@ contains
     call test%is_true(.not. back, 'the clock never goes back')
   end subroutine clock_goes_on
 
-  !> In a fast loop: never before the interval is over, and again and again.
+  !> A pacer in a fast loop never tells before the interval is over, and tells again and again.
   subroutine pacer_keeps_time(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(pacer_type) :: pacer

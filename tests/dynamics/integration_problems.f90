@@ -88,7 +88,7 @@ contains
     ydot(3:4) = -y(1:2)/norm2(y(1:2))**3
   end subroutine orbit_rate
 
-  !> At the point next to the centre, t = 0.
+  !> The values at the point next to the centre, t = 0.
   pure function orbit_start(eccentricity) result(y)
     real(wp), intent(in) :: eccentricity   !< of the orbit, 0 to 1
     real(wp) :: y(4)
@@ -96,7 +96,7 @@ contains
     y = [1.0_wp - eccentricity, 0.0_wp, 0.0_wp, sqrt((1.0_wp + eccentricity)/(1.0_wp - eccentricity))]
   end function orbit_start
 
-  !> By Kepler's equation, E - e sin E = t.
+  !> The values at time t, by Kepler's equation, E - e sin E = t.
   pure function orbit_at(eccentricity, t) result(y)
     real(wp), intent(in) :: eccentricity   !< of the orbit, 0 to 1
     real(wp), intent(in) :: t              !< time [s]
@@ -133,7 +133,7 @@ contains
     ydot = t**self%power
   end subroutine power_rate
 
-  !> From rest at an angle to the lowest point: K(sin(angle/2)), by the arithmetic-geometric mean.
+  !> The time from rest at an angle to the lowest point: K(sin(angle/2)), by the arithmetic-geometric mean.
   pure real(wp) function pendulum_quarter_period(angle) result(quarter)
     real(wp), intent(in) :: angle   !< from the lowest point [rad]
     real(wp) :: a, g, mean
@@ -254,7 +254,7 @@ contains
     y = y/norm2(y)
   end subroutine rotation_settle
 
-  !> From (0, y) to t_end, with one tolerance for everything, or with equal steps that pass every error test.
+  !> Integrate from (0, y) to t_end, with one tolerance for everything, or with equal steps that pass every error test.
   subroutine integrate(system, method, tolerance, t_end, y, statistics, err, equal_step, outputs)
     class(ode_system_type), intent(inout), target :: system        !< system that is integrated
     character(len=*), intent(in) :: method                         !< name of the method

@@ -122,7 +122,7 @@ contains
     call check_swing(system, dense_output, 0.0_wp, .false., 'one end alone')
     do i = 1, 9
       call add_end(system, dense_output, 0.1_wp*i)
-      ! looked into at times only: what was known for earlier steps is not that of this one
+      ! only some steps are looked into: the values known for earlier steps are not those of this one
       if (mod(i, 4) == 0) call check_swing(system, dense_output, 0.1_wp*i - 0.03_wp, .true., 'a short step')
     end do
     call dense_output%start_of_step(t, y)

@@ -144,7 +144,7 @@ contains
       end do
       call test%no_error(err, method//' takes its steps')
       call test%is_true(shortest > 1.0e-4_wp, method//' takes no very short step to a stop')
-      ! one more where the last but one is halved, one more where the last is
+      ! one step more if the last but one is halved, and one more if the last one is
       call test%is_true(i <= 62, method//' takes hardly more steps to meet a stop')
     end do
     call integrator%destroy()

@@ -57,7 +57,7 @@ contains
     end do
   end subroutine try
 
-  !> Make any one of the coordinates dependent that are not, or the other way round.
+  !> Make a coordinate, chosen at random among the others, dependent or independent.
   subroutine change_one(dependent, to)
     logical, intent(inout) :: dependent(:)   !< (M) coordinates that follow from the others
     logical, intent(in) :: to                !< it becomes dependent
@@ -71,7 +71,7 @@ contains
     end do
   end subroutine change_one
 
-  !> Do these dependent coordinates follow from the others? By the rank of their columns.
+  !> Whether these dependent coordinates follow from the others, by the rank of their columns.
   logical function serves(equations, rank, dependent)
     real(wp), intent(in) :: equations(:, :)   !< (6 loops,M) that the rates satisfy
     integer, intent(in) :: rank               !< of the equations

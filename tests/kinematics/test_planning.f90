@@ -61,7 +61,7 @@ program test_planning
   call test%has_error(err, exit_structure, 'a five-bar needs two independent coordinates')
   call test%is_true(index(message_of(err), '1 more of the coordinates 2, 3, 4, 5') > 0, 'and is told which could be')
 
-  ! too many
+  ! too many independent coordinates
   call four_bar(1.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
   call new_partition(model%mechanism%structure, [.true., .true., .false., .false.], model%problem%partition)
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)

@@ -104,7 +104,7 @@ contains
     end do
   end subroutine small_matrices
 
-  !> All of three rows, with each choice of signs.
+  !> All permutations of three rows, with each choice of signs.
   subroutine permutations(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: orders(3, 6) = reshape([1, 2, 3, 2, 3, 1, 3, 1, 2, 2, 1, 3, 1, 3, 2, 3, 2, 1], [3, 6])

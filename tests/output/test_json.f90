@@ -126,7 +126,7 @@ contains
     call tester%has_error(err, exit_file, 'a full disk')
   end subroutine test_full_disk
 
-  !> All of a small file.
+  !> The whole text of a small file.
   function file_text(path) result(text)
     character(len=*), intent(in) :: path   !< of the file
     character(len=:), allocatable :: text

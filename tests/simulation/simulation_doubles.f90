@@ -23,7 +23,7 @@ module simulation_doubles
 
 contains
 
-  !> Whether this question is the one.
+  !> Whether this is the question that is answered with yes.
   logical function is_wanted(self)
     class(countdown_type), intent(in) :: self   !< counts its questions
 

@@ -103,7 +103,7 @@ contains
                    'a quarter turn about z brings x to y')
   end subroutine axis_and_angle
 
-  !> From 0 to 180 degrees, close to both, and close to all places where formulas change.
+  !> Rotation vectors of rotations from 0 to 180 degrees, close to both, and close to all angles at which formulas change.
   subroutine vector_of_rotation(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random

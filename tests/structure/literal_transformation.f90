@@ -64,7 +64,7 @@ contains
     vectors = work%vectors
   end subroutine transform_literally
 
-  !> Do the links stay connected if a pair is taken away?
+  !> Whether the links stay connected if a pair is taken away.
   logical function connected_without(structure, without)
     type(structure_type), intent(in) :: structure   !< the structure
     integer, intent(in) :: without                  !< coordinate of the pair that is taken away

@@ -5,7 +5,7 @@ module mech9_counted_memory
   private
   public :: calls
 
-  !> So far.
+  !> Number of allocations so far.
   integer :: calls = 0
 
   interface

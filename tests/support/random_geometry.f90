@@ -62,7 +62,7 @@ contains
     r(:, 3) = [2.0_wp*(q(1)*q(3) + q(0)*q(2)), 2.0_wp*(q(2)*q(3) - q(0)*q(1)), q(0)**2 - q(1)**2 - q(2)**2 + q(3)**2]
   end function rotation_from_quaternion
 
-  !> Any rotation.
+  !> A random rotation.
   function random_rotation(random) result(r)
     type(random_type), intent(inout) :: random   !< source of the random numbers
     real(wp) :: r(3, 3), q(0:3)

@@ -17,7 +17,7 @@ module many_runs
   private
   public :: run_type, list_runs, carry_out, same
 
-  !> One run and what came out of it.
+  !> One run and its results.
   type :: run_type
     character(len=:), allocatable :: file
     logical :: dynamic = .false.

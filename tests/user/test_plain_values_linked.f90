@@ -1,4 +1,4 @@
-!> Only the forms in plain real numbers are linked: they are found, and they do.
+!> Only the forms in plain real numbers are linked: they are found, and they are enough.
 program test_plain_values_linked
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

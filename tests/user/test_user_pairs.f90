@@ -97,7 +97,7 @@ contains
     end do
   end subroutine forms_agree
 
-  !> Towards the end of where a procedure has values only narrow stencils fit.
+  !> Only narrow stencils fit near the end of the range in which a procedure has values.
   subroutine end_of_domain(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_pair_type) :: exact_pair, plain_pair
