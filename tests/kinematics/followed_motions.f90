@@ -5,12 +5,23 @@ module mech9_followed_motions
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_tolerances, only: near_singular
   use mech9_planning, only: make_plan
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, set_inputs
   use mech9_testing, only: tester_type
   implicit none
   private
-  public :: begin_motion, angle_between
+  public :: begin_motion, angle_between, at_crossing
+
+  !> Round-off of closing a chain, some units [rad, m of mechanisms of 1 m].
+  real(wp), parameter :: round_off = 1.0e-15_wp
+  !> The least pivot at the positions beside a crossing between which a polynomial leads through it: the first is taken where
+  !> the pivot falls below `near_singular`, the second halfway from there, and a step halves pivots at most.
+  real(wp), parameter :: pivot = 0.25_wp*near_singular
+  !> Largest errors within a crossing: of positions, of rates over the fastest rate, of accelerations over its square. Round-off
+  !> over the pivot is left in a position, and once more over the pivot in each derivative; the polynomial of twelve terms
+  !> multiplies them by some tens.
+  real(wp), parameter :: at_crossing(0:2) = 40.0_wp*round_off/[pivot, pivot**2, pivot**3]
 
 contains
 
