@@ -197,6 +197,7 @@ contains
     call system%close_near(0.0_wp, y, ok, err)
     call test%no_error(err, 'a small error inside a step')
     call test%is_true(ok, 'a small error inside a step is closed')
+    ! both are closed to round-off over a conditioning of 0.1
     call test%near(maxval(abs(system%state%q - closed(:4))), 0.0_wp, 1.0e-13_wp, 'where it was')
     y(2:4) = closed(2:4) + 5.0e-3_wp*[1.0_wp, -2.0_wp, 1.0_wp]
     call system%close_near(0.0_wp, y, ok, err)

@@ -170,6 +170,7 @@ contains
     end do
     call test%no_error(err, method//' turns back')
     call test%is_true(abs(t) <= 0.0_wp, method//' comes back to the time of the start')
+    ! a thousand steps at most, each with an error of 1e-10, of which the early ones grow some ten times
     call test%near(maxval(abs(y - orbit_start(0.5_wp))), 0.0_wp, 1.0e-6_wp, method//' comes back to the start')
     call integrator%destroy()
   end subroutine check_turning_back
@@ -245,6 +246,7 @@ contains
       ! y with half the length is carried on, not forgotten
       call integrator%correct(0.5_wp*y, err)
       call integrator%step(20.001_wp, t, y, err)
+      ! a part of the old length, 1, that came in from steps before would be seen: the motion turns by 1e-3 in this step
       call test%near(norm2(y), 0.5_wp, 1.0e-4_wp, trim(m%name)//' goes on from what it was given')
       call integrator%destroy()
     end associate
@@ -273,6 +275,7 @@ contains
     end do
     after = integrator%statistics()
     call test%no_error(err, method//' after a restart')
+    ! a thousand steps at most, each with an error of 1e-9, of which the early ones grow some ten times
     call test%near(maxval(abs(y - orbit_at(0.5_wp, 2.0_wp))), 0.0_wp, 1.0e-5_wp, method//' goes on from a restart')
     call test%is_true(after%steps > before%steps .and. after%rate_evaluations > before%rate_evaluations .and. &
                       after%error_test_failures >= before%error_test_failures, method//' counts on after a restart')

@@ -27,7 +27,7 @@ contains
     call test%is_true(pair%plain_values, 'its form is found')
     call pair%evaluate(0.5_wp, motion, err)
     call test%no_error(err, 'a pair in plain values, evaluated')
-    ! the first point runs along (2 cos q, sin q, 0.3 q^2)
+    ! the first point runs along (2 cos q, sin q, 0.3 q^2); 1e-12, 1e-11 and 1e-10 are promised of plain values
     call test%near(motion%pose%p(1), 2.0_wp*cos(0.5_wp), 1.0e-12_wp, 'its first point')
     call test%near(motion%v(2), cos(0.5_wp), 1.0e-11_wp, 'its rate')
     call test%near(motion%v_rate(3), 0.6_wp, 1.0e-10_wp, 'its second derivative')
