@@ -222,6 +222,7 @@ def test_dynamics(session):
         check_form(checks, file, 'Fig. 1 in motion')
         same(checks, file['E_kinetic'][:] + file['E_potential'][:], file['E_total'][:], 'the energies add up')
         a, dq = file['dynamics/coefficients'][:], file['dq'][0, file['dynamics/p'][:] - 1]
+        # both sum some dozens of products of order ten
         checks.near(0.5 * dq @ a @ dq, file['E_kinetic'][0], 1e-13, 'the coefficients of motion give the kinetic energy')
         found, change = file['diagnostics'], file['E_total'][:] - file['E_total'][0]
         checks.equal(found['energy_at_start'][()], file['E_total'][0], 'the energy at the start')

@@ -186,6 +186,7 @@ def branches(s):
     opening = np.arccos((0.9 ** 2 + diagonal ** 2 - 1.1 ** 2) / (2.0 * 0.9 * diagonal))
     rockers = np.degrees(np.arctan2(tip[1], tip[0]) + np.array([-opening, opening]))
     rockers = (rockers + 180.0) % 360.0 - 180.0
+    # angles of some radians are closed to 1e-15 over a conditioning of 0.1
     s.checks.near(sorted(values[2] for values in found), sorted(rockers), 1e-12, 'the two rockers, in degrees')
     # the groups of one assembly lead to it
     for part, values in zip(re.split(r'! assembly .*\n', done.stdout)[1:], found):

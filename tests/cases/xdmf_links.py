@@ -23,6 +23,7 @@ def check_poses(checks, path, why):
     with h5py.File(path, 'r') as file:
         a, u, vertex = file['rotation'][:], file['origin'][:], file['vertex'][:]
         rows, links = a.shape[:2]
+        # a rotation is a product of those of the pairs before it: some hundred units of round-off for the longest chain
         checks.near(np.einsum('tlij,tlkj->tlik', a, a), np.broadcast_to(np.eye(3), a.shape), 1e-13,
                     f'{why}: A A^T = 1')
         checks.near(np.linalg.det(a), 1.0, 1e-13, f'{why}: right-handed')
