@@ -3,6 +3,7 @@
 module mech9_structure_reader
   use mech9_error, only: exit_structure
   use mech9_text, only: to_text, some_of
+  use mech9_masks, only: numbers_of
   use mech9_source, only: span_type
   use mech9_finding, only: finding_type, longest_list
   use mech9_structure, only: structure_type, structure_from_pairs, structure_from_matrix, check_pair_links
@@ -295,7 +296,7 @@ contains
       end associate
     end do
     if (.not. data%all_pairs .or. m /= n_coordinates) return
-    missing = pack([(k, k=1, m)], data%group_of_pair == 0)
+    missing = numbers_of(data%group_of_pair == 0)
     if (size(missing) > 0) &
       call diagnostics%add(data%n_coordinates_span, 'no &pair is given for coordinate'// &
                            trim(merge('s', ' ', size(missing) > 1))//' '//some_of(missing, longest_list), exit_structure)

@@ -3,6 +3,7 @@
 module mech9_structural_vectors
   use mech9_kinds, only: long
   use mech9_text, only: to_text, some_of
+  use mech9_masks, only: numbers_of
   use mech9_finding, only: finding_type, finding_list_type, longest_list
   use mech9_structure, only: structure_type
   implicit none
@@ -261,11 +262,10 @@ contains
     logical, intent(in) :: used(:)                   !< (M) coordinates that stand in nws
     type(finding_list_type), intent(inout) :: list   !< gets the findings
     integer, allocatable :: missing(:)
-    integer :: i
 
-    missing = pack([(i, i=1, size(known))], .not. known)
+    missing = numbers_of(.not. known)
     if (size(missing) > 0) call list%add('nrg', [0, 0], 'no chain reaches these links: '//some_of(missing, longest_list))
-    missing = pack([(i, i=1, size(used))], .not. used)
+    missing = numbers_of(.not. used)
     if (size(missing) > 0) call list%add('nws', [0, 0], 'these coordinates are missing in nws: '//some_of(missing, longest_list))
   end subroutine check_complete
 

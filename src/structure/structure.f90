@@ -4,6 +4,7 @@
 !> It is held sparsely, as two links a pair: the coincidence matrix C itself is only read.
 module mech9_structure
   use mech9_text, only: to_text, some_of
+  use mech9_masks, only: numbers_of
   use mech9_finding, only: finding_type, finding_list_type, longest_list
   implicit none
   private
@@ -147,7 +148,7 @@ contains
     do i = 1, n_links
       call find_group(group, i, a)
     end do
-    apart = pack([(i, i=1, n_links)], group /= 1)
+    apart = numbers_of(group /= 1)
     if (size(apart) == 1) then
       call list%add(name, [0, 0], 'link '//some_of(apart, longest_list)//' is not connected to link 1 (the frame); '// &
                     'give a pair that joins it')
@@ -229,7 +230,7 @@ contains
         end if
       end do
     end do
-    missing = pack([(k, k=1, m)], .not. present_in_c)
+    missing = numbers_of(.not. present_in_c)
     if (size(missing) == 1) then
       call list%add('c', [0, 0], 'coordinate '//some_of(missing, longest_list)//' is missing in C')
     else if (size(missing) > 1) then

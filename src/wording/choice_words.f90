@@ -2,6 +2,7 @@
 module mech9_choice_words
   use mech9_text, only: to_text, some_of
   use mech9_failure, only: failure_type
+  use mech9_masks, only: numbers_of
   implicit none
   private
   public :: explain_choice, longest_list
@@ -96,13 +97,4 @@ contains
     mask = .false.
     mask(numbers) = .true.
   end function mask_of
-
-  !> The places of a mask that are true.
-  pure function numbers_of(mask) result(numbers)
-    logical, intent(in) :: mask(:)        !< any length
-    integer, allocatable :: numbers(:)
-    integer :: i
-
-    numbers = pack([(i, i=1, size(mask))], mask)
-  end function numbers_of
 end module mech9_choice_words

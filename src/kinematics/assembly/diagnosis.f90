@@ -5,6 +5,7 @@ module mech9_diagnosis
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
   use mech9_failure, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
     failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain
+  use mech9_masks, only: numbers_of
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -15,7 +16,6 @@ module mech9_diagnosis
   implicit none
   private
   public :: judge_choice, refuse_open, refuse_undetermined, refuse_locked
-
 
   !> Gaps below this part of the mechanism's size come from dimensions with too few digits.
   real(wp), parameter :: nearly_closed = 1.0e-5_wp
@@ -169,14 +169,4 @@ contains
     err%failure%distance = locked%distance
     err%failure%size = plan%length
   end subroutine refuse_locked
-
-  !> The places of a mask that are true.
-  pure function numbers_of(mask) result(numbers)
-    logical, intent(in) :: mask(:)            !< any length
-    integer, allocatable :: numbers(:)
-    integer :: i
-
-    numbers = pack([(i, i=1, size(mask))], mask)
-  end function numbers_of
-
 end module mech9_diagnosis

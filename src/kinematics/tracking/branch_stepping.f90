@@ -9,6 +9,7 @@ module mech9_branch_stepping
   use mech9_tolerances, only: creeping_move, creeping_step, least_step, longest_drive, longest_move, small_correction, &
     trusted_contraction, trusted_correction, trusted_rate_change
   use mech9_error, only: error_type
+  use mech9_masks, only: numbers_of
   use mech9_drive, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_tree_paths, only: mark_path
@@ -105,7 +106,7 @@ contains
     do i = 1, size(drives)
       drives_chain(i) = marked(plan%step_of(drives(i)%drive%coordinate))
     end do
-    numbers = pack([(i, i=1, size(drives))], drives_chain)
+    numbers = numbers_of(drives_chain)
   end function drives_of_chains
 
   !> Take the state, complete with its accelerations, as the accepted position; nothing is known of the motion before it.

@@ -3,6 +3,7 @@ module mech9_check_notes
   use mech9_kinds, only: wp, pi, radians_per_degree
   use mech9_error, only: error_type
   use mech9_text, only: to_text, some_of
+  use mech9_masks, only: numbers_of
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_of
@@ -99,7 +100,7 @@ contains
       end associate
     end do
     if (any(massless)) write (unit, '(a)') 'note: '//trim(merge('links', 'link ', count(massless) > 1))//' '// &
-      some_of(pack([(i, i=1, size(massless))], massless), longest_list)//trim(merge(' have', ' has ', count(massless) > 1))// &
+      some_of(numbers_of(massless), longest_list)//trim(merge(' have', ' has ', count(massless) > 1))// &
       ' no mass, while others have; give a &body where this is a mistake'
   end subroutine note_bodies
 end module mech9_check_notes

@@ -2,6 +2,7 @@
 module mech9_structure_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text, some_of
+  use mech9_masks, only: numbers_of
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_plan, only: plan_type
   use mech9_mobility_report, only: mobility_report_type
@@ -137,10 +138,9 @@ contains
     type(plan_type), intent(in) :: plan               !< the plan of the mechanism
     type(mobility_report_type), intent(in) :: report  !< mobility and ranks
     integer, intent(in) :: i                          !< position of the coordinate among the independent ones
-    integer :: k
     integer, allocatable :: others(:)
 
-    others = pack([(k, k=1, plan%n_coordinates)], abs(report%shares(:, i)) > least_share)
+    others = numbers_of(abs(report%shares(:, i)) > least_share)
     others = pack(others, others /= plan%independent(i))
     if (size(others) > 0) then
       write (unit, '(a)') 'could be independent instead of '//to_text(plan%independent(i))//': '//some_of(others, longest_list)
@@ -155,10 +155,9 @@ contains
     logical, intent(in) :: mask(:)                  !< whether each number is in the list
     character(len=*), intent(in) :: words           !< text before the list
     character(len=*), intent(in), optional :: more  !< text after the list
-    integer :: k
 
     if (.not. any(mask)) return
-    write (unit, '(2a)', advance='no') words, some_of(pack([(k, k=1, size(mask))], mask), longest_list)
+    write (unit, '(2a)', advance='no') words, some_of(numbers_of(mask), longest_list)
     if (present(more)) write (unit, '(a)', advance='no') more
     write (unit, '(a)') ''
   end subroutine print_marked
