@@ -1,7 +1,7 @@
 !> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-  use mech9_error, only: error_type, exit_done
+  use mech9_error, only: error_type, exit_done, exit_file
   use mech9_text, only: string_type
   use mech9_command_line, only: command_line_type
   use mech9_help_text, only: help_text
@@ -96,9 +96,11 @@ contains
     if (.not. answers_only(options)) call catch_interrupts()
     call read_document(path, document, diagnostics)
     call options%arguments('set', settings)
-    do i = 1, size(settings)
-      call apply_setting(document, settings(i)%text, diagnostics)
-    end do
+    if (diagnostics%code() /= exit_file) then
+      do i = 1, size(settings)
+        call apply_setting(document, settings(i)%text, diagnostics)
+      end do
+    end if
     call list_inputs(path, document, inputs)
     call refuse_overwriting(options, inputs, err)
     if (allocated(err)) then

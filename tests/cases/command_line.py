@@ -80,6 +80,8 @@ def wrong_use(s):
     s.ends(USAGE, 'an option without its argument', FIG1, '--table', says='--table')
     s.ends(USAGE, 'an argument where none belongs', FIG1, '--quiet=yes', says='--quiet')
     s.ends(FILE, 'no such data file', 'nowhere.nml', says='nowhere.nml')
+    said = s.run('nowhere.nml', '--set', 'time.end=2').stderr
+    s.checks.true(len(said.splitlines()) == 1, 'a missing file is one error, whatever is set in it', said)
     s.ends(FILE, 'a folder as data file', s.folder)
 
 
