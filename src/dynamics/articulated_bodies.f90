@@ -8,18 +8,22 @@
 !>   ddq = (Q - S . wrench_0 - U . (motion of the parent, carried to the origin of this frame)) / D,
 !> so that the inertia less U U^T / D passes to the parent. A second pass outward finds the accelerations. The motions
 !> (dw, dv) are accelerations less those that rates alone give, so that no other terms of the rates appear.
+!>
+!> Both passes go over a run of open steps; mech9_cluster_bodies does the same for a closed cluster.
 module mech9_articulated_bodies
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back, combine, cross
   implicit none
   private
-  public :: articulated_type, articulated_work_type, new_articulated, new_articulated_work, add_to_frame, &
-    solve_open_chains
+  public :: articulated_type, articulated_work_type, new_articulated, new_articulated_work, add_to_frame, set_bodies, &
+    go_inward, go_outward, rigid_inertia, add_to_parent
 
-  !> An open mechanism in the form that the passes use. Indices are the numbers of frames, which are those of the steps.
+  !> The steps and bodies of a mechanism in the form that the passes use. Indices are the numbers of frames, which are those of
+  !> the steps.
   type :: articulated_type
     integer, allocatable :: parent(:)            !< (M) frame from which each step departs, 0 for that of link 1
     integer, allocatable :: coordinate(:)        !< (M) number of the coordinate of each step
+    integer, allocatable :: place(:)             !< (M) its place among the independent coordinates, or 0
     logical, allocatable :: slides(:)            !< (M) the frame's origin moves by its own step
     real(wp), allocatable :: mass(:)             !< (M) of the frame's bodies together [kg]
     real(wp), allocatable :: moment(:, :)        !< (3,M) mass times centre, in the frame [kg m]
@@ -41,15 +45,17 @@ module mech9_articulated_bodies
 
 contains
 
-  !> An open mechanism whose frames have no mass yet; `add_to_frame` gives them mass.
-  pure function new_articulated(parent, coordinate, slides) result(chains)
+  !> A mechanism whose frames have no mass yet; `add_to_frame` gives them mass.
+  pure function new_articulated(parent, coordinate, place, slides) result(chains)
     integer, intent(in) :: parent(:)       !< (M) frame from which each step departs
     integer, intent(in) :: coordinate(:)   !< (M) number of the coordinate of each step
+    integer, intent(in) :: place(:)        !< (M) its place among the independent coordinates, or 0
     logical, intent(in) :: slides(:)       !< (M) whether the frame's origin moves by its own step
     type(articulated_type) :: chains
 
     chains%parent = parent
     chains%coordinate = coordinate
+    chains%place = place
     chains%slides = slides
     allocate (chains%mass(size(parent)), chains%moment(3, size(parent)), chains%inertia(3, 3, size(parent)), source=0.0_wp)
   end function new_articulated
@@ -65,7 +71,7 @@ contains
 
   !> Add the mass and inertia of a body to the frame with which it moves.
   pure subroutine add_to_frame(chains, frame, mass, centre, inertia)
-    type(articulated_type), intent(inout) :: chains   !< the open mechanism
+    type(articulated_type), intent(inout) :: chains   !< the mechanism
     integer, intent(in) :: frame                      !< number of the frame
     real(wp), intent(in) :: mass                      !< of the body [kg]
     real(wp), intent(in) :: centre(3)                 !< mass centre, from the frame's origin, in the frame's axes [m]
@@ -81,34 +87,6 @@ contains
       end do
     end associate
   end subroutine add_to_frame
-
-  !> Accelerations of all coordinates under gravity, the wrenches work%applied and generalized forces. The motion is
-  !> given by frames, screws of the steps, velocities, and the accelerations that rates alone give, all in fixed axes.
-  !> `found` is false where a coordinate has no inertia beyond round-off.
-  pure subroutine solve_open_chains(chains, m, gravity, r, p, axis_w, axis_v, omega, alpha, a, forces, work, ddq, found)
-    type(articulated_type), intent(in) :: chains         !< the open mechanism
-    integer, intent(in) :: m                             !< number of steps
-    real(wp), intent(in) :: gravity(3)                   !< acceleration of free fall [m/s^2]
-    real(wp), intent(in) :: r(3, 3, 0:m)                 !< rotation of each frame
-    real(wp), intent(in) :: p(3, 0:m)                    !< origin of each frame [m]
-    real(wp), intent(in) :: axis_w(3, m)                 !< angular velocity that each step gives per unit rate
-    real(wp), intent(in) :: axis_v(3, m)                 !< velocity of the new origin per unit rate
-    real(wp), intent(in) :: omega(3, 0:m)                !< angular velocity of each frame [rad/s]
-    real(wp), intent(in) :: alpha(3, 0:m)                !< angular acceleration that rates alone give [rad/s^2]
-    real(wp), intent(in) :: a(3, 0:m)                    !< acceleration of each origin that rates alone give [m/s^2]
-    real(wp), intent(in) :: forces(m)                    !< generalized force on each coordinate [N m or N]
-    type(articulated_work_type), intent(inout) :: work   !< scratch, with the loads' wrenches in `applied`
-    real(wp), intent(out) :: ddq(m)                      !< acceleration of each coordinate [rad/s^2, m/s^2]
-    logical, intent(out) :: found                        !< whether all coordinates have inertia; otherwise `ddq` is not set
-
-    call set_bodies(m, chains%mass, chains%moment, chains%inertia, gravity, r, omega, alpha, a, work%applied, &
-                    work%inertia, work%wrench, work%amount)
-    call go_inward(m, chains%parent, chains%coordinate, chains%slides, p, axis_w, axis_v, forces, work%inertia, &
-                   work%wrench, work%amount, work%column, work%pivot, work%rest, found)
-    if (.not. found) return
-    call go_outward(m, chains%parent, chains%coordinate, p, axis_w, axis_v, work%column, work%pivot, work%rest, &
-                    work%motion, ddq)
-  end subroutine solve_open_chains
 
   !> The inertia of each frame's own bodies in fixed axes, and the wrench that these bodies require for the motion by rates
   !> alone, less that of the loads and of gravity.
@@ -173,10 +151,12 @@ contains
     end do
   end function in_fixed_axes
 
-  !> Eliminate the accelerations of the steps, the last one first. All vectors are in fixed axes.
-  pure subroutine go_inward(m, parent, coordinate, slides, p, axis_w, axis_v, forces, inertia, wrench, amount, column, &
-                            pivot, rest, found)
-    integer, intent(in) :: m                        !< number of steps
+  !> Eliminate the accelerations of a run of open steps, the last one first. All vectors are in fixed axes.
+  pure subroutine go_inward(first, last, m, parent, coordinate, slides, p, axis_w, axis_v, forces, inertia, wrench, amount, &
+                            column, pivot, rest, found)
+    integer, intent(in) :: first                    !< first step of the run
+    integer, intent(in) :: last                     !< last step of the run
+    integer, intent(in) :: m                        !< number of steps of the plan
     integer, intent(in) :: parent(m)                !< frame from which each step departs
     integer, intent(in) :: coordinate(m)            !< number of the coordinate of each step
     logical, intent(in) :: slides(m)                !< whether the frame's origin moves by its own step
@@ -187,15 +167,15 @@ contains
     real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< J, H, M of each frame's own bodies; then of all links beyond it too
     real(wp), intent(inout) :: wrench(6, 0:m)       !< torque_0 and force_0 in the same way [N m, N]
     real(wp), intent(inout) :: amount(5, 0:m)       !< mass, moment and sum of m r^2 in the same way, as if rigid
-    real(wp), intent(out) :: column(6, m)           !< U of each step
-    real(wp), intent(out) :: pivot(m)               !< D of each step
-    real(wp), intent(out) :: rest(m)                !< Q - S . wrench_0 of each step
-    logical, intent(out) :: found                   !< whether all coordinates have inertia
+    real(wp), intent(inout) :: column(6, m)         !< gets U of each step of the run
+    real(wp), intent(inout) :: pivot(m)             !< gets D of each step of the run
+    real(wp), intent(inout) :: rest(m)              !< gets Q - S . wrench_0 of each step of the run
+    logical, intent(out) :: found                   !< whether all coordinates of the run have inertia
     real(wp) :: u(6), part(6), arm(3)
     integer :: s, i
 
     found = .true.
-    do s = m, 1, -1
+    do s = last, first, -1
       u(1:3) = turn(inertia(:, 1:3, s), axis_w(:, s))
       u(4:6) = turn_back(inertia(:, 4:6, s), axis_w(:, s))
       rest(s) = forces(coordinate(s)) - dot_product(axis_w(:, s), wrench(1:3, s))
@@ -266,11 +246,13 @@ contains
     parent_amount(5) = parent_amount(5) + amount(5) + 2.0_wp*dot_product(arm, amount(2:4)) + amount(1)*dot_product(arm, arm)
   end subroutine add_to_parent
 
-  !> Find the accelerations, the first step first. All vectors are in fixed axes.
-  pure subroutine go_outward(m, parent, coordinate, p, axis_w, axis_v, column, pivot, rest, motion, ddq)
-    integer, intent(in) :: m                    !< number of steps
+  !> Find the accelerations of a run of open steps, the first step first. All vectors are in fixed axes.
+  pure subroutine go_outward(first, last, m, parent, place, p, axis_w, axis_v, column, pivot, rest, motion, accelerations)
+    integer, intent(in) :: first                !< first step of the run
+    integer, intent(in) :: last                 !< last step of the run
+    integer, intent(in) :: m                    !< number of steps of the plan
     integer, intent(in) :: parent(m)            !< frame from which each step departs
-    integer, intent(in) :: coordinate(m)        !< number of the coordinate of each step
+    integer, intent(in) :: place(m)             !< place of each step's coordinate among the independent ones
     real(wp), intent(in) :: p(3, 0:m)           !< origin of each frame [m]
     real(wp), intent(in) :: axis_w(3, m)        !< angular velocity that each step gives per unit rate
     real(wp), intent(in) :: axis_v(3, m)        !< velocity of the new origin per unit rate
@@ -278,15 +260,15 @@ contains
     real(wp), intent(in) :: pivot(m)            !< D of each step
     real(wp), intent(in) :: rest(m)             !< Q - S . wrench_0 of each step
     real(wp), intent(inout) :: motion(6, 0:m)   !< gets accelerations less those that rates alone give; zero for frame 0
-    real(wp), intent(out) :: ddq(m)             !< acceleration of each coordinate [rad/s^2, m/s^2]
+    real(wp), intent(inout) :: accelerations(*)   !< (independent coordinates) gets those of the run [rad/s^2, m/s^2]
     real(wp) :: dw(3), dv(3), x
     integer :: s
 
-    do s = 1, m
+    do s = first, last
       dw = motion(1:3, parent(s))
       dv = motion(4:6, parent(s)) + cross(dw, p(:, s) - p(:, parent(s)))
       x = (rest(s) - dot_product(column(1:3, s), dw) - dot_product(column(4:6, s), dv))/pivot(s)
-      ddq(coordinate(s)) = x
+      accelerations(place(s)) = x
       motion(1:3, s) = dw + x*axis_w(:, s)
       motion(4:6, s) = dv + x*axis_v(:, s)
     end do

@@ -33,7 +33,8 @@ contains
 
     associate (block => plan%blocks(b))
       if (size(block%unknowns) == 0) then
-        call move_as_expected(plan, dynamics, b, state, work)
+        call spread_velocities(plan, block, state)
+        call spread_accelerations(plan, block, block%last_step, state)
         return
       end if
       call dynamics%arithmetic%factorize_block(plan, b, state, work)
@@ -106,17 +107,12 @@ contains
     real(wp) :: scale
     integer :: i, k
 
-    if (size(block%unknowns) == 0) then
-      call spread_accelerations(plan, block, block%last_step, state)
-      return
-    end if
     scale = 0.0_wp
     do i = 1, size(block%unknowns)
       k = block%coordinates(i)
       state%ddq(k) = expected(k)
       scale = max(scale, (state%dq(k)/plan%unit_of(k))**2)
     end do
-    call spread_accelerations(plan, block, block%last_step, state)
     call block_rates(plan, block, 2, state, work%right)
     work%right = -work%right
     call work%equations%solve(work%right, work%change, round_off=round_off_of_rates*scale)

@@ -5,6 +5,8 @@ module mech9_dynamics_plan
   use mech9_inertia, only: inertia_in_axes
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
+  use mech9_clusters, only: clusters_type, find_clusters
+  use mech9_tree_stages, only: find_stages
   use mech9_lagrange_types, only: dynamics_plan_type
   use mech9_spatial_dynamics, only: new_spatial_dynamics
   use mech9_planar_dynamics, only: new_planar_dynamics
@@ -19,6 +21,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(dynamics_plan_type), intent(out) :: dynamics   !< the plan of dynamics
+    type(clusters_type) :: clusters
     integer :: i
 
     dynamics%gravity = mechanism%gravity
@@ -34,9 +37,11 @@ contains
     end do
     dynamics%loaded = pack([(i, i=2, plan%n_links)], dynamics%load_links(2:))
     call find_bodies(mechanism, plan, dynamics)
-    call find_columns(plan, dynamics)
+    clusters = find_clusters(plan)
+    dynamics%support = clusters%base
+    call find_columns(plan, clusters, dynamics)
     call find_carriers(plan, dynamics)
-    dynamics%open_chains = size(plan%closures) == 0
+    call find_tree(plan, clusters, dynamics)
     if (plan%planar%used) then
       allocate (dynamics%arithmetic, source=new_planar_dynamics(mechanism, plan, dynamics))
     else
@@ -69,8 +74,9 @@ contains
   end subroutine find_bodies
 
   !> The columns of all frames, block by block.
-  subroutine find_columns(plan, dynamics)
+  subroutine find_columns(plan, clusters, dynamics)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(clusters_type), intent(in) :: clusters           !< its clusters
     type(dynamics_plan_type), intent(inout) :: dynamics   !< with `place_of`; gets the lists of entries
     integer :: b, s, m, last
 
@@ -83,11 +89,10 @@ contains
       dynamics%first(last + 1:plan%blocks(b)%first_step) = dynamics%first(last + 1)
       last = plan%blocks(b)%last_step
       if (size(plan%blocks(b)%unknowns) > 0) then
-        call add_closed_block(plan, plan%blocks(b), dynamics)
+        call add_closed_block(plan, clusters, plan%blocks(b), dynamics)
       else
         do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
-          call add_frame(plan, s, united(columns_of(dynamics, plan%steps(s)%parent), own_column(plan, dynamics, s)), &
-                         dynamics)
+          call add_frame(plan, s, own_column(plan, dynamics, s), dynamics)
         end do
       end if
     end do
@@ -107,29 +112,45 @@ contains
     dynamics%target_entry = [dynamics%target_entry(:min(n, size(dynamics%target_entry))), filler]
   end subroutine resize
 
-  !> The columns of the frames of a block with closed chains: every frame has those of the whole block.
-  subroutine add_closed_block(plan, block, dynamics)
+  !> The columns of the frames of a block with closed chains: every frame of the block's cluster has those of all its closures.
+  subroutine add_closed_block(plan, clusters, block, dynamics)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(clusters_type), intent(in) :: clusters           !< its clusters
     type(block_type), intent(in) :: block                 !< the block
     type(dynamics_plan_type), intent(inout) :: dynamics   !< with the entries of earlier blocks; gets those of this one
     integer, allocatable :: columns(:)
-    integer :: s, c
+    integer :: s, c, cluster
 
     allocate (columns(0))
+    cluster = clusters%of_step(block%unknowns(1))
     do s = block%first_step, block%last_step
-      if (plan%steps(s)%parent < block%first_step) columns = united(columns, columns_of(dynamics, plan%steps(s)%parent))
+      if (clusters%of_step(s) /= cluster) cycle
       columns = united(columns, own_column(plan, dynamics, s))
+      call add_earlier(plan%steps(s)%parent)
     end do
     do c = block%first_closure, block%last_closure
-      if (plan%closures(c)%target < block%first_step) &
-        columns = united(columns, columns_of(dynamics, plan%closures(c)%target))
+      call add_earlier(plan%closures(c)%target)
     end do
     do s = block%first_step, block%last_step
-      call add_frame(plan, s, columns, dynamics)
+      if (clusters%of_step(s) == cluster) then
+        call add_frame(plan, s, columns, dynamics)
+      else
+        call add_frame(plan, s, own_column(plan, dynamics, s), dynamics)
+      end if
     end do
     do c = block%first_closure, block%last_closure
       call find_target_entries(plan%closures(c)%closing, plan%closures(c)%target, dynamics)
     end do
+
+  contains
+
+    !> Unite the columns with those of a frame of an earlier block in the same cluster.
+    subroutine add_earlier(frame)
+      integer, intent(in) :: frame   !< number of a frame
+
+      if (frame == 0 .or. frame >= block%first_step) return
+      if (clusters%of_step(frame) == cluster) columns = united(columns, columns_of(dynamics, frame))
+    end subroutine add_earlier
   end subroutine add_closed_block
 
   !> The entries of one frame. Frames are added in the order of their numbers.
@@ -249,4 +270,53 @@ contains
       end associate
     end do
   end subroutine find_carriers
+
+  !> The stages of articulated bodies, and whether they serve: one closed cluster on link 1 has only one matrix in any case.
+  pure subroutine find_tree(plan, clusters, dynamics)
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(clusters_type), intent(in) :: clusters           !< its clusters
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with the entries and the frames that carry something
+    logical :: bears(0:plan%n_coordinates)
+    integer :: b, i, k, s
+
+    bears = .false.
+    bears(dynamics%bodies%frame) = .true.
+    bears(plan%frame_of(dynamics%loaded)) = .true.
+    dynamics%stages = find_stages(plan, clusters, dynamics%place_of, bears)
+    allocate (dynamics%local(size(dynamics%column)), source=1)
+    do i = 1, size(dynamics%stages)
+      associate (stage => dynamics%stages(i))
+        if (.not. stage%closed) cycle
+        do k = 1, size(stage%steps)
+          call find_local(stage%places, dynamics%first(stage%steps(k)), dynamics%first(stage%steps(k) + 1) - 1, dynamics)
+        end do
+      end associate
+    end do
+    allocate (dynamics%first_closed(size(plan%blocks)))
+    do b = 1, size(plan%blocks)
+      do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
+        if (clusters%closed(s)) exit
+      end do
+      dynamics%first_closed(b) = s
+    end do
+    dynamics%articulated = size(dynamics%stages) /= 1
+    if (.not. dynamics%articulated) dynamics%articulated = .not. dynamics%stages(1)%closed
+  end subroutine find_tree
+
+  !> The places of columns among those of their cluster.
+  pure subroutine find_local(places, first, last, dynamics)
+    integer, intent(in) :: places(:)                      !< those of the cluster's coordinates, ascending
+    integer, intent(in) :: first                          !< first entry
+    integer, intent(in) :: last                           !< last entry
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with the entries; gets `local`
+    integer :: e, i
+
+    i = 1
+    do e = first, last
+      do while (places(i) < dynamics%column(e))
+        i = i + 1
+      end do
+      dynamics%local(e) = i
+    end do
+  end subroutine find_local
 end module mech9_dynamics_plan

@@ -11,7 +11,7 @@ module mech9_generalized_forces
   use mech9_frame_motion, only: link_motion
   implicit none
   private
-  public :: collect_loads, collect_forces, show_state
+  public :: collect_loads, collect_forces, add_generalized, show_state
 
 contains
 
@@ -37,17 +37,26 @@ contains
     call work%view%note_no_faults()
   end subroutine collect_loads
 
-  !> Add the generalized forces Q_p (25) of all loads to work%forces.
+  !> Add the generalized forces Q_p (25) of the loads on links to work%forces, for one cluster on link 1.
   pure subroutine collect_forces(plan, dynamics, state, work)
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(state_type), intent(in) :: state              !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work    !< with the loads' sums and the Jacobian; gets `forces`
-    integer :: i, e, p, s
+    integer :: i
 
     do i = 1, size(dynamics%loaded)
       call dynamics%arithmetic%add_link_force(plan, dynamics, state, dynamics%loaded(i), work)
     end do
+  end subroutine collect_forces
+
+  !> Add the generalized forces of the loads on coordinates to work%forces.
+  pure subroutine add_generalized(plan, dynamics, work)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(lagrange_work_type), intent(inout) :: work    !< with the loads' sums and the Jacobian; gets `forces`
+    integer :: i, e, p, s
+
     if (.not. work%sum%any_generalized) return
     do i = 1, plan%n_coordinates
       if (.not. abs(work%sum%generalized(i)) > 0.0_wp) cycle
@@ -57,7 +66,7 @@ contains
         work%forces(p) = work%forces(p) + work%jacobian%b(e)*work%sum%generalized(i)
       end do
     end do
-  end subroutine collect_forces
+  end subroutine add_generalized
 
   !> The state as loads read it: coordinates, and the motion of the links' own systems in that of link 1.
   pure subroutine show_state(plan, dynamics, state, view)

@@ -49,7 +49,7 @@ contains
     end do
     if (size(block%unknowns) > 0) then
       call dynamics%arithmetic%spread_jacobian(plan, dynamics, block, state, .true., jacobian)
-      do c = 1, dynamics%first(block%first_step + 1) - dynamics%first(block%first_step)
+      do c = 1, dynamics%first(block%unknowns(1) + 1) - dynamics%first(block%unknowns(1))
         call eliminate(plan, dynamics, block, state, c - 1, work, jacobian)
       end do
     end if
@@ -78,7 +78,7 @@ contains
       end associate
     end do
     work%right = -work%right
-    k = plan%independent(dynamics%column(dynamics%first(block%first_step) + offset))
+    k = plan%independent(dynamics%column(dynamics%first(block%unknowns(1)) + offset))
     call work%equations%solve(work%right, work%change, round_off=round_off_of_rates/plan%unit_of(k))
     do i = 1, size(block%unknowns)
       s = block%unknowns(i)

@@ -6,8 +6,8 @@
 !>   a_pr = sum m J_c,p . J_c,r + J_w,p . I J_w,r,
 !>   h_p  = sum m J_c,p . a_c + J_w,p . (I alpha + omega x I omega)
 !> with the accelerations a_c, alpha that rates alone give (no accelerations of independent coordinates);
-!> then a ddq_i = Q - h. The result is the same, at the cost O(links I^2) for I independent coordinates. Open chains do not
-!> require coefficients for their accelerations: the plan says where articulated bodies give them.
+!> then a ddq_i = Q - h. The result is the same, at the cost O(links I^2) for I independent coordinates of one closed cluster.
+!> The accelerations of other mechanisms do not require the coefficients: articulated bodies give them, in O(links).
 module mech9_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
@@ -19,8 +19,8 @@ module mech9_lagrange
   use mech9_state, only: state_type
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_block_motion, only: move_block
-  use mech9_generalized_forces, only: collect_loads, collect_forces
-  use mech9_frame_motion, only: spread_all_accelerations, spread_all_velocities
+  use mech9_generalized_forces, only: collect_loads, collect_forces, add_generalized
+  use mech9_frame_motion, only: spread_all_accelerations
   implicit none
   private
   public :: find_motion, find_equations, check_inertia, complete_accelerations
@@ -41,8 +41,8 @@ contains
     integer :: n, failed_at
     logical :: found
 
-    if (dynamics%open_chains) then
-      call move_open_chains(mechanism, plan, dynamics, state, work, found, err)
+    if (dynamics%articulated) then
+      call move_tree(mechanism, plan, dynamics, state, work, found, err)
       ! the coefficients show the number of a coordinate without inertia
       if (allocated(err) .or. found) return
     end if
@@ -100,38 +100,58 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: b
 
-    do b = 1, size(plan%independent)
-      state%ddq(plan%independent(b)) = 0.0_wp
+    call move_blocks(plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    call collect_loads(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    if (dynamics%articulated) then
+      do b = 1, size(plan%blocks)
+        call dynamics%arithmetic%spread_jacobian(plan, dynamics, plan%blocks(b), state, .true., work%jacobian)
+      end do
+      call dynamics%arithmetic%weigh_tree(plan, dynamics, state, work)
+    else
+      call collect_inertia(dynamics, state, work)
+      if (size(dynamics%acting) > 0) call collect_forces(plan, dynamics, state, work)
+    end if
+    call add_generalized(plan, dynamics, work)
+  end subroutine find_equations
+
+  !> The motion of all blocks by rates alone.
+  subroutine move_blocks(plan, dynamics, state, work, err)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    type(state_type), intent(inout) :: state            !< poses and independent rates in; velocities, accelerations from rates out
+    type(lagrange_work_type), intent(inout) :: work     !< scratch; gets the Jacobian entries of all blocks
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a block is in a singular position
+    integer :: i, b
+
+    do i = 1, size(plan%independent)
+      state%ddq(plan%independent(i)) = 0.0_wp
     end do
     work%expects = .false.
     do b = 1, size(plan%blocks)
       call move_block(plan, dynamics, b, state, work, err)
       if (allocated(err)) return
     end do
-    call collect_inertia(dynamics, state, work)
-    call collect_loads(mechanism, plan, dynamics, state, work, err)
-    if (allocated(err)) return
-    if (size(dynamics%acting) > 0) call collect_forces(plan, dynamics, state, work)
-  end subroutine find_equations
+  end subroutine move_blocks
 
-  !> The motion of open chains by articulated bodies. `found` is false where a coordinate has no inertia.
-  subroutine move_open_chains(mechanism, plan, dynamics, state, work, found, err)
+  !> The motion by articulated bodies. `found` is false where a coordinate has no inertia.
+  subroutine move_tree(mechanism, plan, dynamics, state, work, found, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics, of open chains only
-    type(state_type), intent(inout) :: state            !< with poses and rates; gets velocities and accelerations from rates
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    type(state_type), intent(inout) :: state            !< poses and independent rates in; velocities, accelerations from rates out
     type(lagrange_work_type), intent(inout) :: work     !< scratch; gets `accelerations`
     logical, intent(out) :: found                       !< whether all coordinates have inertia
-    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+    type(error_type), allocatable, intent(out) :: err   !< allocated in a singular position, or if a load failed
 
     found = .false.
-    state%ddq = 0.0_wp
-    call spread_all_velocities(plan, state)
-    call spread_all_accelerations(plan, state)
+    call move_blocks(plan, dynamics, state, work, err)
+    if (allocated(err)) return
     call collect_loads(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    call dynamics%arithmetic%solve_open_chains(plan, dynamics, state, work, found)
-  end subroutine move_open_chains
+    call dynamics%arithmetic%solve_tree(plan, dynamics, state, work, found)
+  end subroutine move_tree
 
   !> The coefficients a_pr (21), the velocity terms of (19), and the generalized forces of the weights.
   subroutine collect_inertia(dynamics, state, work)
@@ -153,11 +173,6 @@ contains
     type(state_type), intent(inout) :: state           !< as find_motion left it; gets the accelerations
     integer :: s, e
 
-    if (dynamics%open_chains) then
-      state%ddq = work%accelerations
-      call spread_all_accelerations(plan, state)
-      return
-    end if
     do s = 1, plan%n_coordinates
       do e = dynamics%first(s), dynamics%first(s + 1) - 1
         state%ddq(plan%steps(s)%coordinate) = state%ddq(plan%steps(s)%coordinate) &

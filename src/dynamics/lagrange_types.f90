@@ -1,9 +1,9 @@
 !> The data of Lagrange's equations: the plan of dynamics, Jacobians and scratch, and the abstract arithmetic, in space or in a
 !> plane, that works on them.
 !>
-!> Columns of Jacobians are kept only where a frame depends on the independent coordinate: frame s has the entries
-!> first(s) .. first(s+1)-1 of one long list. All frames of a closed block share one set of coordinates; along an open chain the
-!> set grows by each coordinate.
+!> Columns of Jacobians are those of the motion relative to the frame on which a cluster stands (mech9_clusters). They are kept
+!> only where a frame depends on an independent coordinate of its own cluster: frame s has the entries first(s) .. first(s+1)-1 of
+!> one long list. All frames of a closed block share one set of coordinates; the frame of an open step has its own only.
 !>
 !> "The accelerations that rates alone give" are those of coordinates and frames when the independent coordinates keep their
 !> rates. Fixed axes are those of frame 0. Numbers in parentheses are those of the paper's equations.
@@ -15,7 +15,9 @@ module mech9_lagrange_types
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
   use mech9_expectation, only: expectation_type
+  use mech9_tree_stages, only: stage_type
   use mech9_articulated_bodies, only: articulated_work_type
+  use mech9_cluster_bodies, only: cluster_work_type
   use mech9_planar_articulated, only: planar_work_type
   implicit none
   private
@@ -41,7 +43,8 @@ module mech9_lagrange_types
     procedure(column_finder), deferred :: closing_column
     procedure(inertia_adder), deferred :: add_inertia
     procedure(force_adder), deferred :: add_link_force
-    procedure(open_chain_solver), deferred :: solve_open_chains
+    procedure(tree_solver), deferred :: solve_tree
+    procedure(tree_weigher), deferred :: weigh_tree
     procedure(energy_of), deferred :: kinetic_energy
   end type dynamics_arithmetic_type
 
@@ -58,7 +61,12 @@ module mech9_lagrange_types
     integer, allocatable :: acting(:)                  !< numbers of the loads that are not idle
     logical, allocatable :: load_links(:)              !< (N) whether a load acts on the link or reads its motion
     integer, allocatable :: loaded(:)                  !< numbers of these links but link 1, which does not move
-    logical :: open_chains = .false.                   !< no chain is closed: accelerations by articulated bodies
+    integer, allocatable :: support(:)                 !< (M) frame on which the cluster of each step stands
+    integer, allocatable :: first_closed(:)            !< (blocks) first step of the block in its closed cluster, or past its last
+    integer, allocatable :: local(:)                   !< (entries) place of the coordinate among those of its cluster
+    type(stage_type), allocatable :: stages(:)         !< in the order of a sweep outward
+    !> Accelerations by articulated bodies. Otherwise there is one closed cluster, on link 1, and they follow from the coefficients.
+    logical :: articulated = .false.
     class(dynamics_arithmetic_type), allocatable :: arithmetic   !< the arithmetic, in space or in a plane
   end type dynamics_plan_type
 
@@ -90,13 +98,14 @@ module mech9_lagrange_types
     real(wp), allocatable :: accelerations(:)        !< of the independent coordinates [rad/s^2, m/s^2]
     type(motion_view_type) :: view                   !< the motion as loads read it
     type(force_sum_type) :: sum                      !< forces of all loads
-    type(articulated_work_type) :: articulated       !< of open chains in space
-    type(planar_work_type) :: planar                 !< of open chains in a plane
+    type(articulated_work_type) :: articulated       !< of articulated bodies in space
+    type(planar_work_type) :: planar                 !< of articulated bodies in a plane
+    type(cluster_work_type), allocatable :: clusters(:)   !< of each stage that is a closed cluster
   end type lagrange_work_type
 
   abstract interface
 
-    !> Room for the columns of frames and for the passes over open chains.
+    !> Room for the columns of frames and for the passes of articulated bodies.
     pure subroutine work_maker(self, plan, dynamics, work)
       import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, lagrange_work_type
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
@@ -155,7 +164,7 @@ module mech9_lagrange_types
       real(wp), intent(out), contiguous :: column(:)        !< (rank) in the equations of the closure
     end subroutine column_finder
 
-    !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies.
+    !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies of one cluster on link 1.
     pure subroutine inertia_adder(self, dynamics, state, work)
       import :: dynamics_arithmetic_type, dynamics_plan_type, state_type, lagrange_work_type
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
@@ -164,7 +173,7 @@ module mech9_lagrange_types
       type(lagrange_work_type), intent(inout) :: work       !< with the entries of the Jacobian; gets the sums
     end subroutine inertia_adder
 
-    !> Add the generalized forces (25) of the loads on one link.
+    !> Add the generalized forces (25) of the loads on one link of one cluster on link 1.
     pure subroutine force_adder(self, plan, dynamics, state, link, work)
       import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, state_type, lagrange_work_type
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
@@ -175,8 +184,8 @@ module mech9_lagrange_types
       type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the generalized ones
     end subroutine force_adder
 
-    !> Accelerations of open chains by articulated bodies. `found` is false where a coordinate has no inertia.
-    pure subroutine open_chain_solver(self, plan, dynamics, state, work, found)
+    !> Accelerations by articulated bodies. `found` is false where a coordinate has no inertia.
+    pure subroutine tree_solver(self, plan, dynamics, state, work, found)
       import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, state_type, lagrange_work_type
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
@@ -184,7 +193,18 @@ module mech9_lagrange_types
       type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
       type(lagrange_work_type), intent(inout) :: work       !< with the loads' forces; gets the accelerations
       logical, intent(out) :: found                         !< whether all coordinates have inertia
-    end subroutine open_chain_solver
+    end subroutine tree_solver
+
+    !> The coefficients a_pr (21), the velocity terms of (19), and the generalized forces of weights and of loads on links, of any
+    !> tree of clusters.
+    pure subroutine tree_weigher(self, plan, dynamics, state, work)
+      import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, state_type, lagrange_work_type
+      class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
+      type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+      type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
+      type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
+      type(lagrange_work_type), intent(inout) :: work       !< with the columns of all frames; gets the results
+    end subroutine tree_weigher
 
     !> Sum over the bodies of half m v^2 of the centre and half omega . I omega.
     pure real(wp) function energy_of(self, dynamics, state)

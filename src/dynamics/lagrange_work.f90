@@ -5,6 +5,7 @@ module mech9_lagrange_work
   use mech9_plan, only: plan_type
   use mech9_block_solver, only: new_block_work
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
+  use mech9_cluster_bodies, only: new_cluster_work
   use mech9_jacobian, only: start_jacobian
   implicit none
   private
@@ -27,7 +28,13 @@ contains
     allocate (work%sides(maxval([0, plan%blocks%equations]), n), source=0.0_wp)
     call start_jacobian(plan, dynamics, work%jacobian)
     allocate (work%expected_b(size(dynamics%column)), work%expected_ddq(plan%n_coordinates), source=0.0_wp)
-    allocate (work%coefficients(n, n), work%factors(n, n), source=0.0_wp)
+    allocate (work%coefficients(n, n), source=0.0_wp)
+    if (.not. dynamics%articulated) allocate (work%factors(n, n), source=0.0_wp)
+    allocate (work%clusters(size(dynamics%stages)))
+    do b = 1, size(dynamics%stages)
+      if (dynamics%articulated .and. dynamics%stages(b)%closed) &
+        work%clusters(b) = new_cluster_work(merge(3, 6, plan%planar%used), size(dynamics%stages(b)%places))
+    end do
     allocate (work%velocity_terms(n), work%forces(n), work%accelerations(n), source=0.0_wp)
     allocate (work%view%links(plan%n_links))
     allocate (work%view%q(plan%n_coordinates), work%view%dq(plan%n_coordinates), source=0.0_wp)

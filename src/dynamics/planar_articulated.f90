@@ -9,7 +9,7 @@ module mech9_planar_articulated
   use mech9_planar_lagrange, only: planar_body_type
   implicit none
   private
-  public :: planar_work_type, new_planar_work, solve_in_plane
+  public :: planar_work_type, new_planar_work, set_bodies, go_inward, go_outward, add_to_parent
 
   !> Scratch of the passes, sized once, in the plane's axes. An inertia is (J, Hx, Hy, Mxx, Mxy, Myy) [kg m^2, kg m, kg].
   type :: planar_work_type
@@ -34,21 +34,16 @@ contains
     allocate (work%inertia(6, 0:m), work%wrench(3, 0:m), work%amount(4, 0:m), work%motion(3, 0:m), source=0.0_wp)
   end function new_planar_work
 
-  !> Accelerations of all coordinates under gravity, the wrenches work%applied and generalized forces. `found` is false where
-  !> a coordinate has no inertia beyond round-off. Poses and motions are in the plane's axes.
-  pure subroutine solve_in_plane(m, steps, bodies, gravity, f, slide, v, a, forces, work, ddq, found)
+  !> The inertia of each frame's own bodies, and the wrench that these bodies require for the motion by rates alone, less that of
+  !> the loads in work%applied and of gravity. Poses and motions are in the plane's axes.
+  pure subroutine set_bodies(m, bodies, gravity, f, v, a, work)
     integer, intent(in) :: m                          !< number of steps
-    type(planar_step_type), intent(in) :: steps(m)    !< the steps of the plan
     type(planar_body_type), intent(in) :: bodies(:)   !< links with mass or inertia
     real(wp), intent(in) :: gravity(2)                !< acceleration of free fall [m/s^2]
     real(wp), intent(in) :: f(4, 0:m)                 !< pose of each frame: cosine, sine, origin [m]
-    real(wp), intent(in) :: slide(2, m)               !< velocity of each new origin per unit rate
     real(wp), intent(in) :: v(3, 0:m)                 !< velocity of each frame [rad/s, m/s]
     real(wp), intent(in) :: a(3, 0:m)                 !< acceleration of each frame that rates alone give [rad/s^2, m/s^2]
-    real(wp), intent(in) :: forces(m)                 !< generalized force on each coordinate [N m or N]
-    type(planar_work_type), intent(inout) :: work     !< scratch, with the loads' wrenches in `applied`
-    real(wp), intent(out) :: ddq(m)                   !< acceleration of each coordinate [rad/s^2, m/s^2]
-    logical, intent(out) :: found                     !< whether all coordinates have inertia; otherwise `ddq` is not set
+    type(planar_work_type), intent(inout) :: work     !< with the loads' wrenches; gets `inertia`, `wrench`, `amount`
     integer :: i
 
     work%inertia = 0.0_wp
@@ -58,11 +53,7 @@ contains
       call add_body(bodies(i), gravity, f(:, bodies(i)%frame), v(:, bodies(i)%frame), a(:, bodies(i)%frame), &
                     work%inertia(:, bodies(i)%frame), work%wrench(:, bodies(i)%frame), work%amount(:, bodies(i)%frame))
     end do
-    call go_inward(m, steps, f, slide, forces, work%inertia, work%wrench, work%amount, work%column, work%pivot, work%rest, &
-                   found)
-    if (.not. found) return
-    call go_outward(m, steps, f, slide, work%column, work%pivot, work%rest, work%motion, ddq)
-  end subroutine solve_in_plane
+  end subroutine set_bodies
 
   !> Add a body's inertia about the origin of its frame, and the wrench that the body requires for the motion by rates alone,
   !> less its weight. Vectors are in the plane's axes.
@@ -95,9 +86,11 @@ contains
     amount(4) = amount(4) + j
   end subroutine add_body
 
-  !> Eliminate the accelerations of the steps, the last one first. Vectors are in the plane's axes.
-  pure subroutine go_inward(m, steps, f, slide, forces, inertia, wrench, amount, column, pivot, rest, found)
-    integer, intent(in) :: m                         !< number of steps
+  !> Eliminate the accelerations of a run of open steps, the last one first. Vectors are in the plane's axes.
+  pure subroutine go_inward(first, last, m, steps, f, slide, forces, inertia, wrench, amount, column, pivot, rest, found)
+    integer, intent(in) :: first                     !< first step of the run
+    integer, intent(in) :: last                      !< last step of the run
+    integer, intent(in) :: m                         !< number of steps of the plan
     type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
     real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
     real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate
@@ -105,15 +98,15 @@ contains
     real(wp), intent(inout) :: inertia(6, 0:m)       !< J, H, M of each frame's own bodies; then of all links beyond it too
     real(wp), intent(inout) :: wrench(3, 0:m)        !< torque_0 and force_0 in the same way [N m, N]
     real(wp), intent(inout) :: amount(4, 0:m)        !< mass, moment and inertia in the same way, as if rigid
-    real(wp), intent(out) :: column(3, m)            !< U of each step
-    real(wp), intent(out) :: pivot(m)                !< D of each step
-    real(wp), intent(out) :: rest(m)                 !< Q - S . wrench_0 of each step
-    logical, intent(out) :: found                    !< whether all coordinates have inertia
+    real(wp), intent(inout) :: column(3, m)          !< gets U of each step of the run
+    real(wp), intent(inout) :: pivot(m)              !< gets D of each step of the run
+    real(wp), intent(inout) :: rest(m)               !< gets Q - S . wrench_0 of each step of the run
+    logical, intent(out) :: found                    !< whether all coordinates of the run have inertia
     real(wp) :: u(3), part(3), rigid, s(2)
     integer :: i, p
 
     found = .true.
-    do i = m, 1, -1
+    do i = last, first, -1
       p = steps(i)%parent
       rest(i) = forces(steps(i)%coordinate)
       if (steps(i)%turns) then
@@ -172,27 +165,30 @@ contains
     parent_amount(4) = parent_amount(4) + amount(4) + 2.0_wp*(x*amount(2) + y*amount(3)) + amount(1)*(x**2 + y**2)
   end subroutine add_to_parent
 
-  !> Find the accelerations, the first step first. Vectors are in the plane's axes.
-  pure subroutine go_outward(m, steps, f, slide, column, pivot, rest, motion, ddq)
-    integer, intent(in) :: m                         !< number of steps
+  !> Find the accelerations of a run of open steps, the first step first. Vectors are in the plane's axes.
+  pure subroutine go_outward(first, last, m, steps, place_of, f, slide, column, pivot, rest, motion, accelerations)
+    integer, intent(in) :: first                     !< first step of the run
+    integer, intent(in) :: last                      !< last step of the run
+    integer, intent(in) :: m                         !< number of steps of the plan
     type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
+    integer, intent(in) :: place_of(m)               !< place of a coordinate among the independent ones, or 0
     real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
     real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate
     real(wp), intent(in) :: column(3, m)             !< U of each step
     real(wp), intent(in) :: pivot(m)                 !< D of each step
     real(wp), intent(in) :: rest(m)                  !< Q - S . wrench_0 of each step
     real(wp), intent(inout) :: motion(3, 0:m)        !< gets accelerations less those that rates alone give; zero for frame 0
-    real(wp), intent(out) :: ddq(m)                  !< acceleration of each coordinate [rad/s^2, m/s^2]
+    real(wp), intent(inout) :: accelerations(*)      !< (independent coordinates) gets those of the run [rad/s^2, m/s^2]
     real(wp) :: x, d(3)
     integer :: i, p
 
-    do i = 1, m
+    do i = first, last
       p = steps(i)%parent
       d = motion(:, p)
       d(2) = d(2) - d(1)*(f(4, i) - f(4, p))
       d(3) = d(3) + d(1)*(f(3, i) - f(3, p))
       x = (rest(i) - column(1, i)*d(1) - column(2, i)*d(2) - column(3, i)*d(3))/pivot(i)
-      ddq(steps(i)%coordinate) = x
+      accelerations(place_of(steps(i)%coordinate)) = x
       if (steps(i)%turns) then
         d(1) = d(1) + steps(i)%turn*x
       else

@@ -48,8 +48,9 @@ contains
 
     allocate (flat%unknowns(0), flat%independent(0), flat%earlier(0))
     associate (block => plan%blocks(b))
-      flat%columns = first(block%first_step + 1) - first(block%first_step)
-      associate (columns => column(first(block%first_step):first(block%first_step + 1) - 1))
+      if (size(block%unknowns) == 0) return
+      flat%columns = first(block%unknowns(1) + 1) - first(block%unknowns(1))
+      associate (columns => column(first(block%unknowns(1)):first(block%unknowns(1) + 1) - 1))
         do c = block%first_closure, block%last_closure
           part%row = 3*(c - block%first_closure)
           part%base = plan%closures(c)%base
@@ -75,7 +76,7 @@ contains
     end associate
   end subroutine list_loops
 
-  !> Append a part for each column of a frame of an earlier block.
+  !> Append a part for each column of a frame of an earlier block. The base of the cluster has none of its own.
   pure subroutine list_columns(plan, frame, sign, first, column, columns, part, parts)
     type(plan_type), intent(in) :: plan                            !< the plan of the mechanism
     integer, intent(in) :: frame                                   !< number of the frame
@@ -92,7 +93,7 @@ contains
       part%entry = e
       part%weight = sign*plan%unit_of(plan%independent(column(e)))
       part%column = place_among(columns, column(e))
-      call append(parts, part)
+      if (part%column > 0) call append(parts, part)
     end do
   end subroutine list_columns
 

@@ -12,7 +12,10 @@ module mech9_planar_dynamics
   use mech9_planar_lagrange, only: planar_body_type, planar_body, spread_columns, add_bodies => add_inertia, &
     planar_wrench, add_force => add_link_force, planar_kinetic_energy
   use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, move_frames
-  use mech9_planar_articulated, only: new_planar_work, solve_in_plane
+  use mech9_planar_articulated, only: new_planar_work, set_bodies, go_inward, go_outward
+  use mech9_cluster_bodies, only: find_rest, find_accelerations
+  use mech9_planar_cluster, only: eliminate_cluster, move_cluster
+  use mech9_tree_coefficients, only: accelerate_in_plane, collect_in_plane
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
   implicit none
   private
@@ -31,7 +34,8 @@ module mech9_planar_dynamics
     procedure :: closing_column
     procedure :: add_inertia
     procedure :: add_link_force
-    procedure :: solve_open_chains
+    procedure :: solve_tree
+    procedure :: weigh_tree
     procedure :: kinetic_energy
   end type planar_dynamics_type
 
@@ -61,7 +65,7 @@ contains
     end do
   end function new_planar_dynamics
 
-  !> Room for the columns of frames and for the passes over open chains.
+  !> Room for the columns of frames and for the passes of articulated bodies.
   pure subroutine make_work(self, plan, dynamics, work)
     class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
@@ -69,7 +73,7 @@ contains
     type(lagrange_work_type), intent(inout) :: work    !< gets the room
 
     allocate (work%jacobian%flat(3, size(dynamics%column)), source=0.0_wp)
-    if (dynamics%open_chains) work%planar = new_planar_work(plan%n_coordinates)
+    if (dynamics%articulated) work%planar = new_planar_work(plan%n_coordinates)
   end subroutine make_work
 
   !> Factorize the Jacobian of a block.
@@ -136,7 +140,7 @@ contains
       state%dq(block%coordinates(i)) = 0.0_wp
     end do
     do j = 1, flat%columns
-      k = plan%independent(dynamics%column(dynamics%first(block%first_step) + j - 1))
+      k = plan%independent(dynamics%column(dynamics%first(block%unknowns(1)) + j - 1))
       unit = plan%unit_of(k)
       call work%equations%solve(sides(:work%equations%m, j), work%change)
       do i = 1, size(block%unknowns)
@@ -190,7 +194,7 @@ contains
     call planar_difference(plan%planar, c, state%planar, jacobian%flat(:, e), of_target, column)
   end subroutine closing_column
 
-  !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies.
+  !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies of one cluster on link 1.
   pure subroutine add_inertia(self, dynamics, state, work)
     class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
@@ -219,14 +223,60 @@ contains
                    state%planar%pose(:, f), work%sum%force(:, link), work%sum%torque(:, link), work%forces)
   end subroutine add_link_force
 
-  !> Accelerations of open chains by articulated bodies.
-  pure subroutine solve_open_chains(self, plan, dynamics, state, work, found)
+  !> Accelerations by articulated bodies: a sweep inward over the stages, and one outward.
+  pure subroutine solve_tree(self, plan, dynamics, state, work, found)
     class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
     type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the accelerations
     logical, intent(out) :: found                      !< whether all coordinates have inertia
+    integer :: i, m, n_entries
+
+    m = plan%n_coordinates
+    n_entries = size(dynamics%column)
+    found = .true.
+    call set_applied(plan, dynamics, state, work)
+    associate (steps => plan%planar%steps, motion => state%planar, own => work%planar, columns => work%jacobian%flat)
+      call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, own)
+      do i = size(dynamics%stages), 1, -1
+        associate (stage => dynamics%stages(i), cluster => work%clusters(i))
+          if (stage%closed) then
+            cluster%rest = 0.0_wp
+            if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, &
+                                                         dynamics%local, work%jacobian%b, work%sum%generalized, cluster%rest)
+            call eliminate_cluster(size(stage%places), size(stage%frames), stage%frames, stage%base, m, n_entries, &
+                                   dynamics%first, dynamics%local, columns, motion%pose, own%inertia, own%wrench, own%amount, &
+                                   cluster%factors, cluster%column, cluster%rest, cluster%rigid, found)
+          else
+            call go_inward(stage%first_step, stage%last_step, m, steps, motion%pose, motion%slide, work%sum%generalized, &
+                           own%inertia, own%wrench, own%amount, own%column, own%pivot, own%rest, found)
+          end if
+        end associate
+        if (.not. found) return
+      end do
+      do i = 1, size(dynamics%stages)
+        associate (stage => dynamics%stages(i), cluster => work%clusters(i))
+          if (stage%closed) then
+            call find_accelerations(size(stage%places), stage%places, 3, cluster%factors, cluster%column, cluster%rest, &
+                                    own%motion(:, stage%base), cluster%ddq, work%accelerations)
+            call move_cluster(size(stage%places), size(stage%feet), stage%feet, stage%base, m, n_entries, dynamics%first, &
+                              dynamics%local, columns, motion%pose, cluster%ddq, own%motion)
+          else
+            call go_outward(stage%first_step, stage%last_step, m, steps, dynamics%place_of, motion%pose, motion%slide, &
+                            own%column, own%pivot, own%rest, own%motion, work%accelerations)
+          end if
+        end associate
+      end do
+    end associate
+  end subroutine solve_tree
+
+  !> The wrenches of the loads on the frames of their links.
+  pure subroutine set_applied(plan, dynamics, state, work)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the wrenches
     integer :: i, k, f
 
     do i = 1, size(dynamics%loaded)
@@ -235,10 +285,40 @@ contains
       work%planar%applied(:, f) = planar_wrench(plan%planar, k, state%planar%pose(:, f), work%sum%force(:, k), &
                                                 work%sum%torque(:, k))
     end do
-    call solve_in_plane(plan%n_coordinates, plan%planar%steps, self%bodies, self%gravity, state%planar%pose, &
-                        state%planar%slide, state%planar%velocity, state%planar%acceleration, work%sum%generalized, &
-                        work%planar, work%accelerations, found)
-  end subroutine solve_open_chains
+  end subroutine set_applied
+
+  !> Coefficients of motion, velocity terms, and generalized forces of weights and of loads on links, of any tree of clusters.
+  pure subroutine weigh_tree(self, plan, dynamics, state, work)
+    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work    !< with the columns of all frames; gets the results
+    real(wp) :: whole(size(work%forces))
+    integer :: i, m, n, n_entries
+
+    m = plan%n_coordinates
+    n = size(work%forces)
+    n_entries = size(dynamics%column)
+    associate (motion => state%planar, own => work%planar, columns => work%jacobian%flat)
+      call set_applied(plan, dynamics, state, work)
+      call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, own)
+      call collect_in_plane(m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, own%wrench, &
+                            n, whole)
+      own%applied = 0.0_wp
+      call set_bodies(m, self%bodies, 0.0_wp*self%gravity, motion%pose, motion%velocity, motion%acceleration, own)
+      call collect_in_plane(m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, own%wrench, &
+                            n, work%velocity_terms)
+      work%forces = work%velocity_terms - whole
+      do i = 1, n
+        call accelerate_in_plane(i, m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
+                                 own%inertia, own%motion, own%wrench)
+        call collect_in_plane(m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
+                              own%wrench, n, whole)
+        work%coefficients(i:, i) = whole(i:)
+      end do
+    end associate
+  end subroutine weigh_tree
 
   !> Kinetic energy: the sum over the bodies of half m v^2 of the centre and half I w^2 [J].
   pure real(wp) function kinetic_energy(self, dynamics, state)

@@ -6,8 +6,10 @@ module mech9_spatial_dynamics
   use mech9_state, only: state_type
   use mech9_spatial_closure, only: reduced_screw
   use mech9_block_solver, only: solver_factorize => factorize_block
-  use mech9_articulated_bodies, only: articulated_type, new_articulated, new_articulated_work, add_to_frame, find_open_chains => &
-    solve_open_chains
+  use mech9_articulated_bodies, only: articulated_type, new_articulated, new_articulated_work, add_to_frame, set_bodies, &
+    go_inward, go_outward
+  use mech9_cluster_bodies, only: find_rest, eliminate_cluster, find_accelerations, move_cluster
+  use mech9_tree_coefficients, only: accelerate_in_space, collect_in_space
   use mech9_lagrange_types, only: frame_body_type, dynamics_plan_type, jacobian_type, lagrange_work_type, &
     dynamics_arithmetic_type
   implicit none
@@ -16,7 +18,7 @@ module mech9_spatial_dynamics
 
   !> The arithmetic of space.
   type, extends(dynamics_arithmetic_type) :: spatial_dynamics_type
-    type(articulated_type) :: articulated        !< of open chains; not set where a chain is closed
+    type(articulated_type) :: articulated        !< steps and bodies, where articulated bodies serve
   contains
     procedure :: make_work
     procedure :: factorize_block
@@ -25,7 +27,8 @@ module mech9_spatial_dynamics
     procedure :: closing_column
     procedure :: add_inertia
     procedure :: add_link_force
-    procedure :: solve_open_chains
+    procedure :: solve_tree
+    procedure :: weigh_tree
     procedure :: kinetic_energy
   end type spatial_dynamics_type
 
@@ -38,8 +41,8 @@ contains
     type(spatial_dynamics_type) :: self
     integer :: i
 
-    if (.not. dynamics%open_chains) return
-    self%articulated = new_articulated(plan%steps%parent, plan%steps%coordinate, &
+    if (.not. dynamics%articulated) return
+    self%articulated = new_articulated(plan%steps%parent, plan%steps%coordinate, dynamics%place_of(plan%steps%coordinate), &
                                        abs(plan%steps%slide) > 0.0_wp .or. .not. plan%steps%is_screw)
     do i = 1, size(dynamics%bodies)
       associate (body => dynamics%bodies(i))
@@ -48,7 +51,7 @@ contains
     end do
   end function new_spatial_dynamics
 
-  !> Room for the columns of frames and for the passes over open chains.
+  !> Room for the columns of frames and for the passes of articulated bodies.
   pure subroutine make_work(self, plan, dynamics, work)
     class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
@@ -56,7 +59,7 @@ contains
     type(lagrange_work_type), intent(inout) :: work    !< gets the room
 
     allocate (work%jacobian%w(3, size(dynamics%column)), work%jacobian%v(3, size(dynamics%column)), source=0.0_wp)
-    if (dynamics%open_chains) work%articulated = new_articulated_work(plan%n_coordinates)
+    if (dynamics%articulated) work%articulated = new_articulated_work(plan%n_coordinates)
   end subroutine make_work
 
   !> Factorize the Jacobian of a block.
@@ -135,7 +138,7 @@ contains
     end associate
   end subroutine closing_column
 
-  !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies.
+  !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies of one cluster on link 1.
   pure subroutine add_inertia(self, dynamics, state, work)
     class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
@@ -227,14 +230,62 @@ contains
     torque = work%sum%torque(:, link) + cross(arm, work%sum%force(:, link))
   end function torque_on_frame
 
-  !> Accelerations of open chains by articulated bodies.
-  pure subroutine solve_open_chains(self, plan, dynamics, state, work, found)
+  !> Accelerations by articulated bodies: a sweep inward over the stages, and one outward.
+  pure subroutine solve_tree(self, plan, dynamics, state, work, found)
     class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
     type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the accelerations
     logical, intent(out) :: found                      !< whether all coordinates have inertia
+    integer :: i, m, n_entries
+
+    m = plan%n_coordinates
+    n_entries = size(dynamics%column)
+    found = .true.
+    call set_applied(plan, dynamics, state, work)
+    associate (chains => self%articulated, own => work%articulated, jacobian => work%jacobian)
+      call set_bodies(m, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, state%alpha, &
+                      state%a, own%applied, own%inertia, own%wrench, own%amount)
+      do i = size(dynamics%stages), 1, -1
+        associate (stage => dynamics%stages(i), cluster => work%clusters(i))
+          if (stage%closed) then
+            cluster%rest = 0.0_wp
+            if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, dynamics%local, &
+                                                         jacobian%b, work%sum%generalized, cluster%rest)
+            call eliminate_cluster(size(stage%places), size(stage%frames), stage%frames, stage%base, m, n_entries, &
+                                   dynamics%first, dynamics%local, jacobian%w, jacobian%v, state%p, own%inertia, own%wrench, &
+                                   own%amount, cluster%factors, cluster%column, cluster%rest, cluster%rigid, found)
+          else
+            call go_inward(stage%first_step, stage%last_step, m, chains%parent, chains%coordinate, chains%slides, state%p, &
+                           state%axis_w, state%axis_v, work%sum%generalized, own%inertia, own%wrench, own%amount, own%column, &
+                           own%pivot, own%rest, found)
+          end if
+        end associate
+        if (.not. found) return
+      end do
+      do i = 1, size(dynamics%stages)
+        associate (stage => dynamics%stages(i), cluster => work%clusters(i))
+          if (stage%closed) then
+            call find_accelerations(size(stage%places), stage%places, 6, cluster%factors, cluster%column, cluster%rest, &
+                                    own%motion(:, stage%base), cluster%ddq, work%accelerations)
+            call move_cluster(size(stage%places), size(stage%feet), stage%feet, stage%base, m, n_entries, dynamics%first, &
+                              dynamics%local, jacobian%w, jacobian%v, state%p, cluster%ddq, own%motion)
+          else
+            call go_outward(stage%first_step, stage%last_step, m, chains%parent, chains%place, state%p, state%axis_w, &
+                            state%axis_v, own%column, own%pivot, own%rest, own%motion, work%accelerations)
+          end if
+        end associate
+      end do
+    end associate
+  end subroutine solve_tree
+
+  !> The wrenches of the loads on the frames of their links.
+  pure subroutine set_applied(plan, dynamics, state, work)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the poses of the frames
+    type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the wrenches
     integer :: i, k, f
 
     do i = 1, size(dynamics%loaded)
@@ -243,10 +294,42 @@ contains
       work%articulated%applied(1:3, f) = torque_on_frame(plan, state, k, work)
       work%articulated%applied(4:6, f) = work%sum%force(:, k)
     end do
-    call find_open_chains(self%articulated, plan%n_coordinates, dynamics%gravity, state%r, state%p, state%axis_w, &
-                          state%axis_v, state%omega, state%alpha, state%a, work%sum%generalized, work%articulated, &
-                          work%accelerations, found)
-  end subroutine solve_open_chains
+  end subroutine set_applied
+
+  !> Coefficients of motion, velocity terms, and generalized forces of weights and of loads on links, of any tree of clusters.
+  pure subroutine weigh_tree(self, plan, dynamics, state, work)
+    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work    !< with the columns of all frames; gets the results
+    real(wp) :: whole(size(work%forces))
+    integer :: i, m, n, n_entries
+
+    m = plan%n_coordinates
+    n = size(work%forces)
+    n_entries = size(dynamics%column)
+    associate (chains => self%articulated, own => work%articulated, jacobian => work%jacobian)
+      call set_applied(plan, dynamics, state, work)
+      call set_bodies(m, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, state%alpha, &
+                      state%a, own%applied, own%inertia, own%wrench, own%amount)
+      call collect_in_space(m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, state%p, &
+                            own%wrench, n, whole)
+      own%applied = 0.0_wp
+      call set_bodies(m, chains%mass, chains%moment, chains%inertia, 0.0_wp*dynamics%gravity, state%r, state%omega, &
+                      state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
+      call collect_in_space(m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, state%p, &
+                            own%wrench, n, work%velocity_terms)
+      work%forces = work%velocity_terms - whole
+      do i = 1, n
+        call accelerate_in_space(i, m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
+                                 state%p, own%inertia, own%motion, own%wrench)
+        call collect_in_space(m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
+                              state%p, own%wrench, n, whole)
+        work%coefficients(i:, i) = whole(i:)
+      end do
+    end associate
+  end subroutine weigh_tree
 
   !> Kinetic energy: the sum over the bodies of half m v^2 of the centre and half omega . I omega [J].
   pure real(wp) function kinetic_energy(self, dynamics, state)

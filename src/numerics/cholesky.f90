@@ -9,22 +9,24 @@ contains
 
   !> a = L L^T; only the lower triangle is read and becomes L. `failed_at` is the row where the matrix
   !> turns out not to be positive definite beyond round-off, 0 where all is well.
-  pure subroutine cholesky_factorize(n, a, failed_at)
-    integer, intent(in) :: n             !< order of the matrix
-    real(wp), intent(inout) :: a(n, n)   !< the matrix, symmetric; L in the lower triangle afterwards
-    integer, intent(out) :: failed_at    !< row of the first pivot that is not positive; 0 where all is well
-    real(wp) :: pivot, before
+  pure subroutine cholesky_factorize(n, a, failed_at, least)
+    integer, intent(in) :: n                       !< order of the matrix
+    real(wp), intent(inout) :: a(n, n)             !< the matrix, symmetric; L in the lower triangle afterwards
+    integer, intent(out) :: failed_at              !< row of the first pivot that is not positive; 0 where all is well
+    real(wp), intent(in), optional :: least(n)     !< round-off of each pivot; that of the diagonal of `a` unless given
+    real(wp) :: pivot, round_off
     integer :: i, j, k
 
     failed_at = 0
     do j = 1, n
-      before = a(j, j)
-      pivot = before
+      pivot = a(j, j)
+      round_off = 8.0_wp*n*epsilon(pivot)*pivot
+      if (present(least)) round_off = least(j)
       do k = 1, j - 1
         pivot = pivot - a(j, k)**2
       end do
       ! a pivot that round-off alone can explain counts as zero
-      if (.not. pivot > 8.0_wp*n*epsilon(pivot)*before) then
+      if (.not. pivot > round_off) then
         failed_at = j
         return
       end if

@@ -71,7 +71,7 @@ contains
     system%work = new_lagrange_work(plan, system%dynamics)
     system%state = start
     ! reports show the coefficients of the start; articulated bodies do without
-    if (system%dynamics%open_chains) &
+    if (system%dynamics%articulated) &
       call find_equations(model%mechanism, plan, system%dynamics, system%state, system%work, err)
     if (allocated(err)) return
     call system%present(err)

@@ -34,6 +34,9 @@ IN_XY = dict(normal='0,0,1', last='0,0,1', o='0,0,0', a='0.3,0.2,0', b='1.2,0.8,
 IN_YZ = dict(normal='1,0,0', last='1,0,0', o='0,0,0', a='0,0.3,0.2', b='0,1.2,0.8', c='0,1.1,0', inertia='0.1,0.05,0.05', zz='0.1', g='0,0,-9.81')
 # the last axis lies in the plane: the link beyond it turns with the rocker, which has so much less inertia
 ACROSS = {**IN_XY, 'last': '0,1,0', 'inertia': '0.05,0.1,0.05', 'zz': '0.05'}
+# the crank-rocker alone
+ALONE = FOUR_BAR.replace('links=5, coordinates=5', 'links=4, coordinates=4').replace('cq=1, 5', 'cq=1')
+ALONE = '\n'.join(line for line in ALONE.splitlines() if 'coordinate=5' not in line and 'link=5' not in line) + '\n'
 # one link turns on another, about axes across each other
 OPEN = """
 &mechanism links=3, coordinates=2 /
@@ -73,7 +76,8 @@ def main():
         checks.true('by articulated bodies' in plan_of(dict(axis='0,1,0'), OPEN), 'an open chain in space')
         checks.true('by articulated bodies' in plan_of(dict(axis='0,0,1'), OPEN), 'an open chain in the plane')
         across = plan_of(ACROSS)
-        checks.true('by articulated bodies' not in across, 'a chain is closed', across)
+        checks.true('by articulated bodies' in across and 'by articulated bodies' in flat, 'an open link on a closed chain')
+        checks.true('by articulated bodies' not in plan_of(IN_XY, ALONE), 'one closed chain alone')
         checks.true('spatial arithmetic: pair 5 ' in across, 'the pair that has another axis is named', across)
 
         tables = []

@@ -152,8 +152,8 @@ contains
     integer :: i
 
     call make_dynamics_plan(mechanism, plan, dynamics)
-    if (dynamics%open_chains) write (unit, '(a)') &
-      'accelerations by articulated bodies: no chain is closed, coefficients of motion are found at the start only'
+    if (dynamics%articulated) write (unit, '(a)') &
+      'accelerations by articulated bodies: coefficients of motion are found at the start only'
     has_mass = .false.
     do i = 1, size(dynamics%bodies)
       has_mass(dynamics%bodies(i)%link) = .true.

@@ -1,0 +1,110 @@
+!> The order in which articulated bodies go through a mechanism: runs of open steps, and closed clusters.
+!>
+!> A stage stands on frames of earlier stages only. A sweep inward goes through the stages from the last to the first, a sweep
+!> outward from the first to the last.
+module mech9_tree_stages
+  use mech9_plan, only: plan_type
+  use mech9_clusters, only: clusters_type
+  implicit none
+  private
+  public :: stage_type, find_stages
+
+  !> A run of open steps with successive numbers, each a cluster by itself, or one closed cluster.
+  type :: stage_type
+    logical :: closed = .false.         !< a closed cluster
+    integer :: first_step = 0           !< first step
+    integer :: last_step = 0            !< last step of the run, or of the cluster, between whose steps others may lie
+    integer :: base = 0                 !< frame on which the cluster stands
+    integer, allocatable :: steps(:)    !< steps of the cluster, ascending
+    integer, allocatable :: coordinates(:)   !< coordinates of these steps
+    integer, allocatable :: places(:)   !< places of the cluster's coordinates among the independent ones, ascending
+    integer, allocatable :: frames(:)   !< frames of the cluster with bodies or loads, or on which other stages stand
+    integer, allocatable :: feet(:)     !< those on which other stages stand
+  end type stage_type
+
+contains
+
+  !> The stages of a plan.
+  pure function find_stages(plan, clusters, place_of, bears) result(stages)
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(clusters_type), intent(in) :: clusters     !< its clusters
+    integer, intent(in) :: place_of(:)              !< (M) place of a coordinate among the independent ones, or 0
+    logical, intent(in) :: bears(0:)                !< (0:M) the frame has a body or a load
+    type(stage_type), allocatable :: stages(:)
+    logical :: is_foot(0:plan%n_coordinates)
+    integer :: number(plan%n_coordinates), n, s
+
+    is_foot = .false.
+    number = 0
+    n = 0
+    do s = 1, plan%n_coordinates
+      if (clusters%of_step(s) == 0) cycle
+      is_foot(clusters%base(s)) = .true.
+      if (clusters%of_step(s) /= s) then
+        number(s) = number(clusters%of_step(s))
+      else if (continues_run(clusters, s)) then
+        number(s) = n
+      else
+        n = n + 1
+        number(s) = n
+      end if
+    end do
+    allocate (stages(n))
+    do s = plan%n_coordinates, 1, -1
+      if (number(s) == 0) cycle
+      associate (stage => stages(number(s)))
+        if (stage%last_step == 0) stage%last_step = s
+        stage%first_step = s
+      end associate
+    end do
+    do n = 1, size(stages)
+      if (clusters%closed(stages(n)%first_step)) call list_cluster(plan, number, n, place_of, bears, is_foot, stages(n))
+    end do
+  end function find_stages
+
+  !> Whether an open step continues the run of the open step before it.
+  pure logical function continues_run(clusters, s)
+    type(clusters_type), intent(in) :: clusters   !< clusters of the plan
+    integer, intent(in) :: s                      !< number of the step, the first of its cluster
+
+    continues_run = s > 1 .and. .not. clusters%closed(s)
+    if (continues_run) continues_run = clusters%of_step(s - 1) == s - 1 .and. .not. clusters%closed(s - 1)
+  end function continues_run
+
+  !> The lists of a closed cluster.
+  pure subroutine list_cluster(plan, number, n, place_of, bears, is_foot, stage)
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    integer, intent(in) :: number(:)            !< (M) stage of each step
+    integer, intent(in) :: n                    !< number of the cluster's stage
+    integer, intent(in) :: place_of(:)          !< (M) place of a coordinate among the independent ones, or 0
+    logical, intent(in) :: bears(0:)            !< (0:M) the frame has a body or a load
+    logical, intent(in) :: is_foot(0:)          !< (0:M) another stage stands on the frame
+    type(stage_type), intent(inout) :: stage    !< with its first and last step; gets the rest
+    integer :: s
+
+    stage%closed = .true.
+    stage%base = plan%steps(stage%first_step)%parent
+    stage%steps = pack([(s, s=stage%first_step, stage%last_step)], number(stage%first_step:stage%last_step) == n)
+    stage%coordinates = plan%steps(stage%steps)%coordinate
+    stage%frames = pack(stage%steps, bears(stage%steps) .or. is_foot(stage%steps))
+    stage%feet = pack(stage%steps, is_foot(stage%steps))
+    stage%places = sorted(place_of(pack(stage%coordinates, .not. plan%steps(stage%steps)%dependent)))
+  end subroutine list_cluster
+
+  !> Numbers in ascending order.
+  pure function sorted(numbers)
+    integer, intent(in) :: numbers(:)   !< a few numbers, in any order
+    integer :: sorted(size(numbers))
+    integer :: i, j, number
+
+    sorted = numbers
+    do i = 2, size(numbers)
+      number = sorted(i)
+      do j = i - 1, 1, -1
+        if (sorted(j) < number) exit
+        sorted(j + 1) = sorted(j)
+      end do
+      sorted(j + 1) = number
+    end do
+  end function sorted
+end module mech9_tree_stages
