@@ -16,7 +16,7 @@ program bench_growth
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_driven_simulation, only: assemble_driven
   use mech9_free_simulation, only: assemble_free
-  use mech9_bench_support, only: read_data_file, stop_at, median, argument
+  use mech9_bench_support, only: read_data_file, stop_at, median, argument, peak_memory
   implicit none
 
   !> Repetitions for a median.
@@ -181,20 +181,4 @@ contains
     end do
     time = 1.0e6_wp*median(each)
   end subroutine time_evaluations
-
-  !> The most memory that this process has had [MB]; 0 where the system does not tell.
-  real(wp) function peak_memory()
-    character(len=80) :: line
-    integer :: unit, status
-
-    peak_memory = 0.0_wp
-    open (newunit=unit, file='/proc/self/status', action='read', status='old', iostat=status)
-    do while (status == 0)
-      read (unit, '(a)', iostat=status) line
-      if (status /= 0 .or. line(:6) /= 'VmHWM:') cycle
-      read (line(7:index(line, 'kB') - 1), *) peak_memory
-      peak_memory = peak_memory/1024.0_wp
-    end do
-    close (unit, iostat=status)
-  end function peak_memory
 end program bench_growth

@@ -10,7 +10,7 @@ module mech9_bench_support
   use mech9_reader, only: read_model
   implicit none
   private
-  public :: read_data_file, stop_at, median, argument
+  public :: read_data_file, stop_at, median, argument, peak_memory
 
 contains
 
@@ -62,4 +62,20 @@ contains
     allocate (character(len=length) :: word)
     if (length > 0) call get_command_argument(i, word)
   end function argument
+
+  !> The most memory that this process has had [MB]; 0 where the system does not tell.
+  real(wp) function peak_memory()
+    character(len=80) :: line
+    integer :: unit, status
+
+    peak_memory = 0.0_wp
+    open (newunit=unit, file='/proc/self/status', action='read', status='old', iostat=status)
+    do while (status == 0)
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0 .or. line(:6) /= 'VmHWM:') cycle
+      read (line(7:index(line, 'kB') - 1), *) peak_memory
+      peak_memory = peak_memory/1024.0_wp
+    end do
+    close (unit, iostat=status)
+  end function peak_memory
 end module mech9_bench_support

@@ -64,6 +64,26 @@ EOT
   ' "$work/$1.dat"
 }
 
+# evaluations in the plane and in space side by side, and their ratio to those of the open chain with as many links N
+mixed_table() {
+  cat <<'EOT'
+| structure | N | links | independent | plane [µs] | a link [µs] | to the chain | space [µs] | a link [µs] | to the chain |
+| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
+EOT
+  awk '
+    BEGIN {
+      name["chain"] = "open chain"; name["tip"] = "four-bar at the tip"; name["middle"] = "four-bar in the middle"
+      name["base"] = "four-bar at the base"; name["modules"] = "modules in series"; name["tree"] = "tree of modules"
+    }
+    {
+      time[$1, $2, $3] = $7
+      if ($2 == "space")
+        printf "| %s | %d | %d | %d | %.2f | %.3f | %.2f | %.2f | %.3f | %.2f |\n", name[$1], $3, $4, $5, time[$1, "plane", $3],
+          time[$1, "plane", $3] / $4, time[$1, "plane", $3] / time["chain", "plane", $3], $7, $7 / $4, $7 / time["chain", "space", $3]
+    }
+  ' "$work/mixed.dat"
+}
+
 write_tables() {
   local problem
   cat <<EOT
@@ -121,6 +141,14 @@ $(growth_table ladder)
 Open chains of N links of 1 m and 1 kg, with axes x and y in alternation, all coordinates independent:
 
 $(growth_table chain)
+
+## Mixed structures
+
+Evaluations of the motion: open chains of N links as above, with a four-bar at the tip, in the middle or at the base; N modules of a
+revolute pair and a four-bar in series; binary trees of such modules. In the plane all axes are parallel, in space those of the chain are x
+and y in alternation, those of the four-bars y.
+
+$(mixed_table)
 EOT
 }
 

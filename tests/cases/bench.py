@@ -64,6 +64,17 @@ def check_growth(rows):
         checks.true(float(rows[last - 1][6]) > float(rows[first][6]), 'more links take longer', rows[first:last])
 
 
+def check_mixed(rows):
+    chains = {row[1]: row for row in rows[1:] if row[0] == 'open chain'}
+    checks.equal(len({row[0] for row in rows[1:]}), 6, 'six structures')
+    for row in rows[1:]:
+        checks.true(int(row[2]) > int(row[1]), f'{row[0]}: links', row)
+        for k in (4, 7):
+            # times stand there with two decimals
+            ratio = float(row[k]) / float(chains[row[1]][k])
+            checks.near(float(row[k + 2]) / ratio, 1.0, 0.05, f'{row[0]}: the ratio is that of the times')
+
+
 programs = os.path.abspath(sys.argv[1])
 with tempfile.TemporaryDirectory() as folder:
     done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--quick', '--programs', programs, '--output', folder],
@@ -76,11 +87,12 @@ with tempfile.TemporaryDirectory() as folder:
         error = float(re.search(r'largest acceleration:\n(\S+)\.\n', page).group(1))
         # round-off times the conditioning of a chain
         checks.true(error < 1e-10, 'the accelerations of the four-bar are those of the closed form', error)
-        problems = [heading for heading in tables if heading not in ('Time per position', 'Growth')]
+        problems = [heading for heading in tables if heading not in ('Time per position', 'Growth', 'Mixed structures')]
         checks.equal(len(problems), 6, 'six problems')
         for heading in problems:
             check_precision(heading, tables[heading])
         check_growth(tables['Growth'])
+        check_mixed(tables['Mixed structures'])
         pictures = re.findall(r'\((pictures/\S+\.svg)\)', page)
         if checks.has('gnuplot', 'gnuplot-nox'):
             checks.equal(len(pictures), 7, 'a picture for each problem and one of the growth')
