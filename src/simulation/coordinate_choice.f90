@@ -1,4 +1,8 @@
 !> The choice of other independent coordinates near a singular position (Wehage and Haug in docs/bibliography.md).
+!>
+!> QR with column pivoting of the equations of one block after the other finds which of the coordinates on which the block depends,
+!> and of its own unknowns, are better determined by the others. The work grows with the number of blocks; a cluster of one block
+!> is treated as by QR of all its closures.
 module mech9_coordinate_choice
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly, exit_singular
@@ -6,7 +10,8 @@ module mech9_coordinate_choice
   use mech9_lapack, only: dgeqp3
   use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_clusters, only: clusters_type, find_clusters
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type
   use mech9_planning, only: make_plan
@@ -16,55 +21,146 @@ module mech9_coordinate_choice
 
 contains
 
-  !> The independent coordinates with the best conditioned dependent ones at a closed position, by QR with column pivoting of the
-  !> closures' Jacobian over all coordinates. Chains that are left out stay dependent.
+  !> The independent coordinates with the best conditioned dependent ones at a closed position, cluster by cluster. Chains that are
+  !> left out stay dependent.
   subroutine best_independent(plan, state, independent)
     type(plan_type), intent(in) :: plan      !< the plan of the mechanism
     type(state_type), intent(in) :: state    !< frames in place
     logical, intent(out) :: independent(:)   !< (M)
-    real(wp), allocatable :: a(:, :), tau(:), work(:)
-    integer, allocatable :: pivot(:)
-    logical :: followed(plan%n_coordinates)
-    integer :: m, n, row, b, c, dependent, info
+    type(clusters_type) :: clusters
+    integer :: place(plan%n_coordinates), i, s
+    integer, allocatable :: steps(:)
 
-    n = plan%n_coordinates
-    m = sum(plan%closures%rank)
-    allocate (a(m, n), source=0.0_wp)
-    allocate (tau(min(m, n)), work(2*n + (n + 1)*32), source=0.0_wp)
-    allocate (pivot(n), source=0)
-    row = 0
-    followed = .false.
-    followed(plan%independent) = .true.
-    do b = 1, size(plan%blocks)
-      followed(plan%blocks(b)%coordinates) = .true.
-      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
-        call add_closure(plan, state, c, row, a)
-        row = row + plan%closures(c)%rank
-      end do
+    independent = .false.
+    independent(plan%independent) = .true.
+    clusters = find_clusters(plan)
+    place = 0
+    do s = 1, plan%n_coordinates
+      if (clusters%of_step(s) /= s .or. .not. clusters%closed(s)) cycle
+      steps = pack([(i, i=s, plan%n_coordinates)], clusters%of_step(s:) == s)
+      place(steps) = [(i, i=1, size(steps))]
+      call choose_in_cluster(plan, state, steps, place, independent)
     end do
-    if (m > 0) call dgeqp3(m, n, a, m, pivot, tau, work, size(work), info)
-    dependent = count(followed) - size(plan%independent)
-    independent = followed
-    independent(pivot(:dependent)) = .false.
   end subroutine best_independent
 
-  !> The rows of one closure: the derivatives by all coordinates of its loop.
-  pure subroutine add_closure(plan, state, c, row, a)
-    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: c                !< number of the closure
-    integer, intent(in) :: row              !< rows of `a` before those of the closure
-    real(wp), intent(inout) :: a(:, :)      !< (rows,M) derivatives of all closures by all coordinates
-    integer :: i, s
+  !> The choice in one closed cluster: each of its blocks in turn exchanges coordinates on which it depends for unknowns of its own,
+  !> where these serve better.
+  subroutine choose_in_cluster(plan, state, steps, place, independent)
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    type(state_type), intent(in) :: state       !< frames in place
+    integer, intent(in) :: steps(:)             !< steps of the cluster, ascending
+    integer, intent(in) :: place(:)             !< (M) place of a step in `steps`
+    logical, intent(inout) :: independent(:)    !< (M) gets the choice for the cluster's coordinates
+    integer, allocatable :: free(:)
+    real(wp), allocatable :: rates(:, :)
+    integer :: b, i
 
-    associate (loop => plan%closures(c)%loop)
-      do i = 1, size(loop%steps)
-        s = loop%steps(i)
-        call plan%constraints(c)%item%column(plan, s, loop%signs(i), state, &
-                                             a(row + 1:row + plan%closures(c)%rank, plan%steps(s)%coordinate))
+    free = pack(steps, .not. plan%steps(steps)%dependent)
+    allocate (rates(size(steps), size(free)), source=0.0_wp)
+    do i = 1, size(free)
+      rates(place(free(i)), i) = 1.0_wp
+    end do
+    do b = 1, size(plan%blocks)
+      if (size(plan%blocks(b)%unknowns) == 0) cycle
+      if (.not. any(steps == plan%blocks(b)%unknowns(1))) cycle
+      call exchange(plan, state, plan%blocks(b), place, free, rates)
+    end do
+    independent(plan%steps(steps)%coordinate) = .false.
+    independent(plan%steps(free)%coordinate) = .true.
+  end subroutine choose_in_cluster
+
+  !> Choose between the free coordinates on which a block depends and its unknowns, by QR with column pivoting of its equations. As
+  !> many coordinates as before remain free, and the rates of all coordinates of earlier blocks follow from these.
+  subroutine exchange(plan, state, block, place, free, rates)
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    type(state_type), intent(in) :: state       !< frames in place
+    type(block_type), intent(in) :: block       !< the block
+    integer, intent(in) :: place(:)             !< (M) place of a step among those of the cluster
+    integer, intent(inout) :: free(:)           !< (k) steps of the free coordinates
+    real(wp), intent(inout) :: rates(:, :)      !< (steps of the cluster, k) rates per rate of the free coordinates, in their units
+    real(wp) :: a(block%equations, size(free) + size(block%unknowns)), old(size(rates, 1), size(free))
+    real(wp) :: tau(min(size(a, 1), size(a, 2))), work(2*size(a, 2) + (size(a, 2) + 1)*32)
+    real(wp) :: by_free(size(block%unknowns), size(free))
+    integer :: pivot(size(a, 2)), candidates(size(a, 2)), info, i, j, k, n
+
+    k = size(free)
+    n = size(block%unknowns)
+    candidates = [free, block%unknowns]
+    call set_equations(plan, state, block, place, rates, a)
+    pivot = 0
+    call dgeqp3(size(a, 1), size(a, 2), a, size(a, 1), pivot, tau, work, size(work), info)
+    call divide(n, a, by_free)
+    old = rates
+    rates = 0.0_wp
+    do i = 1, k
+      if (pivot(n + i) <= k) rates(:, i) = old(:, pivot(n + i))
+    end do
+    do i = 1, n
+      if (pivot(i) > k) then
+        rates(place(candidates(pivot(i))), :) = -by_free(i, :)
+      else
+        do j = 1, k
+          rates(:, j) = rates(:, j) - old(:, pivot(i))*by_free(i, j)
+        end do
+      end if
+    end do
+    do i = 1, k
+      if (pivot(n + i) > k) rates(place(candidates(pivot(n + i))), i) = 1.0_wp
+    end do
+    free = candidates(pivot(n + 1:))
+  end subroutine exchange
+
+  !> The equations of a block: derivatives by the free coordinates, then by its unknowns.
+  subroutine set_equations(plan, state, block, place, rates, a)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< frames in place
+    type(block_type), intent(in) :: block   !< the block
+    integer, intent(in) :: place(:)         !< (M) place of a step among those of the cluster
+    real(wp), intent(in) :: rates(:, :)     !< (steps of the cluster, k) rates of earlier blocks per rate of the free coordinates
+    real(wp), intent(out) :: a(:, :)        !< (equations, free coordinates and unknowns)
+    real(wp) :: column(6)
+    integer :: c, i, j, k, s, row, rank
+
+    k = size(rates, 2)
+    a = 0.0_wp
+    row = 0
+    do c = block%first_closure, block%last_closure
+      rank = plan%closures(c)%rank
+      associate (loop => plan%closures(c)%loop)
+        do i = 1, size(loop%steps)
+          s = loop%steps(i)
+          call plan%constraints(c)%item%column(plan, s, loop%signs(i), state, column(:rank))
+          j = findloc(block%unknowns, s, dim=1)
+          if (j > 0) then
+            a(row + 1:row + rank, k + j) = column(:rank)
+          else
+            do j = 1, k
+              a(row + 1:row + rank, j) = a(row + 1:row + rank, j) + column(:rank)*rates(place(s), j)
+            end do
+          end if
+        end do
+      end associate
+      row = row + rank
+    end do
+  end subroutine set_equations
+
+  !> R11^-1 R12 from the factors of a matrix with n dependent columns. A row without a pivot beyond round-off stays zero.
+  pure subroutine divide(n, a, quotient)
+    integer, intent(in) :: n                  !< number of dependent columns
+    real(wp), intent(in) :: a(:, :)           !< with R = (R11, R12) in its upper triangle
+    real(wp), intent(out) :: quotient(:, :)   !< (n, other columns)
+    integer :: i, j
+
+    quotient = 0.0_wp
+    do i = min(n, size(a, 1)), 1, -1
+      if (abs(a(i, i)) <= 16.0_wp*size(a, 2)*epsilon(1.0_wp)*abs(a(1, 1))) cycle
+      quotient(i, :) = a(i, n + 1:)
+      do j = i + 1, n
+        if (j <= size(a, 1)) quotient(i, :) = quotient(i, :) - a(i, j)*quotient(j, :)
       end do
-    end associate
-  end subroutine add_closure
+      quotient(i, :) = quotient(i, :)/a(i, i)
+    end do
+  end subroutine divide
 
   !> The plan and the state in other independent coordinates. Fails with exit_singular where these cannot serve or the
   !> state cannot be carried over, and with the code of the failure where a pair or the program itself fails.
