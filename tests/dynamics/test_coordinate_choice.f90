@@ -46,7 +46,7 @@ contains
 
     call new_four_bar(whole)
     call make_plan(whole%mechanism, whole%problem%partition, whole%problem%initial%position, plan, state, err)
-    call test%no_error(err, 'a four-bar')
+    call test%no_error(err, 'a four-bar has a plan')
     state%t = 7.0_wp
     state%dq = [1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp]
     requested = requested_by_results(whole%mechanism, whole%request%output)

@@ -68,12 +68,12 @@ contains
     type(error_type), allocatable :: err
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, 'a plan')
+    call test%no_error(err, 'the mechanism has a plan')
     if (allocated(err)) return
     state%t = 0.0_wp
     state%dq(plan%independent) = rate
     call set_motion_system(model, model%problem%partition, plan, state, system, err)
-    call test%no_error(err, 'a system')
+    call test%no_error(err, 'the mechanism has equations of motion')
   end subroutine begin
 
   !> The end of a step of the swing at time t.
@@ -86,7 +86,7 @@ contains
 
     y = [cos(t), -sin(t)]
     call system%move_to(t, y, err)
-    call test%no_error(err, 'an end of a step')
+    call test%no_error(err, 'the motion is found at the end of a step')
     call dense_output%add(system, t, y)
   end subroutine add_end
 
@@ -119,32 +119,33 @@ contains
     call swing(system)
     call dense_output%begin()
     call add_end(system, dense_output, 0.0_wp)
-    call check_swing(system, dense_output, 0.0_wp, .false., 'one end alone')
+    call check_swing(system, dense_output, 0.0_wp, .false., 'one end alone is not enough')
     do i = 1, 9
       call add_end(system, dense_output, 0.1_wp*i)
       ! only some steps are looked into: the values known for earlier steps are not those of this one
-      if (mod(i, 4) == 0) call check_swing(system, dense_output, 0.1_wp*i - 0.03_wp, .true., 'a short step')
+      if (mod(i, 4) == 0) call check_swing(system, dense_output, 0.1_wp*i - 0.03_wp, .true., &
+          'the swing is found within a short step')
     end do
     call dense_output%start_of_step(t, y)
-    call test%near(t, 0.8_wp, 1.0e-15_wp, 'where the step began')
-    call test%near(y(1), cos(0.8_wp), 1.0e-15_wp, 'and where that is')
+    call test%near(t, 0.8_wp, 1.0e-15_wp, 'the time at which the step began is known')
+    call test%near(y(1), cos(0.8_wp), 1.0e-15_wp, 'the position in which the step began is known')
     call dense_output%begin()
     call add_end(system, dense_output, 0.9_wp)
     call check_swing(system, dense_output, 0.9_wp, .false., 'a new beginning knows no steps before it')
     ! in 1.8 s a polynomial through its ends is right to some thousandths only
     call add_end(system, dense_output, 2.7_wp)
-    call check_swing(system, dense_output, 1.5_wp, .false., 'a long step')
+    call check_swing(system, dense_output, 1.5_wp, .false., 'the swing is not found within a long step')
     do i = 1, 3
       t = 0.9_wp + 0.45_wp*i
       call dense_output%insert(t, [cos(t), -sin(t)])
-      call test%is_true(dense_output%count_inserted() == i, 'points within it are counted')
+      call test%is_true(dense_output%count_inserted() == i, 'points within the long step are counted')
     end do
-    call check_swing(system, dense_output, 1.5_wp, .true., 'a long step with points within it')
+    call check_swing(system, dense_output, 1.5_wp, .true., 'the swing is found within a long step with points inside')
     call dense_output%insert(2.0_wp, [9.0_wp, 9.0_wp])
-    call test%is_true(dense_output%count_inserted() == 3, 'no more than there is room for')
+    call test%is_true(dense_output%count_inserted() == 3, 'no more points are taken than there is room for')
     call add_end(system, dense_output, 2.8_wp)
-    call test%is_true(dense_output%count_inserted() == 0, 'the next step has none')
-    call check_swing(system, dense_output, 2.75_wp, .true., 'a short step after a long one')
+    call test%is_true(dense_output%count_inserted() == 0, 'the next step has no points inside')
+    call check_swing(system, dense_output, 2.75_wp, .true., 'the swing is found within a short step after a long one')
     do i = 1, 3
       t = 2.8_wp + 0.1_wp*i
       call add_end(system, dense_output, t)
@@ -154,7 +155,7 @@ contains
       t = 3.1_wp + 0.45_wp*i
       call dense_output%insert(t, [cos(t), -sin(t)])
     end do
-    call check_swing(system, dense_output, 3.9_wp, .true., 'points within another step')
+    call check_swing(system, dense_output, 3.9_wp, .true., 'the swing is found within another step with points inside')
     deallocate (system%model)
   end subroutine swinging
 
@@ -166,17 +167,17 @@ contains
 
     call rocker([0.3_wp, 1.0_wp, 0.8_wp, 2.0_wp], upper)
     call rocker([0.3_wp, -1.6_wp, -0.8_wp, -2.4_wp], lower)
-    call test%is_true(abs(upper%state%q(4) - lower%state%q(4)) > 0.5_wp, 'two branches')
+    call test%is_true(abs(upper%state%q(4) - lower%state%q(4)) > 0.5_wp, 'the four-bar has two branches')
     call dense_output%begin()
     call dense_output%add(upper, 0.0_wp, upper%vector())
     call dense_output%add(upper, 0.1_wp, upper%vector())
-    call test%is_true(.not. dense_output%crosses(), 'a step on one branch')
-    call test%is_true(dense_output%agrees(upper), 'a state on it')
-    call test%is_true(.not. dense_output%agrees(lower), 'a state on the other')
+    call test%is_true(.not. dense_output%crosses(), 'a step on one branch crosses nothing')
+    call test%is_true(dense_output%agrees(upper), 'a state on the branch of the step agrees with it')
+    call test%is_true(.not. dense_output%agrees(lower), 'a state on the other branch does not agree with the step')
     call upper%move_to(0.2_wp, lower%vector(), err)
-    call test%no_error(err, 'the other branch')
+    call test%no_error(err, 'the motion is found on the other branch')
     call dense_output%add(upper, 0.2_wp, upper%vector())
-    call test%is_true(dense_output%crosses(), 'a step from branch to branch')
+    call test%is_true(dense_output%crosses(), 'a step from branch to branch is told')
     deallocate (upper%model, lower%model)
   end subroutine branches
 
@@ -195,24 +196,24 @@ contains
     ! both limits are a few times the error of any step that is worth its name
     y(2:4) = closed(2:4) + 1.0e-6_wp*[1.0_wp, -2.0_wp, 1.0_wp]
     call system%close_near(0.0_wp, y, ok, err)
-    call test%no_error(err, 'a small error inside a step')
+    call test%no_error(err, 'a small error inside a step is no failure')
     call test%is_true(ok, 'a small error inside a step is closed')
     ! both are closed to round-off over a conditioning of 0.1
-    call test%near(maxval(abs(system%state%q - closed(:4))), 0.0_wp, 1.0e-13_wp, 'where it was')
+    call test%near(maxval(abs(system%state%q - closed(:4))), 0.0_wp, 1.0e-13_wp, 'chains with a small error close where they were')
     y(2:4) = closed(2:4) + 5.0e-3_wp*[1.0_wp, -2.0_wp, 1.0_wp]
     call system%close_near(0.0_wp, y, ok, err)
-    call test%is_true(.not. ok, 'a large one is not trusted')
+    call test%is_true(.not. ok, 'a large error inside a step is not trusted')
     call system%settle(0.0_wp, y, err)
-    call test%no_error(err, 'the same at the end of a step')
-    call test%near(maxval(abs(y(:4) - closed(:4))), 0.0_wp, 1.0e-13_wp, 'is closed')
+    call test%no_error(err, 'a large error at the end of a step is no failure')
+    call test%near(maxval(abs(y(:4) - closed(:4))), 0.0_wp, 1.0e-13_wp, 'a large error at the end of a step is closed')
     y(2:4) = closed(2:4) + 0.1_wp*[1.0_wp, -2.0_wp, 1.0_wp]
     call system%settle(0.0_wp, y, err)
-    call test%has_error(err, exit_singular, 'a larger one is not')
+    call test%has_error(err, exit_singular, 'a still larger error at the end of a step is refused')
     call system%rate(0.0_wp, closed, ydot, err)
-    call test%no_error(err, 'a state that is not refused')
+    call test%no_error(err, 'a state with any conditioning is accepted without a limit')
     system%refuse_below = 2.0_wp
     call system%rate(0.0_wp, closed, ydot, err)
-    call test%has_error(err, exit_singular, 'no conditioning is that good')
+    call test%has_error(err, exit_singular, 'a state is refused where its conditioning is below the limit')
     deallocate (system%model)
   end subroutine trust
 
@@ -224,16 +225,19 @@ contains
     b = [7.0_wp, 8.0_wp]
     ddq = 9.0_wp
     call expectation%continue_to(1.0_wp, b, ddq)
-    call test%near(sum(b) + sum(ddq), 24.0_wp, 1.0e-15_wp, 'nothing known, nothing changed')
+    call test%near(sum(b) + sum(ddq), 24.0_wp, 1.0e-15_wp, 'an expectation that knows nothing changes nothing')
     call expectation%remember(1.0_wp, [1.0_wp, 2.0_wp], [3.0_wp])
     call expectation%continue_to(5.0_wp, b, ddq)
-    call test%near(maxval(abs([b - [1.0_wp, 2.0_wp], ddq - 3.0_wp])), 0.0_wp, 1.0e-15_wp, 'one time')
+    call test%near(maxval(abs([b - [1.0_wp, 2.0_wp], ddq - 3.0_wp])), 0.0_wp, 1.0e-15_wp, &
+                   'an expectation from one time is its values')
     call expectation%remember(3.0_wp, [2.0_wp, 0.0_wp], [7.0_wp])
     call expectation%remember(3.0_wp, [5.0_wp, 5.0_wp], [5.0_wp])
     call expectation%continue_to(4.0_wp, b, ddq)
-    call test%near(maxval(abs([b - [2.5_wp, -1.0_wp], ddq - 9.0_wp])), 0.0_wp, 1.0e-14_wp, 'beyond two times')
+    call test%near(maxval(abs([b - [2.5_wp, -1.0_wp], ddq - 9.0_wp])), 0.0_wp, 1.0e-14_wp, &
+                   'an expectation from two times is a straight line')
     call expectation%remember(4.0_wp, [2.0_wp, 0.0_wp], [8.0_wp])
     call expectation%continue_to(6.0_wp, b, ddq)
-    call test%near(maxval(abs([b - [2.0_wp, 0.0_wp], ddq - 10.0_wp])), 0.0_wp, 1.0e-14_wp, 'beyond the last two of three')
+    call test%near(maxval(abs([b - [2.0_wp, 0.0_wp], ddq - 10.0_wp])), 0.0_wp, 1.0e-14_wp, &
+                   'an expectation from three times is a line through the last two')
   end subroutine expectations
 end program test_dense_output

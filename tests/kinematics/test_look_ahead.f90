@@ -42,10 +42,10 @@ contains
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, start, 1), model)
     call drive(model, 1, [start, 1.0_wp])
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, assembled, err)
-    call test%no_error(err, 'plan and assembly')
+    call test%no_error(err, 'a four-bar has a plan and is assembled')
     if (allocated(err)) call test%finish()
     call start_driven_motion(model%problem%drives, plan, assembled, 0.0_wp, driven, err)
-    call test%no_error(err, 'start')
+    call test%no_error(err, 'its motion starts')
     stepper = driven%branch_stepper_type
     do step = 1, 1000
       call step_towards(model%problem%drives, plan, stepper, t, stuck, refused_by, err)
@@ -65,7 +65,7 @@ contains
     call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == dead_point .and. finding%block == 1, 'a dead point is found')
     ! the square-root law leaves terms of higher order in the distance of the last step, some 1e-11
-    call test%near(finding%t, 0.4_wp, 1.0e-9_wp, 'at its time')
+    call test%near(finding%t, 0.4_wp, 1.0e-9_wp, 'the dead point is found at its time')
   end subroutine check_dead_point
 
   !> A parallelogram is flat at half a turn, where the branch of the antiparallelogram crosses.
@@ -83,20 +83,21 @@ contains
     call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == branch_point, 'a crossing is found')
     ! the time is extrapolated from positions of the probe that lie within a small part of the distance
-    call test%near(finding%t, 0.5_wp, 1.0e-6_wp, 'at its time')
+    call test%near(finding%t, 0.5_wp, 1.0e-6_wp, 'the crossing is found at its time')
     call build_crossing(model%problem%drives, plan, stepper, finding%t, crossing, err)
-    call test%no_error(err, 'crossing')
-    call test%is_true(crossing%exists .and. .not. crossing%ends, 'the motion through it is found')
-    call test%is_true(crossing%from < 0.5_wp .and. crossing%to > 0.5_wp, 'from before to beyond')
+    call test%no_error(err, 'the motion through the crossing is looked for without a failure')
+    call test%is_true(crossing%exists .and. .not. crossing%ends, 'the motion through the crossing is found')
+    call test%is_true(crossing%from < 0.5_wp .and. crossing%to > 0.5_wp, 'the motion leads from before the crossing to beyond it')
     state = stepper%state
     do i = 0, 8
       t = crossing%from + (crossing%to - crossing%from)*i/8.0_wp
       call position_within(model%problem%drives, plan, crossing, t, state, stepper%work, stepper%monitors, err)
-      call test%no_error(err, 'a position within the crossing')
+      call test%no_error(err, 'a position within the crossing is found')
       ! the rocker stays parallel to the crank, and the coupler to the ground; the polynomial of this linear motion is exact
       call test%near(maxval(abs(state%q - [start + t, -start - t, start + t, start + t])), 0.0_wp, at_crossing(0), &
-                     'it is that of the parallelogram')
-      call test%near(maxval(abs(state%dq - [1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp])), 0.0_wp, at_crossing(1), 'and so are its rates')
+                     'a position within the crossing is that of the parallelogram')
+      call test%near(maxval(abs(state%dq - [1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp])), 0.0_wp, at_crossing(1), &
+                     'rates within the crossing are those of the parallelogram')
     end do
   end subroutine check_crossing
 
@@ -108,6 +109,6 @@ contains
     call come_near(bar, pi - 0.5_wp, 2.0_wp)
     call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == nothing_special, 'branches that only come close are no crossing')
-    call test%is_true(finding%t > 0.5_wp, 'and none is found until they are apart again')
+    call test%is_true(finding%t > 0.5_wp, 'no crossing is found until the branches are apart again')
   end subroutine check_close_branches
 end program test_look_ahead

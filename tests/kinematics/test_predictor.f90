@@ -71,10 +71,13 @@ contains
       call begin_prediction(motion(degree, 0.2_wp), predictor)
       call add_position(motion(degree, 0.5_wp), units, .true., 0.0_wp, predictor)
       if (degree <= 5) then
-        call test%near(error_of(predictor, degree, 0.9_wp), 0.0_wp, round_off, 'fifth degree from two positions')
-        call test%near(error_of(predictor, degree, 0.3_wp), 0.0_wp, round_off, 'and between them')
+        call test%near(error_of(predictor, degree, 0.9_wp), 0.0_wp, round_off, &
+                       'a motion of fifth degree is predicted exactly beyond two positions')
+        call test%near(error_of(predictor, degree, 0.3_wp), 0.0_wp, round_off, &
+                       'a motion of fifth degree is predicted exactly between two positions')
       else
-        call test%is_true(error_of(predictor, degree, 0.9_wp) > 1.0e-4_wp, 'sixth degree is not determined')
+        call test%is_true(error_of(predictor, degree, 0.9_wp) > 1.0e-4_wp, &
+                          'two positions do not determine a motion of sixth degree')
       end if
     end do
   end subroutine check_two_positions
@@ -85,8 +88,9 @@ contains
 
     predictor = new_predictor(3)
     call begin_prediction(motion(2, 0.2_wp), predictor)
-    call test%near(error_of(predictor, 2, 0.6_wp), 0.0_wp, round_off, 'second degree from the first position')
-    call test%near(acceleration_of(predictor, 1), 1.2_wp, round_off, 'the acceleration is the given one')
+    call test%near(error_of(predictor, 2, 0.6_wp), 0.0_wp, round_off, &
+                   'a motion of second degree is predicted exactly from its first position')
+    call test%near(acceleration_of(predictor, 1), 1.2_wp, round_off, 'the acceleration of the first position is the given one')
     call add_position(motion(5, 0.5_wp), units, .true., 0.0_wp, predictor)
     call begin_prediction(motion(2, 0.2_wp), predictor)
     call test%near(error_of(predictor, 2, 0.6_wp), 0.0_wp, round_off, 'a new beginning forgets the motion before')
@@ -113,7 +117,8 @@ contains
     do i = 1, 4
       call add_position(motion(5, 0.1_wp*i), units, .false., 0.0_wp, predictor)
     end do
-    call test%near(error_of(predictor, 5, 0.5_wp), 0.0_wp, round_off, 'fifth degree from five rates')
+    call test%near(error_of(predictor, 5, 0.5_wp), 0.0_wp, round_off, &
+                   'a motion of fifth degree is predicted exactly from five rates')
     last = motion(5, 0.4_wp)
     ! differences of rates over 0.1 s lose two digits
     call test%near(acceleration_of(predictor, 1), last%ddq(1), 1.0e-11_wp, 'the acceleration follows from five rates')

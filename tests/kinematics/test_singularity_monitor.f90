@@ -37,9 +37,9 @@ contains
 
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, middle, 1), model)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, 'plan and assembly')
+    call test%no_error(err, 'a four-bar has a plan and is assembled')
     if (allocated(err)) call test%finish()
-    call test%is_true(size(plan%blocks) == 1, 'one block')
+    call test%is_true(size(plan%blocks) == 1, 'a four-bar is one block')
     work(1) = new_block_work(plan%blocks(1))
     monitors(1) = new_singularity_monitor(plan%blocks(1))
   end subroutine begin
@@ -80,13 +80,13 @@ contains
 
     limit = four_bar_limit(bar, stretched=.true.)
     call start_step(middle, 1)
-    call test%near(step_to(middle, 1), 0.0_wp, 0.0_wp, 'nothing has changed where it stays')
+    call test%near(step_to(middle, 1), 0.0_wp, 0.0_wp, 'a step that leads nowhere changes nothing')
     call test%is_true(step_to(middle + 1.0e-3_wp, 1) < 0.1_wp, 'a short step is trusted')
     ! the Jacobian is singular at the limit, to the round-off of the angle there: the root of that of the crank
-    call test%is_true(step_to(limit, 1) > 1.0_wp, 'none that ends at a dead point')
+    call test%is_true(step_to(limit, 1) > 1.0_wp, 'a step that ends at a dead point is not trusted')
     call start_step(limit - 1.0e-4_wp, 1)
-    call test%is_true(step_to(limit - 1.0e-4_wp, -1) > 1.0_wp, 'nor one to the other branch, however near it is')
-    call test%is_true(monitors(1)%trial_sign == -monitors(1)%sign, 'whose determinant has the other sign')
+    call test%is_true(step_to(limit - 1.0e-4_wp, -1) > 1.0_wp, 'a step to the other branch is not trusted, however near it is')
+    call test%is_true(monitors(1)%trial_sign == -monitors(1)%sign, 'the determinant has another sign on the other branch')
   end subroutine check_changes
 
   !> A change of the determinant's sign refuses a step even if the Jacobian changes very little.

@@ -85,7 +85,7 @@ contains
       if (.not. allocated(err)) call new_free_simulation(model, plan, assembled, of_forces, err)
       call move_alloc(of_forces, simulation)
     end if
-    call test%no_error(err, 'a four-bar')
+    call test%no_error(err, 'a four-bar has a simulation')
   end subroutine new_simulation
 
   !> Close a simulation that `new_simulation` made, and give back its model.
@@ -132,16 +132,16 @@ contains
     call new_simulation(text, is_driven, pieces)
     call whole%start(err)
     call whole%advance(2.0_wp, err)
-    call test%no_error(err, 'in one go')
+    call test%no_error(err, 'the motion succeeds in one go')
     call pieces%start(err)
     do i = 1, 64
       if (.not. allocated(err)) call pieces%advance(2.0_wp*i/64, err)
     end do
-    call test%no_error(err, 'in pieces')
-    call test%is_true(maxval(abs(numbers(whole) - numbers(pieces))) <= tolerance, 'both are the same motion')
+    call test%no_error(err, 'the motion succeeds in pieces')
+    call test%is_true(maxval(abs(numbers(whole) - numbers(pieces))) <= tolerance, 'the motion in pieces is that in one go')
     call pieces%advance(2.0_wp, err)
     call test%no_error(err, 'the present time can be asked for again')
-    call test%is_true(maxval(abs(numbers(whole) - numbers(pieces))) <= tolerance, 'and is where it was')
+    call test%is_true(maxval(abs(numbers(whole) - numbers(pieces))) <= tolerance, 'the present time leads to where the motion was')
     call end_simulation(whole)
     call end_simulation(pieces)
   end subroutine check_pieces
@@ -165,12 +165,13 @@ contains
     call interrupted%advance(1.0_wp, err)
     call test%has_error(err, exit_interrupted, 'an interruption stops a motion')
     call explain(err)
-    call test%is_true(index(err%message, 'before t = 1 s') > 0, 'and the message says before which time')
-    call test%is_true(interrupted%t < 1.0_wp, 'the motion stands before it')
+    call test%is_true(index(err%message, 'before t = 1 s') > 0, 'the message of an interruption says before which time')
+    call test%is_true(interrupted%t < 1.0_wp, 'an interrupted motion stands before the time that was asked for')
     call interrupted%advance(1.0_wp, err)
-    call test%no_error(err, 'it goes on when it is asked again')
+    call test%no_error(err, 'an interrupted motion goes on when it is asked again')
     ! a free motion goes on with the steps that it would have taken; a driven one closes again, as in pieces
-    call test%is_true(maxval(abs(numbers(whole) - numbers(interrupted))) <= 1e-12_wp, 'to the same position')
+    call test%is_true(maxval(abs(numbers(whole) - numbers(interrupted))) <= 1e-12_wp, &
+                      'an interrupted motion goes on to the same position')
     call end_simulation(interrupted)
     call new_simulation(text, is_driven, interrupted)
     left = 1
@@ -190,7 +191,7 @@ contains
 
     call new_simulation(by_rocker, .false., simulation)
     now = simulation%statistics()
-    call test%is_true(now%positions == 0 .and. now%steps == 0 .and. now%evaluations == 0, 'nothing was done')
+    call test%is_true(now%positions == 0 .and. now%steps == 0 .and. now%evaluations == 0, 'nothing was done before the start')
     call simulation%start(err)
     grow = .true.
     do i = 1, 20
@@ -200,13 +201,14 @@ contains
       grow = grow .and. now%positions == before%positions + 1 .and. now%steps >= before%steps &
              .and. now%evaluations >= before%evaluations .and. now%newton_iterations >= before%newton_iterations
     end do
-    call test%no_error(err, 'a four-bar described by its rocker')
-    call test%is_true(grow, 'no count falls')
-    call test%is_true(size(simulation%events) > 0, 'the rocker is left as independent coordinate')
-    call test%is_true(all(simulation%events%t > 0.0_wp) .and. all(simulation%events%t < 2.0_wp), 'within the motion')
+    call test%no_error(err, 'a four-bar described by its rocker moves')
+    call test%is_true(grow, 'no count of the work falls')
+    call test%is_true(size(simulation%events) > 0, 'another coordinate takes the place of the rocker')
+    call test%is_true(all(simulation%events%t > 0.0_wp) .and. all(simulation%events%t < 2.0_wp), &
+                      'the change of coordinates happens within the motion')
     ! each accepted step of the method takes several evaluations, and 2 s at this tolerance are more than 20 steps
     call test%is_true(now%evaluations > now%steps .and. now%newton_iterations > 0 .and. now%steps > 20_long, &
-                      'evaluations and iterations against steps')
+                      'each step takes evaluations and iterations')
     call end_simulation(simulation)
   end subroutine check_statistics
 
@@ -220,13 +222,13 @@ contains
 
     call new_simulation(text, is_driven, simulation)
     call simulation%advance(0.5_wp, err)
-    call test%has_error(err, exit_usage, 'a motion that was not started')
+    call test%has_error(err, exit_usage, 'a motion that was not started is refused')
     call simulation%start(err)
     call simulation%advance(0.5_wp, err)
     there = numbers(simulation)
     call simulation%advance(0.25_wp, err)
-    call test%has_error(err, exit_usage, 'a time before the present one')
-    call test%is_true(all(abs(numbers(simulation) - there) <= 0.0_wp), 'which changes nothing')
+    call test%has_error(err, exit_usage, 'a time before the present one is refused')
+    call test%is_true(all(abs(numbers(simulation) - there) <= 0.0_wp), 'a refused time changes nothing')
     call end_simulation(simulation)
   end subroutine check_order_of_times
 
@@ -243,10 +245,10 @@ contains
     call new_driven_simulation(model, plan, assembled, simulation%driven_simulation_type)
     simulation%gap = 0.9e-9_wp*plan%length
     call simulation%start(err)
-    call test%no_error(err, 'chains that are open by less than 1e-9 of the size')
+    call test%no_error(err, 'chains that are open by less than 1e-9 of the size are accepted')
     simulation%gap = 1.1e-9_wp*plan%length
     call simulation%advance(0.1_wp, err)
-    call test%has_error(err, exit_singular, 'chains that are open by more')
+    call test%has_error(err, exit_singular, 'chains that are open by more are refused')
   end subroutine check_open_chains
 
   !> The tolerances for an accuracy, and errors that are those of the run with them; where a position has no error that is

@@ -23,22 +23,22 @@ contains
     real(wp) :: q, dq, ddq
 
     call make_procedure_pair(2, [real(wp) ::], pair, err)
-    call test%no_error(err, 'a pair in plain values')
-    call test%is_true(pair%plain_values, 'its form is found')
+    call test%no_error(err, 'a pair in plain values is made')
+    call test%is_true(pair%plain_values, 'the form of the pair is found')
     call pair%evaluate(0.5_wp, motion, err)
-    call test%no_error(err, 'a pair in plain values, evaluated')
+    call test%no_error(err, 'a pair in plain values is evaluated')
     ! the first point runs along (2 cos q, sin q, 0.3 q^2); 1e-12, 1e-11 and 1e-10 are promised of plain values
-    call test%near(motion%pose%p(1), 2.0_wp*cos(0.5_wp), 1.0e-12_wp, 'its first point')
-    call test%near(motion%v(2), cos(0.5_wp), 1.0e-11_wp, 'its rate')
-    call test%near(motion%v_rate(3), 0.6_wp, 1.0e-10_wp, 'its second derivative')
+    call test%near(motion%pose%p(1), 2.0_wp*cos(0.5_wp), 1.0e-12_wp, 'the first point of the pair lies on its curve')
+    call test%near(motion%v(2), cos(0.5_wp), 1.0e-11_wp, 'the point moves with the slope of its curve')
+    call test%near(motion%v_rate(3), 0.6_wp, 1.0e-10_wp, 'the second derivative is that of the curve')
 
     call make_procedure_drive(1, 0.0_wp, [0.0_wp, 1.0_wp, 2.0_wp], drive, err)
-    call test%no_error(err, 'a drive in plain values')
-    call test%is_true(drive%plain_values, 'its form is found')
+    call test%no_error(err, 'a drive in plain values is made')
+    call test%is_true(drive%plain_values, 'the form of the drive is found')
     call drive%evaluate(0.5_wp, q, dq, ddq, err)
-    call test%no_error(err, 'a drive in plain values, evaluated')
-    call test%near(q, sin(1.0_wp), 1.0e-12_wp, 'its value')
-    call test%near(dq, 2.0_wp*cos(1.0_wp), 1.0e-11_wp, 'its rate')
-    call test%near(ddq, -4.0_wp*sin(1.0_wp), 1.0e-10_wp, 'its second derivative')
+    call test%no_error(err, 'a drive in plain values is evaluated')
+    call test%near(q, sin(1.0_wp), 1.0e-12_wp, 'the drive has its value')
+    call test%near(dq, 2.0_wp*cos(1.0_wp), 1.0e-11_wp, 'the drive has its rate')
+    call test%near(ddq, -4.0_wp*sin(1.0_wp), 1.0e-10_wp, 'the drive has its second derivative')
   end subroutine use_procedures
 end program test_plain_values_linked
