@@ -4,12 +4,13 @@ module mech9_integration_methods
   implicit none
   private
   public :: integration_method_type, integration_methods, method_index, tolerance_share, least_tolerance
-  public :: runge_kutta, multistep
+  public :: runge_kutta, multistep, automatic
   public :: no_table, prince_dormand_table, dormand_prince_table, verner_table, fehlberg_table, kutta_merson_table
 
   !> Families of methods.
   integer, parameter :: runge_kutta = 1   !< explicit, one step
   integer, parameter :: multistep = 2     !< of variable order
+  integer, parameter :: automatic = 3     !< several methods by turns
 
   !> Coefficients of the Runge-Kutta methods. SUNDIALS brings three of these tables, mech9_butcher_tables the others.
   integer, parameter :: no_table = 0
@@ -22,7 +23,7 @@ module mech9_integration_methods
   !> A method: its name and help for users, and its properties for the procedures that set it up.
   type :: integration_method_type
     character(len=15) :: name
-    integer :: family        !< runge_kutta or multistep
+    integer :: family        !< runge_kutta, multistep or automatic
     integer :: table         !< of its coefficients; no_table for multistep methods
     integer :: order         !< of its error; the highest one where it varies
     integer :: stages        !< evaluations of the rate in a step; 0 where their number varies
@@ -47,7 +48,9 @@ module mech9_integration_methods
                             'Kutta-Merson 4(3), the MERSOL of 1995'), &
     integration_method_type('adams', multistep, no_table, 12, 0, .false., 1.0e-3_wp, 'Adams-Moulton, orders 1 to 12'), &
     integration_method_type('bdf', multistep, no_table, 5, 0, .false., 3.0e-4_wp, &
-                            'backward differences, orders 1 to 5; for stiff motions')]
+                            'backward differences, orders 1 to 5; for stiff motions'), &
+    integration_method_type('auto', automatic, no_table, 8, 0, .false., 3.0e-4_wp, &
+                            'prince-dormand, and bdf while the motion is stiff')]
 
   !> A relative tolerance at which the error of a step still stands above round-off.
   real(wp), parameter :: above_round_off = 1.0e-14_wp

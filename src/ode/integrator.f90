@@ -6,12 +6,13 @@ module mech9_integrator
     failure_absolute_tolerance, failure_many_steps, failure_inaccurate_step, failure_unsolved_step, failure_accurate_step, &
     failure_step_memory, failure_step_settings, failure_short_step
   use mech9_ode_system, only: ode_system_type
-  use mech9_integration_methods, only: integration_methods, method_index, tolerance_share, runge_kutta
+  use mech9_integration_methods, only: integration_methods, method_index, tolerance_share, runge_kutta, automatic
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     not_convergent, too_accurate, out_of_memory
   use mech9_sundials_system, only: system_box_type
   use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
   use mech9_sundials_multistep, only: multistep_type, new_multistep
+  use mech9_automatic_stepper, only: automatic_type, new_automatic
   implicit none
   private
   public :: integrator_type, integration_statistics_type, check_method
@@ -30,6 +31,8 @@ module mech9_integrator
     integer(long) :: jacobian_evaluations = 0   !< by an implicit method: by the system, or by differences of its rate
     integer(long) :: error_test_failures = 0    !< steps made again because of their error
     integer(long) :: convergence_failures = 0   !< implicit steps made again
+    integer(long) :: implicit_steps = 0         !< accepted steps of bdf, of the automatic method
+    integer :: method_changes = 0               !< of the automatic method
     integer(long) :: refusals = 0               !< trials that the system refused
     integer :: last_order = 0                   !< of the method in the last step
     real(wp) :: last_step = 0.0_wp              !< length of the last step [s]
@@ -95,11 +98,14 @@ contains
     self%y = y
     self%trial = y
     share = tolerance_share(integration_methods(index), relative_tolerance)
-    if (integration_methods(index)%family == runge_kutta) then
+    select case (integration_methods(index)%family)
+    case (runge_kutta)
       allocate (runge_kutta_type :: self%stepper)
-    else
+    case (automatic)
+      allocate (automatic_type :: self%stepper)
+    case default
       allocate (multistep_type :: self%stepper)
-    end if
+    end select
     select type (stepper => self%stepper)
     type is (runge_kutta_type)
       call new_runge_kutta(integration_methods(index), self%box, share*relative_tolerance, &
@@ -107,6 +113,8 @@ contains
     type is (multistep_type)
       call new_multistep(integration_methods(index), self%box, share*relative_tolerance, &
                          share*absolute_tolerance, 0.0_wp, y, stepper, outcome)
+    type is (automatic_type)
+      call new_automatic(self%box, relative_tolerance, absolute_tolerance, 0.0_wp, y, stepper, outcome)
     end select
     if (outcome /= stepped) call fail(self, outcome, err)
   end subroutine create
@@ -336,6 +344,8 @@ contains
     statistics%jacobian_evaluations = counts%jacobian_evaluations
     statistics%error_test_failures = counts%error_test_failures
     statistics%convergence_failures = counts%convergence_failures
+    statistics%implicit_steps = counts%implicit_steps
+    statistics%method_changes = counts%method_changes
     statistics%refusals = self%box%refusals
     statistics%last_order = counts%last_order
     statistics%last_step = counts%last_step

@@ -20,6 +20,8 @@ module mech9_stepper
     integer(long) :: error_test_failures = 0    !< steps made again because of their error
     integer(long) :: convergence_failures = 0   !< implicit steps made again because their equations were not solved
     integer(long) :: jacobian_evaluations = 0   !< of the system's own Jacobian, or of differences of its rate
+    integer(long) :: implicit_steps = 0         !< accepted steps of the implicit one of several methods
+    integer :: method_changes = 0               !< from one of several methods to another
     integer :: last_order = 0                   !< of the method in the last step
     real(wp) :: last_step = 0.0_wp              !< length of the last step [s]
   end type stepper_counts_type

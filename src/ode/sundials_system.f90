@@ -25,11 +25,17 @@ module mech9_sundials_system
     integer(long) :: refusals = 0              !< failures that a smaller step may help
     !> Whether the rate after settling is taken from the last stage, of the same time and nearly the same y.
     logical :: reuses_last_rate = .false.
+    logical :: watches = .false.               !< the reaction of the equations to changes is watched
+    real(wp) :: reaction = 0.0_wp              !< change of the rate over the change of y, in two evaluations at one time [1/s]
+    real(wp), allocatable :: direction(:)      !< change of the rate in these evaluations
+    real(wp), allocatable, private :: y_before(:), rate_before(:)   !< of the last evaluation
+    real(wp), private :: t_before = 0.0_wp     !< of the last evaluation [s]
     logical :: has_settled = .false.                    !< the step has just settled, and SUNDIALS evaluates the rate there next
     real(c_double), pointer :: last_rate(:) => null()   !< the rate of the last stage, in SUNDIALS' memory
   contains
     procedure :: settle
     procedure :: has_cause
+    procedure :: watch
   end type system_box_type
 
 contains
@@ -62,7 +68,44 @@ contains
     call box%system%rate(box%origin + t, y_values, ydot_values, box%err)
     if (.not. allocated(box%err)) call must_be_finite(ydot_values, failure_infinite_rate, box%err)
     answer = answer_to(box, t)
+    if (box%watches .and. answer == 0) call compare(box, t, y_values, ydot_values)
   end function evaluate_rate
+
+  !> Watch the reaction of the equations from now on.
+  subroutine watch(self, n)
+    class(system_box_type), intent(inout) :: self   !< the box
+    integer, intent(in) :: n                        !< number of variables
+
+    allocate (self%direction(n), self%y_before(n), self%rate_before(n), source=0.0_wp)
+    self%t_before = -huge(self%t_before)
+    self%watches = .true.
+  end subroutine watch
+
+  !> Compare an evaluation with the last one, if both are of one time. The last two stages of a Runge-Kutta method are.
+  pure subroutine compare(box, t, y, ydot)
+    type(system_box_type), intent(inout) :: box   !< keeps the evaluation for the next one
+    real(wp), intent(in) :: t                     !< time of the evaluation, from the origin [s]
+    real(wp), intent(in) :: y(:)                  !< values at t
+    real(wp), intent(in) :: ydot(:)               !< derivatives of y in time
+    real(wp) :: change, reaction
+    integer :: i
+
+    if (abs(t - box%t_before) <= 0.0_wp) then
+      change = 0.0_wp
+      reaction = 0.0_wp
+      do i = 1, size(y)
+        box%direction(i) = ydot(i) - box%rate_before(i)
+        change = change + (y(i) - box%y_before(i))**2
+        reaction = reaction + box%direction(i)**2
+      end do
+      if (change > 0.0_wp) box%reaction = sqrt(reaction/change)
+    end if
+    box%t_before = t
+    do i = 1, size(y)
+      box%y_before(i) = y(i)
+      box%rate_before(i) = ydot(i)
+    end do
+  end subroutine compare
 
   !> SUNDIALS calls this function after a step that passed its error test, to let the system settle. It answers as
   !> evaluate_rate.

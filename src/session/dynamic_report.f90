@@ -34,7 +34,7 @@ contains
     counts = simulation%motion%statistics()
     write (unit, '(a)') to_text(outcome%rows)//' outputs: '//duration(outcome%seconds_solving)//' to solve, '// &
       duration(outcome%seconds_writing)//' to write'
-    write (unit, '(a)') method_of(simulation)//': '//to_text(counts%steps)//' steps, '// &
+    write (unit, '(a)') method_of(simulation)//': '//to_text(counts%steps)//' steps'//by_bdf(counts)//', '// &
       to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
       to_text(counts%rate_evaluations)//' evaluations'//each(outcome%seconds_solving, int(counts%rate_evaluations))
     if (simulation%with_error) write (unit, '(a)') &
@@ -52,6 +52,16 @@ contains
     end do
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_dynamic_report
+
+  !> The steps of the implicit one of two methods.
+  pure function by_bdf(counts) result(words)
+    type(integration_statistics_type), intent(in) :: counts   !< of the integration
+    character(len=:), allocatable :: words
+
+    words = ''
+    if (counts%method_changes > 0) &
+      words = ' ('//to_text(counts%implicit_steps)//' by bdf; changes of the method: '//to_text(counts%method_changes)//')'
+  end function by_bdf
 
   !> The method in use.
   pure function method_of(simulation) result(name)
@@ -100,6 +110,10 @@ contains
       call facts%add('other_evaluations', simulation%errors%evaluations, 'evaluations of the accelerations in these runs')
     end if
     call facts%add('steps', counts%steps, 'steps of the integrator')
+    if (method_of(simulation) == 'auto') then
+      call facts%add('implicit_steps', counts%implicit_steps, 'steps of bdf, where the motion was stiff')
+      call facts%add('method_changes', counts%method_changes, 'changes between prince-dormand and bdf')
+    end if
     call facts%add('evaluations', counts%rate_evaluations, 'evaluations of the accelerations')
     call facts%add('jacobian_evaluations', counts%jacobian_evaluations, &
                    'Jacobians of the equations of motion, by differences (bdf)')

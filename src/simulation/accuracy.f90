@@ -11,9 +11,9 @@ module mech9_accuracy
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
-  use mech9_integration_methods, only: integration_methods, least_tolerance
-  use mech9_integrator, only: check_method
-  use mech9_simulation, only: interruption_type, simulation_statistics_type, estimated_errors_type
+  use mech9_integration_methods, only: integration_methods, least_tolerance, automatic
+  use mech9_integrator, only: check_method, integration_statistics_type
+  use mech9_simulation, only: interruption_type, estimated_errors_type
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   implicit none
   private
@@ -36,6 +36,7 @@ module mech9_accuracy
   !> The course of a run: recorded coordinates and points at the outputs.
   type :: course_type
     integer :: outputs = 0                         !< reached
+    logical :: is_implicit = .false.               !< some of its steps were those of an implicit method
     real(wp), allocatable :: places(:, :)          !< (values, outputs) [rad, m]
     integer(long) :: evaluations = 0               !< of the accelerations
     type(error_type), allocatable :: failure       !< by which the run ended before the last output
@@ -63,6 +64,7 @@ contains
     call check_method(model%request%solver%method, method, err)
     if (allocated(err)) return
     least = least_tolerance(integration_methods(method))
+    if (integration_methods(method)%family == automatic) least = least_tolerance(integration_methods(1))
     errors%allowed = model%request%solver%accuracy
     tolerance = min(loosest, max(0.1_wp*errors%allowed, 10.0_wp*least))
     control = 1.0_wp
@@ -71,6 +73,8 @@ contains
         control = max(control_part*tolerance, least)
         call run(varied, plan, assembled, control, truth, errors, err, pictures, interruption)
         if (allocated(err)) return
+        if (truth%is_implicit) least = least_tolerance(integration_methods(method))
+        tolerance = max(tolerance, 10.0_wp*least)
       end if
       call run(varied, plan, assembled, tolerance, judged, errors, err, pictures, interruption)
       if (allocated(err)) return
@@ -104,7 +108,7 @@ contains
     logical, intent(in), optional :: pictures                        !< the motion of all links is requested; not unless given
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
     type(free_simulation_type), target :: simulation
-    type(simulation_statistics_type) :: counts
+    type(integration_statistics_type) :: counts
     integer :: i, n
 
     model%request%solver%relative_tolerance = tolerance
@@ -126,9 +130,10 @@ contains
       call take_places(model, simulation, course%places(:, i))
       course%outputs = i + 1
     end do
-    counts = simulation%statistics()
+    counts = simulation%motion%statistics()
+    course%is_implicit = counts%implicit_steps > 0
     errors%runs = errors%runs + 1
-    errors%evaluations = errors%evaluations + counts%evaluations
+    errors%evaluations = errors%evaluations + counts%rate_evaluations
     call simulation%close()
     if (.not. allocated(course%failure)) return
     if (course%failure%code == exit_interrupted) call move_alloc(course%failure, err)

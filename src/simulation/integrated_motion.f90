@@ -174,6 +174,8 @@ contains
     all%refusals = all%refusals + own%refusals
     if (.not. goes_on) return
     all%steps = all%steps + own%steps
+    all%implicit_steps = all%implicit_steps + own%implicit_steps
+    all%method_changes = all%method_changes + own%method_changes
     all%last_order = own%last_order
     all%last_step = own%last_step
   end subroutine add_statistics

@@ -12,6 +12,8 @@ is no fault. (test_integrator holds the methods to their orders with equal steps
 
 adams and bdf, whose steps are many, must be as good as their tolerance promises with prince-dormand: three times its error
 or a hundred tolerances at most, on the smooth, long and sensitive motions of docs/accuracy.md.
+
+auto costs little more than the better one of prince-dormand and bdf, and tells which steps were made by bdf.
 """
 import math
 import os
@@ -52,9 +54,32 @@ def check_multistep(checks, mech9d, name):
                         f'{name}, {method}, {tolerance:g}: the error is that of its tolerance', error)
 
 
+def check_automatic(checks, mech9d):
+    """A motion that is not stiff is that of prince-dormand; a stiff one goes on by bdf."""
+    def motion(name, method):
+        data, end = tolerance_factors.MOTIONS[name]
+        return table_and_report(mech9d, data, '--set', f'solver.method={method}', '--set', 'solver.relative_tolerance=1e-8',
+                                '--set', 'solver.absolute_tolerance=1e-8', '--set', f'time.end={end!r}', '--set', 'time.intervals=50')
+
+    explicit, _ = motion('Andrews, 0.03 s', 'prince-dormand')
+    table, report = motion('Andrews, 0.03 s', 'auto')
+    checks.true(all(np.array_equal(table[name], explicit[name]) for name in explicit), 'Andrews: auto is prince-dormand')
+    checks.equal([report['method'], report['method_changes'], report['implicit_steps']], ['auto', 0, 0], 'Andrews: the report says so')
+    implicit, report_of_bdf = motion('flyball governor, 10 s', 'bdf')
+    table, report = motion('flyball governor, 10 s', 'auto')
+    checks.true(report['evaluations'] <= 1.05 * report_of_bdf['evaluations'], 'governor: hardly more evaluations than bdf',
+                (report['evaluations'], report_of_bdf['evaluations']))
+    checks.equal(report['method_changes'], 1, 'governor: one change')
+    checks.true(report['implicit_steps'] > 0.98 * report['steps'], 'governor: soon after the start', report)
+    # both err by less than 100 tolerances
+    error = max(np.max(np.abs(table[name] - implicit[name]) / np.maximum(1, np.abs(implicit[name]))) for name in table if name[0] in 'qd')
+    checks.true(error < 200e-8, 'governor: the same motion', error)
+
+
 def main():
     mech9d = sys.argv[1]
     checks = Checks()
+    check_automatic(checks, mech9d)
     for name in HARD_MOTIONS:
         check_multistep(checks, mech9d, name)
     ends = {method: [end_of(mech9d, method, tolerance) for tolerance in TOLERANCES]

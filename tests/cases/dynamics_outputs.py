@@ -31,7 +31,8 @@ MOTIONS = {
 RUNS = [('andrews', 'prince-dormand', 1e-9), ('andrews', 'prince-dormand', 1e-5), ('andrews', 'merson', 1e-6),
         ('andrews', 'adams', 1e-8), ('double_pendulum', 'prince-dormand', 1e-10),
         ('double_pendulum', 'bdf', 1e-6), ('fig1', 'prince-dormand', 1e-7), ('fig1', 'dormand-prince', 1e-8),
-        ('slider_crank', 'prince-dormand', 1e-8), ('slider_crank', 'verner', 1e-6), ('governor', 'bdf', 1e-6)]
+        ('slider_crank', 'prince-dormand', 1e-8), ('slider_crank', 'verner', 1e-6), ('governor', 'bdf', 1e-6),
+        ('governor', 'auto', 1e-6), ('fig1', 'auto', 1e-7)]
 
 
 def settings(method, tolerance, end, intervals):
@@ -56,7 +57,7 @@ def check_run(checks, mech9d, name, method, tolerance):
         scale = allowed * tolerance * (1 + np.abs(few[column]))
         checks.true(np.all(np.abs(many[column][::200] - few[column]) <= scale),
                     f'{why}: {column} does not depend on the other outputs', list(many[column][::200] - few[column]))
-    if method in ('adams', 'bdf'):
+    if method in ('adams', 'bdf') or (name, method) == ('governor', 'auto'):
         return
     worst = 0.0
     for row in range(137, 2000, 331):

@@ -31,7 +31,7 @@ def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, 'case.nml')
-        for method in ('default', 'prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf'):
+        for method in ('default', 'prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf', 'auto'):
             with open(path, 'w', encoding='utf-8') as file:
                 file.write(CASE.format(last=LAST, method='' if method == 'default' else f"method='{method}',"))
             done = run(failing, path, '--table', 'table.dat', '--report', 'report.json', folder=folder)

@@ -189,7 +189,7 @@ def check_counts(checks, mech9d, data):
 
 def check_loose(checks, mech9d, data, right):
     """Whatever the method and however coarse the tolerance, the dead point is passed and the motion is right."""
-    for method in ('prince-dormand', 'dormand-prince', 'merson', 'adams', 'bdf'):
+    for method in ('prince-dormand', 'dormand-prince', 'merson', 'adams', 'bdf', 'auto'):
         # a thousand steps and more for the two of low order, and bdf errs by several times its tolerance
         for tolerance in (1e-5, 1e-8):
             table, report = run_with(mech9d, data, tolerance, f"solver.method='{method}'", 'time.intervals=20')

@@ -8,7 +8,7 @@ module mech9_integration_problems
   implicit none
   private
   public :: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, swing_type, push_type
-  public :: stiff_type, explosion_type, obstacle_type, power_type, rotation_type, integrate
+  public :: stiff_type, fading_type, explosion_type, obstacle_type, power_type, rotation_type, integrate
 
   !> Kepler's orbit, of semi-major axis and gravitational parameter one: (x, y, x', y').
   type, extends(ode_system_type) :: orbit_type
@@ -41,6 +41,12 @@ module mech9_integration_problems
     procedure :: rate => stiff_rate
     procedure :: jacobian => stiff_jacobian
   end type stiff_type
+
+  !> The same with a stiffness that goes from 1e4 to 1 and back once per 20 pi.
+  type, extends(ode_system_type) :: fading_type
+  contains
+    procedure :: rate => fading_rate
+  end type fading_type
 
   !> y' = y**2, y(0) = 1: y = 1/(1 - t).
   type, extends(ode_system_type) :: explosion_type
@@ -180,6 +186,16 @@ contains
 
     ydot = -self%stiffness*(y - cos(t)) - sin(t)
   end subroutine stiff_rate
+
+  subroutine fading_rate(self, t, y, ydot, err)
+    class(fading_type), intent(inout) :: self           !< the system
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the integrated vector
+    real(wp), intent(out) :: ydot(:)                    !< its rate of change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    ydot = -(1.0_wp + 1.0e4_wp*cos(0.05_wp*t)**100)*(y - cos(t)) - sin(t)
+  end subroutine fading_rate
 
   subroutine stiff_jacobian(self, t, y, ydot, jac, err)
     class(stiff_type), intent(inout) :: self            !< the system

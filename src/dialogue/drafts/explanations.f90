@@ -239,8 +239,8 @@ module mech9_explanations
                   'The time from start to end is divided into this number of equal steps, with a result at the end of '// &
                   'each; 0 gives the start alone.', '200 (201 results)'), &
     explanation_type('solver', 'method', '', &
-                  'The method integrates the equations of motion. All but adams and bdf are methods of Runge-Kutta; '// &
-                  'prince-dormand, of order 8, serves nearly always. Take bdf for very stiff springs and dampers.', 'adams'), &
+                  'The method integrates the equations of motion; prince-dormand, of order 8, serves nearly always. For very '// &
+                  'stiff springs and dampers take bdf, or auto, which takes bdf while the motion is stiff.', 'auto'), &
     explanation_type('solver', 'accuracy', '', &
                   'At each result, no coordinate and no point may be wrong by more than this, in rad and in m. The program '// &
                   'runs the motion several times, finds the tolerances by which this is so, and tells the error of each '// &
