@@ -45,7 +45,8 @@ contains
       passed = seconds() - origin
     end do
     call test%is_true(times == 4, 'intervals of 5 ms are over four times within a minute')
-    call test%is_true(passed >= 4.0_wp*interval*(1.0_wp - 1.0e-6_wp), 'and not before four of them have passed')
+    call test%is_true(passed >= 4.0_wp*interval*(1.0_wp - 1.0e-6_wp), &
+                      'four intervals of 5 ms are not over before their time has passed')
 
     call pacer%start(1.0e9_wp)
     call test%is_true(.not. pacer%due(), 'an interval of thirty years is not over yet')

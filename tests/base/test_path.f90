@@ -17,7 +17,7 @@ contains
     call check(tester, 'a/.hidden.dat', 'a/', '.hidden.dat', 'dat', 'a/.hidden.svg')
     call check(tester, '', '', '', '', '.svg')
     call check(tester, 'c.', '', 'c.', '', 'c..svg')
-    call tester%is_true(with_ending('a/c.dat', '') == 'a/c', 'no ending')
+    call tester%is_true(with_ending('a/c.dat', '') == 'a/c', 'a path with an empty ending has no dot')
     call tester%finish()
   end subroutine run_tests
 
@@ -29,9 +29,9 @@ contains
     character(len=*), intent(in) :: ending       !< its ending without the point, in small letters
     character(len=*), intent(in) :: changed      !< with the ending svg
 
-    call tester%is_true(folder_of(path) == folder .and. len(folder_of(path)) == len(folder), path//': folder')
-    call tester%is_true(name_of(path) == name, path//': name')
-    call tester%is_true(ending_of(path) == ending, path//': ending')
-    call tester%is_true(with_ending(path, 'svg') == changed, path//': another ending')
+    call tester%is_true(folder_of(path) == folder .and. len(folder_of(path)) == len(folder), path//': the folder is right')
+    call tester%is_true(name_of(path) == name, path//': the name is right')
+    call tester%is_true(ending_of(path) == ending, path//': the ending is right')
+    call tester%is_true(with_ending(path, 'svg') == changed, path//': the ending is replaced')
   end subroutine check
 end program test_path

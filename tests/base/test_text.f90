@@ -101,8 +101,8 @@ contains
     read (text, *) back
     exact = exact .and. abs(back - number) <= 0.0_wp
     call test%is_true(exact, 'seventeen digits give back the number itself')
-    call test%is_true(close, 'six digits give it back to half a unit of the sixth')
-    call test%is_true(short, 'six digits take no more than 13 letters, none of them strange')
+    call test%is_true(close, 'six digits give back a number to half a unit of the sixth')
+    call test%is_true(short, 'a number of six digits takes no more than 13 letters, none of them strange')
   end subroutine reals_read_back
 
   subroutine pieces_of_text(test)
@@ -118,7 +118,7 @@ contains
     call test%is_true(starts_with('dq1', ''), 'any text starts with nothing')
     call test%is_true(starts_with('dq', 'dq'), 'a text starts with itself')
     call test%is_true(.not. starts_with('d', 'dq'), 'a text does not start with a longer one')
-    call test%is_true(.not. starts_with('d', 'd '), 'nor with itself and a blank')
+    call test%is_true(.not. starts_with('d', 'd '), 'a text does not start with itself and a blank')
     words(1)%text = 'one'
     words(2)%text = ''
     words(3)%text = ' b'

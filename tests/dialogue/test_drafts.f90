@@ -43,22 +43,27 @@ contains
     call draft%give('pair', 1, 'kind', "'user'")
     call draft%give('pair', 2, 'coordinate', '7')
     call draft%give('pair', 1, 'coordinate', '4')
-    call tester%is_true(draft%groups(1)%name == 'pair' .and. draft%groups(3)%name == 'time', 'groups stand as in the table')
-    call tester%is_true(draft%groups(1)%entries(1)%name == 'coordinate', 'names stand as in the table')
+    call tester%is_true(draft%groups(1)%name == 'pair' .and. draft%groups(3)%name == 'time', &
+                        'the groups of a draft stand in the order of the table')
+    call tester%is_true(draft%groups(1)%entries(1)%name == 'coordinate', 'the names of a group stand in the order of the table')
     call tester%is_true(draft%with_number('pair', 'coordinate', 7) == 2 .and. draft%with_number('pair', 'coordinate', 1) == 0, &
-                        'found by its number')
+                        'a pair is found by the number of its coordinate')
     call draft%give('time', 1, 'end', '3')
-    call tester%is_true(draft%value('time', 1, 'end') == '3' .and. size(draft%groups(3)%entries) == 1, 'given again')
+    call tester%is_true(draft%value('time', 1, 'end') == '3' .and. size(draft%groups(3)%entries) == 1, &
+                        'a value that is given again replaces the first one')
     call draft%take_away('pair', 1, 'coordinate')
-    call tester%is_true(.not. draft%has('pair', 1, 'coordinate') .and. draft%has('pair', 1, 'kind'), 'taken away')
+    call tester%is_true(.not. draft%has('pair', 1, 'coordinate') .and. draft%has('pair', 1, 'kind'), &
+                        'an entry that is taken away is gone and the next one stays')
     call draft%remove('pair', 1)
-    call tester%is_true(draft%number('pair', 1, 'coordinate') == 7 .and. draft%count_of('pair') == 1, 'removed')
+    call tester%is_true(draft%number('pair', 1, 'coordinate') == 7 .and. draft%count_of('pair') == 1, &
+                        'a group that is removed is gone and the next one stays')
     call draft%remove('pair', 9)
     call draft%take_away('load', 1, 'kind')
-    call tester%is_true(size(draft%groups) == 2, 'what is not there cannot be taken')
+    call tester%is_true(size(draft%groups) == 2, 'taking away a group that is not there changes nothing')
     call tester%is_true(integer_of('12') == 12 .and. integer_of('1.5') == 0 .and. integer_of('x') == 0 .and. &
-                        integer_of('99999999999') == 0, 'whole numbers')
-    call tester%is_true(unquoted("'it''s'") == "it's" .and. unquoted('1, 2') == '1, 2', 'quotes come off')
+                        integer_of('99999999999') == 0, 'only whole numbers in range are read as whole numbers')
+    call tester%is_true(unquoted("'it''s'") == "it's" .and. unquoted('1, 2') == '1, 2', &
+                        'quotes come off a text and nothing comes off a list')
   end subroutine give_and_take
 
   subroutine read_text(text, draft)
@@ -81,7 +86,8 @@ contains
     call tester%is_true(draft%value('structure', 1, 'c(3,:)') == '0, 2, 0, 3', 'a matrix in pieces becomes rows')
     call tester%is_true(draft%value('pair', 2, 'point') == '0.3, 0, 0', 'a list in pieces becomes one')
     call tester%is_true(draft%value('pair', 1, 'axis') == '0, 0, 1', 'repeats are written out')
-    call tester%is_true(unquoted(draft%value('mechanism', 1, 'title')) == "It's a slider/crank! & more", 'a text with marks')
+    call tester%is_true(unquoted(draft%value('mechanism', 1, 'title')) == "It's a slider/crank! & more", &
+                        'a text with marks of the language keeps them')
     call tester%is_true(draft%comments_left_out == 0, 'no comment is left out')
     call read_text(slider_crank//"&time end=1 ! 'the end' !"//eol//" ! no more"//eol//"/ ! so"//eol//"! behind"//eol, again)
     call tester%is_true(again%comments_left_out == 4, 'comments inside and behind groups are left out')
@@ -108,10 +114,11 @@ contains
     call draft%give('pair', 2, 'kind', "'revolutte'")
     call write_draft(draft, '', written)
     call locate(written, index(written%text, 'moving_point') + 3, group, entry)
-    call tester%is_true(draft%groups(group)%name == 'pair' .and. draft%place_of(group) == 2, 'the group of a byte')
-    call tester%is_true(draft%groups(group)%entries(entry)%name == 'moving_point', 'the entry of a byte')
+    call tester%is_true(draft%groups(group)%name == 'pair' .and. draft%place_of(group) == 2, &
+                        'the group at a byte of the text is found')
+    call tester%is_true(draft%groups(group)%entries(entry)%name == 'moving_point', 'the entry at a byte of the text is found')
     call locate(written, 1, group, entry)
-    call tester%is_true(group == 0, 'a comment belongs to none')
+    call tester%is_true(group == 0, 'a comment belongs to no group')
     call read_draft(draft, 'a.nml', .false., model, written, diagnostics)
     call faults_of(diagnostics, written, faults)
     found = .false.
@@ -132,17 +139,19 @@ contains
       associate (row => item_table(i))
         if (index(row%example, '=') == 0) then
           call read_answer(row, unquoted(trim(row%example)), text, problem)
-          call tester%is_true(problem == '', trim(row%group)//' '//trim(row%name)//': its example is an answer')
-          call tester%is_true(text == trim(row%example) .or. row%type /= 'text', 'and written as in the table')
+          call tester%is_true(problem == '', &
+                              trim(row%group)//' '//trim(row%name)//': the example of the table is accepted as an answer')
+          call tester%is_true(text == trim(row%example) .or. row%type /= 'text', &
+                              trim(row%group)//' '//trim(row%name)//': the example of the table is written as it stands there')
         end if
         call read_answer(row, '1 &pair', text, problem)
-        call tester%is_true(problem /= '' .or. row%type == 'text', trim(row%name)//': a group is no answer')
+        call tester%is_true(problem /= '' .or. row%type == 'text', trim(row%name)//': a group is refused as an answer')
         call read_answer(row, 'a'//achar(7), text, problem)
-        call tester%is_true(problem /= '', trim(row%name)//': a control character is no answer')
+        call tester%is_true(problem /= '', trim(row%name)//': a control character is refused as an answer')
         if (row%type /= 'integer') cycle
         call read_answer(row, 'many many', text, problem)
         call tester%is_true(problem /= '' .and. index(problem, 'none', back=.true.) == index(problem, 'none'), &
-                            trim(row%name)//': what is wrong twice is told once')
+                            trim(row%name)//': a mistake that is made twice is told once')
       end associate
     end do
   end subroutine answers
@@ -151,16 +160,19 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     integer :: unit
 
-    call tester%is_true(stem_of_title("'Fig. 1: two closed chains'") == 'fig_1', 'a title up to its colon')
-    call tester%is_true(stem_of_title("''") == 'mechanism' .and. stem_of_title("'../..'") == 'mechanism', 'no title')
+    call tester%is_true(stem_of_title("'Fig. 1: two closed chains'") == 'fig_1', 'the stem of a title ends before its colon')
+    call tester%is_true(stem_of_title("''") == 'mechanism' .and. stem_of_title("'../..'") == 'mechanism', &
+                        'a title without letters gives the stem of a mechanism')
     call tester%is_true(stem_of_title("'/etc/passwd'") == 'etc_passwd', 'no path comes from a title')
-    call tester%is_true(stem_of_path('a/b.nml') == 'a/b' .and. stem_of_path('b.draft.nml') == 'b', 'paths without ending')
-    call tester%is_true(path_without_draft('b.draft.nml') == 'b.nml' .and. path_without_draft('b.dat') == 'b.dat', 'of a draft')
+    call tester%is_true(stem_of_path('a/b.nml') == 'a/b' .and. stem_of_path('b.draft.nml') == 'b', &
+                        'the stem of a path has no ending')
+    call tester%is_true(path_without_draft('b.draft.nml') == 'b.nml' .and. path_without_draft('b.dat') == 'b.dat', &
+                        'the path of a draft becomes that of its data file')
     open (newunit=unit, file='kept.draft.nml', status='replace')
     close (unit)
-    call tester%is_true(free_draft_path('kept') == 'kept_2.draft.nml', 'what was typed before is not written over')
+    call tester%is_true(free_draft_path('kept') == 'kept_2.draft.nml', 'a draft that is on the disk is not written over')
     call delete_file('kept.draft.nml')
-    call tester%is_true(.not. file_exists('kept.draft.nml'), 'a file is gone')
-    call tester%is_true(free_draft_path('kept') == 'kept.draft.nml', 'where there is none the plain name is free')
+    call tester%is_true(.not. file_exists('kept.draft.nml'), 'a file that is deleted is gone from the disk')
+    call tester%is_true(free_draft_path('kept') == 'kept.draft.nml', 'where no draft is on the disk the plain name is free')
   end subroutine names_of_files
 end program test_drafts

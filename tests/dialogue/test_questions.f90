@@ -131,10 +131,11 @@ contains
 
     do i = 1, size(interview%questions)
       question = interview%questions(i)
-      call tester%is_true(find_question(interview%questions, label_of(question)) == i, label_of(question)//': one question')
+      call tester%is_true(find_question(interview%questions, label_of(question)) == i, &
+                          label_of(question)//': the label belongs to one question')
       if (any(question%kind == [check_structure, check_start, check_all])) cycle
       call words_for(question, interview%outline, words)
-      call tester%is_true(size(words) >= 4, label_of(question)//': words to complete')
+      call tester%is_true(size(words) >= 4, label_of(question)//': there are words to complete an answer')
       if (question%kind == ask_seldom .and. group_table(question%group_row)%name == 'output') &
         call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'view: axes of both pictures') > 0, &
                             'seldom names are explained one by one')
@@ -142,11 +143,12 @@ contains
       asked(question%row) = .true.
       associate (item => item_table(question%row))
         call tester%is_true(index(prompt_of(question, interview%draft, default_of(question, interview%draft, &
-                                  interview%outline, 'x.dat')), trim(item%name)) > 0, label_of(question)//': named in its prompt')
+                                  interview%outline, 'x.dat')), trim(item%name)) > 0, &
+                                  label_of(question)//': the prompt names the item')
         call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'For example: ') > 0, &
-                            label_of(question)//': explained')
+                            label_of(question)//': the help gives an example')
         call tester%is_true(any([character(len=6) :: 'both', interview%outline%program_name] == item%program), &
-                            label_of(question)//': used by the program that asks')
+                            label_of(question)//': the question is used by the program that asks')
       end associate
     end do
   end subroutine look_at
@@ -164,7 +166,8 @@ contains
                             ') has an explanation in src/dialogue/drafts/explanations.f90')
         if (place == 0) cycle
         times(place) = times(place) + 1
-        call tester%is_true(ends_sentence(trim(explanations(place)%text)), trim(item%name)//': whole sentences')
+        call tester%is_true(ends_sentence(trim(explanations(place)%text)), &
+                            trim(item%name)//': the explanation consists of whole sentences')
         call is_answer(tester, row, trim(explanations(place)%example))
         if (explanations(place)%degrees /= '') call is_answer(tester, row, trim(explanations(place)%degrees))
         if (explanations(place)%length /= '') call is_answer(tester, row, trim(explanations(place)%length))
@@ -197,12 +200,18 @@ contains
   subroutine units_of_examples(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
 
-    call tester%is_true(index(help_on('drive(1).coefficients', 'revolute', 'rad'), '6.2832 (begins at 0 rad') > 0, 'rad')
-    call tester%is_true(index(help_on('drive(1).coefficients', 'revolute', 'deg'), '360 (begins at 0 deg') > 0, 'degrees')
-    call tester%is_true(index(help_on('drive(1).coefficients', 'prismatic', 'deg'), '(begins at 0.1 m') > 0, 'metres')
-    call tester%is_true(index(help_on('load(4).damping', 'revolute', 'deg'), '(N m s)') > 0, 'damping of an angle')
-    call tester%is_true(index(help_on('load(4).damping', 'prismatic', 'deg'), '(N s/m)') > 0, 'damping of a length')
-    call tester%is_true(index(help_on('load(4).rest', 'revolute', 'deg'), '30 (a twelfth of a turn)') > 0, 'rest in degrees')
+    call tester%is_true(index(help_on('drive(1).coefficients', 'revolute', 'rad'), '6.2832 (begins at 0 rad') > 0, &
+                        'the help of a polynomial of an angle in radians has its numbers in radians')
+    call tester%is_true(index(help_on('drive(1).coefficients', 'revolute', 'deg'), '360 (begins at 0 deg') > 0, &
+                        'the help of a polynomial of an angle in degrees has its numbers in degrees')
+    call tester%is_true(index(help_on('drive(1).coefficients', 'prismatic', 'deg'), '(begins at 0.1 m') > 0, &
+                        'the help of a polynomial of a length has its numbers in metres')
+    call tester%is_true(index(help_on('load(4).damping', 'revolute', 'deg'), '(N m s)') > 0, &
+                        'the help of a damping of an angle names N m s')
+    call tester%is_true(index(help_on('load(4).damping', 'prismatic', 'deg'), '(N s/m)') > 0, &
+                        'the help of a damping of a length names N s/m')
+    call tester%is_true(index(help_on('load(4).rest', 'revolute', 'deg'), '30 (a twelfth of a turn)') > 0, &
+                        'the help of a rest of a spring in degrees has its number in degrees')
   end subroutine units_of_examples
 
   !> The help on a question in a four-bar whose first pair is of this kind.
@@ -241,15 +250,15 @@ contains
     call tester%is_true(.not. interview%is_begun(), 'a load of a user is complete')
     interview%at = find_question(interview%questions, 'load(6).kind')
     call interview%leave_out(done)
-    call tester%is_true(.not. done, 'what is not begun cannot be left out')
+    call tester%is_true(.not. done, 'a load that is not begun cannot be left out')
     interview%at = find_question(interview%questions, 'pair(1).kind')
     call interview%leave_out(done)
-    call tester%is_true(.not. done .and. interview%draft%count_of('pair') == 4, 'nor can a pair')
+    call tester%is_true(.not. done .and. interview%draft%count_of('pair') == 4, 'a pair cannot be left out')
     interview%at = find_question(interview%questions, 'load(5).kind')
     call interview%leave_out(done)
-    call tester%is_true(done .and. interview%draft%count_of('load') == 4, 'the load is left out')
+    call tester%is_true(done .and. interview%draft%count_of('load') == 4, 'a load of a user is left out')
     call tester%is_true(label_of(interview%due()) == 'load(5).kind' .and. interview%questions(interview%at)%is_new, &
-                        'and another one is asked for in its place')
+                        'another load is asked for in the place of the one that was left out')
   end subroutine leaving_out
 
   !> After a slide neither its kind nor its axis is proposed; after a hinge its axis is, also over a slide between.
@@ -267,18 +276,19 @@ contains
     call interview%draft%give('pair', 1, 'axis', '0, 1, 0')
     call interview%draft%give('pair', 2, 'kind', "'prismatic'")
     call interview%refresh('')
-    call tester%is_true(proposal(interview, 'pair(2).axis') == '', 'a slide after a hinge: no axis')
+    call tester%is_true(proposal(interview, 'pair(2).axis') == '', 'no axis is proposed for a slide that follows a hinge')
     call interview%draft%give('pair', 2, 'axis', '1, 0, 0')
     call interview%refresh('')
-    call tester%is_true(proposal(interview, 'pair(3).kind') == "'revolute'", 'after a slide: a hinge')
+    call tester%is_true(proposal(interview, 'pair(3).kind') == "'revolute'", 'a hinge is proposed after a slide')
     call interview%draft%give('pair', 3, 'kind', "'revolute'")
     call interview%refresh('')
-    call tester%is_true(proposal(interview, 'pair(3).axis') == '0, 1, 0', 'after a slide: the axis of the hinge before')
-    call tester%is_true(proposal(interview, 'gravity(1).acceleration') == '', 'gravity')
+    call tester%is_true(proposal(interview, 'pair(3).axis') == '0, 1, 0', &
+                        'the axis of the hinge before a slide is proposed after the slide')
+    call tester%is_true(proposal(interview, 'gravity(1).acceleration') == '', 'no gravity is proposed')
     call interview%draft%give('body', 1, 'mass', '2.0')
     call interview%draft%give('body', 2, 'link', '3')
     call interview%refresh('')
-    call tester%is_true(proposal(interview, 'body(2).mass') == '', 'the mass of the body before')
+    call tester%is_true(proposal(interview, 'body(2).mass') == '', 'the mass of the body before is not proposed')
   end subroutine proposals
 
   !> The answer that Enter gives to a question, as a data file writes it; empty: none.
@@ -304,9 +314,10 @@ contains
     call tester%is_true(interview%draft%count_of('drive') == 2, 'a drive of coordinate 2 is asked for')
     call interview%draft%give('structure', 1, 'cq', '1')
     call interview%refresh('')
-    call tester%is_true(interview%draft%count_of('drive') == 1 .and. interview%dropped == '', 'it goes without a word')
+    call tester%is_true(interview%draft%count_of('drive') == 1 .and. interview%dropped == '', &
+                        'a drive without an answer is dropped without a word')
     call interview%draft%give('structure', 1, 'cq', '2')
     call interview%refresh('')
-    call tester%is_true(interview%dropped == 'drive 1', 'one with a kind is named')
+    call tester%is_true(interview%dropped == 'drive 1', 'a drive with a kind is named when it is dropped')
   end subroutine dropped_drives
 end program test_questions

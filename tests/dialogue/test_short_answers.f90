@@ -40,8 +40,10 @@ contains
     call becomes(tester, 'pair', 'kind', '', 'x', 'x')
     call becomes(tester, 'solver', 'method', '', 'v', 'verner')
     call becomes(tester, 'mechanism', 'title', '', 'rev', 'rev')
-    call tester%is_true(word_meant('ma', [character(len=6) :: 'mass', 'matrix']) == '', 'the beginning of two words')
-    call tester%is_true(word_meant('mass', [character(len=7) :: 'masses', 'mass']) == 'mass', 'a word that begins another')
+    call tester%is_true(word_meant('ma', [character(len=6) :: 'mass', 'matrix']) == '', &
+                        'the common beginning of two words means neither')
+    call tester%is_true(word_meant('mass', [character(len=7) :: 'masses', 'mass']) == 'mass', &
+                        'a word that begins another one means itself')
   end subroutine words
 
   subroutine directions(tester)

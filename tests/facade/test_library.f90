@@ -29,20 +29,21 @@ contains
     real(wp) :: kinetic, potential, t, q, closure
 
     call read_file('no such file', mechanism, err)
-    call test%has_error(err, exit_file, 'a data file that is not there')
+    call test%has_error(err, exit_file, 'a data file that is not there is refused')
     call motion%start_kinematics(mechanism, err)
-    call test%has_error(err, exit_usage, 'no mechanism was read')
+    call test%has_error(err, exit_usage, 'no motion starts while no mechanism was read')
     call motion%advance(1.0_wp, err)
-    call test%has_error(err, exit_usage, 'no motion was started')
+    call test%has_error(err, exit_usage, 'no motion goes on while none was started')
     call motion%point('P', err)
-    call test%has_error(err, exit_usage, 'a point of no motion')
+    call test%has_error(err, exit_usage, 'no point is found while no motion was started')
     call motion%energies(kinetic, potential)
     call motion%events(events)
     t = motion%t()
     q = motion%q(1)
     closure = motion%closure()
-    call test%is_true(all(ieee_is_nan([t, q, closure, kinetic, potential])), 'there are no numbers')
-    call test%is_true(motion%coordinates() == 0 .and. size(events) == 0, 'and nothing to count')
+    call test%is_true(all(ieee_is_nan([t, q, closure, kinetic, potential])), 'a motion that was not started has no numbers')
+    call test%is_true(motion%coordinates() == 0 .and. size(events) == 0, &
+                      'a motion that was not started has no coordinates and no events')
     call motion%close()
   end subroutine check_nothing_started
 
@@ -55,20 +56,22 @@ contains
     real(wp) :: kinetic, potential
 
     call read_text(driven, mechanism, err)
-    call test%no_error(err, 'a body that is turned')
+    call test%no_error(err, 'a mechanism of a body that is turned is accepted')
     call motion%start_kinematics(mechanism, err)
     call motion%advance(0.75_wp, err)
-    call test%no_error(err, 'it moves')
+    call test%no_error(err, 'the driven motion advances')
     call motion%energies(kinetic, potential)
-    call test%near(kinetic, 0.5_wp*0.85_wp*4.0_wp, 1e-13_wp, 'kinetic energy of a driven motion')
-    call test%near(potential, 3.0_wp*9.81_wp*0.5_wp*sin(1.7_wp), 1e-13_wp, 'potential energy of a driven motion')
-    call test%is_true(all(ieee_is_nan([motion%q(0), motion%q(2)])), 'there is one coordinate only')
+    call test%near(kinetic, 0.5_wp*0.85_wp*4.0_wp, 1e-13_wp, 'the kinetic energy of a driven motion is that of its closed form')
+    call test%near(potential, 3.0_wp*9.81_wp*0.5_wp*sin(1.7_wp), 1e-13_wp, &
+                   'the potential energy of a driven motion is that of its closed form')
+    call test%is_true(all(ieee_is_nan([motion%q(0), motion%q(2)])), 'a coordinate that the mechanism does not have is no number')
     counts = motion%statistics()
-    call test%is_true(counts%positions == 2 .and. counts%evaluations == 0, 'two positions, no evaluation')
+    call test%is_true(counts%positions == 2 .and. counts%evaluations == 0, &
+                      'a driven motion at two times takes two positions and no evaluation')
     call motion%advance(0.5_wp, err)
-    call test%has_error(err, exit_usage, 'time does not run back')
-    call test%is_true(index(err%message, 'cannot go back to t = 0.5 s') > 0, 'and the message says it')
-    call test%near(motion%q(1), 1.7_wp, 1e-15_wp, 'and the motion stays where it is')
+    call test%has_error(err, exit_usage, 'a time before the present one is refused')
+    call test%is_true(index(err%message, 'cannot go back to t = 0.5 s') > 0, 'the message about an earlier time names it')
+    call test%near(motion%q(1), 1.7_wp, 1e-15_wp, 'the motion stays where it is when an earlier time is refused')
     call motion%close()
   end subroutine check_driven_energies
 
@@ -81,20 +84,21 @@ contains
 
     call read_text(driven, with_drive, err)
     call read_text(free, without, err)
-    call test%no_error(err, 'the same body, free')
+    call test%no_error(err, 'a mechanism of the same body without a drive is accepted')
     call motion%start_kinematics(with_drive, err)
     call motion%start_dynamics(without, err)
-    call test%no_error(err, 'a free motion after a driven one')
+    call test%no_error(err, 'a free motion starts after a driven one')
     call beside%start_kinematics(with_drive, err)
-    call test%near(motion%q(1), beside%q(1), 1e-15_wp, 'both start at the same angle')
+    call test%near(motion%q(1), beside%q(1), 1e-15_wp, 'two motions of one mechanism start at the same angle')
     call motion%advance(1.0_wp, err)
-    call test%no_error(err, 'it moves')
+    call test%no_error(err, 'the free motion advances')
     call motion%energies(kinetic, potential)
     ! a second of some 50 steps, each with an error of 1e-8 of a state of size 5
-    call test%near(kinetic + potential, 0.5_wp*0.85_wp*4.0_wp + 3.0_wp*9.81_wp*0.5_wp*sin(0.2_wp), 1e-5_wp, 'energy is kept')
+    call test%near(kinetic + potential, 0.5_wp*0.85_wp*4.0_wp + 3.0_wp*9.81_wp*0.5_wp*sin(0.2_wp), 1e-5_wp, &
+                   'the energy of a free motion stays what it was')
     call motion%start_kinematics(without, err)
     call test%is_true(allocated(err), 'a mechanism without a drive has no driven motion')
-    call test%is_true(ieee_is_nan(motion%q(1)), 'and the motion before it is closed')
+    call test%is_true(ieee_is_nan(motion%q(1)), 'the motion before a refused one is closed')
     call motion%close()
     call beside%close()
   end subroutine check_one_after_the_other
@@ -110,14 +114,14 @@ contains
     call read_text(free//'&solver accuracy=1e-9 / &time end=5 /', accurate, err)
     call read_text(free//'&solver relative_tolerance=1e-13, absolute_tolerance=1e-13 / &time end=5 /', truth, err)
     call read_text(free//'&solver accuracy=1e-17 / &time end=5 /', impossible, err)
-    call test%no_error(err, 'a body that swings')
+    call test%no_error(err, 'mechanisms of a body that swings are accepted')
     call ride(loose, q(1))
     call ride(accurate, q(2))
     call ride(truth, q(3))
-    call test%is_true(abs(q(1) - q(3)) > 1e-6_wp, 'loose tolerances show')
-    call test%near(q(2), q(3), 1e-9_wp, 'the accuracy is kept')
+    call test%is_true(abs(q(1) - q(3)) > 1e-6_wp, 'loose tolerances change the motion visibly')
+    call test%near(q(2), q(3), 1e-9_wp, 'the accuracy that was set is kept for five seconds')
     call motion%start_dynamics(impossible, err)
-    call test%has_error(err, exit_integrator, 'less than round-off cannot be had')
+    call test%has_error(err, exit_integrator, 'an accuracy below round-off is refused')
     call motion%close()
   end subroutine check_accuracy
 
@@ -130,7 +134,7 @@ contains
 
     call motion%start_dynamics(mechanism, err)
     call motion%advance(5.0_wp, err)
-    call test%no_error(err, 'it comes to the end')
+    call test%no_error(err, 'the motion comes to its end')
     q = motion%q(1)
     call motion%close()
   end subroutine ride

@@ -30,7 +30,7 @@ program test_drive_bounds
       y(j) = random%symmetric()
     end do
     call build_spline(x, y, table%spline, err)
-    call test%no_error(err, 'a table')
+    call test%no_error(err, 'a drive by a table is defined')
     call check(table, 'a table')
   end do
   ! more terms than are worked out one by one
@@ -40,15 +40,16 @@ program test_drive_bounds
   end do
   polynomial%coefficients = [(0.5_wp**j, j=0, 1000)]
   call test%near(polynomial%greatest_rate(1.0_wp, 1.0e-3_wp), 0.5_wp/(1.0_wp - 0.5_wp*1.001_wp)**2, 1.0e-9_wp, &
-                 'where all terms are positive the bound is the rate at the end')
+                 'the bound of a polynomial with positive terms is its rate at the end')
   ! work that grew with the square of their number would take an hour
   polynomial%coefficients = [(1.0_wp/(1.0_wp + j)**2, j=0, 1000000)]
-  call test%is_true(polynomial%greatest_rate(0.5_wp, 0.1_wp) > 0.5_wp, 'a million coefficients')
+  call test%is_true(polynomial%greatest_rate(0.5_wp, 0.1_wp) > 0.5_wp, &
+                    'the bound of a polynomial with a million coefficients is above its rate')
   ! at rest at both ends and in the middle, with a swing between: 16 x^2 (1-x)^2 (1-2x)^2
   polynomial%coefficients = 16.0_wp*[0.0_wp, 0.0_wp, 1.0_wp, -6.0_wp, 13.0_wp, -12.0_wp, 4.0_wp]
   call test%is_true(polynomial%greatest_rate(0.0_wp, 1.0_wp) > 1.0_wp, 'a swing between two rests is seen')
   polynomial%coefficients = [1.0_wp, -2.5_wp]
-  call test%near(polynomial%greatest_rate(7.0_wp, -3.0_wp), 2.5_wp, 1.0e-15_wp, 'a constant rate is bounded by itself')
+  call test%near(polynomial%greatest_rate(7.0_wp, -3.0_wp), 2.5_wp, 1.0e-15_wp, 'the bound of a constant rate is this rate')
   call test%finish()
 
 contains
@@ -72,10 +73,10 @@ contains
         fastest = max(fastest, abs(dq))
       end do
       ! round-off of terms of some tens aside
-      call test%is_true(bound >= fastest*(1.0_wp - 1.0e-12_wp) - 1.0e-13_wp, name//': not below the fastest rate')
+      call test%is_true(bound >= fastest*(1.0_wp - 1.0e-12_wp) - 1.0e-13_wp, name//': the bound is not below the fastest rate')
       ! a harmonic is bounded by its whole swing, a table by its pieces, whatever the times
       if (i == 6 .and. name == 'a polynomial') &
-        call test%near(bound, fastest, 1.0e-3_wp, name//': and close to it over a short time')
+        call test%near(bound, fastest, 1.0e-3_wp, name//': the bound is close to the fastest rate over a short time')
     end do
   end subroutine check
 end program test_drive_bounds

@@ -34,7 +34,7 @@ contains
     real(wp) :: dq, ddq
 
     call drive%evaluate(t, value_at, dq, ddq, err)
-    if (allocated(err)) call test%no_error(err, 'a drive where it is defined')
+    if (allocated(err)) call test%no_error(err, 'a drive has a value where it is defined')
   end function value_at
 
   !> Derivatives as stated against differences of sixteenth order at h = 1/32: they leave the round-off
@@ -55,9 +55,9 @@ contains
     call derivatives_from_stencil(values, h, first, second, error)
     call drive%evaluate(t, q, dq, ddq, err)
     call test%no_error(err, why)
-    call test%near(q, values(0), 0.0_wp, why//': value')
-    call test%near(dq, first, 1.0e-12_wp, why//': first derivative')
-    call test%near(ddq, second, 5.0e-11_wp, why//': second derivative')
+    call test%near(q, values(0), 0.0_wp, why//': the value is the same in each call')
+    call test%near(dq, first, 1.0e-12_wp, why//': the first derivative is the slope of the values')
+    call test%near(ddq, second, 5.0e-11_wp, why//': the second derivative is the curvature of the values')
   end subroutine check_derivatives
 
   subroutine polynomials(test)
@@ -75,13 +75,14 @@ contains
                      'a polynomial is the sum of its powers')
       call check_derivatives(test, drive, t, 'a polynomial')
       call drive%evaluate(0.0_wp, q, dq, ddq, err)
-      call test%near(q, drive%coefficients(1), 0.0_wp, 'its value at zero')
-      if (n >= 1) call test%near(dq, drive%coefficients(2), 0.0_wp, 'its rate at zero')
-      if (n >= 2) call test%near(ddq, 2.0_wp*drive%coefficients(3), 0.0_wp, 'its second derivative at zero')
+      call test%near(q, drive%coefficients(1), 0.0_wp, 'a polynomial has its first coefficient as value at zero')
+      if (n >= 1) call test%near(dq, drive%coefficients(2), 0.0_wp, 'a polynomial has its second coefficient as rate at zero')
+      if (n >= 2) call test%near(ddq, 2.0_wp*drive%coefficients(3), 0.0_wp, &
+                                 'a polynomial has twice its third coefficient as second derivative at zero')
     end do
     drive%coefficients = [real(wp) ::]
     call drive%evaluate(0.7_wp, q, dq, ddq, err)
-    call test%near(maxval(abs([q, dq, ddq])), 0.0_wp, 0.0_wp, 'no coefficients: rest at zero')
+    call test%near(maxval(abs([q, dq, ddq])), 0.0_wp, 0.0_wp, 'a polynomial without coefficients rests at zero')
   end subroutine polynomials
 
   subroutine harmonics(test)
@@ -100,12 +101,14 @@ contains
       t = 2.0_wp*random%symmetric()
       call check_derivatives(test, drive, t, 'a harmonic')
       call drive%evaluate(t, q, dq, ddq, err)
-      call test%near(q, drive%mean + drive%amplitude*sin(drive%angular_frequency*t + drive%phase), round_off, 'its formula')
-      call test%near(ddq, -drive%angular_frequency**2*(q - drive%mean), round_off, 'the equation of oscillation')
+      call test%near(q, drive%mean + drive%amplitude*sin(drive%angular_frequency*t + drive%phase), round_off, &
+                     'a harmonic is its formula')
+      call test%near(ddq, -drive%angular_frequency**2*(q - drive%mean), round_off, &
+                     'a harmonic satisfies the equation of oscillation')
       call test%near((drive%angular_frequency*(q - drive%mean))**2 + dq**2, &
-                     (drive%angular_frequency*drive%amplitude)**2, round_off, 'its energy is constant')
+                     (drive%angular_frequency*drive%amplitude)**2, round_off, 'the energy of a harmonic is constant')
       call test%near(value_at(test, drive, t + 2.0_wp*pi/drive%angular_frequency), q, &
-                     round_off/min(1.0_wp, abs(drive%angular_frequency)), 'its period')
+                     round_off/min(1.0_wp, abs(drive%angular_frequency)), 'a harmonic repeats itself after its period')
     end do
   end subroutine harmonics
 
@@ -123,16 +126,16 @@ contains
     t = [(0.2_wp*i + 0.08_wp*random%symmetric(), i=1, 12)]
     q = [(value_at(test, cubic, t(i)), i=1, 12)]
     call build_spline(t, q, table%spline, err)
-    call test%no_error(err, 'a table of a cubic')
+    call test%no_error(err, 'a table of a cubic is accepted')
     do i = 0, 40
       x = t(1) + (t(12) - t(1))*i/40.0_wp
       call table%evaluate(x, from_table(1), from_table(2), from_table(3), err)
-      call test%no_error(err, 'a time within the table')
+      call test%no_error(err, 'a table has a value within its range')
       call cubic%evaluate(x, from_cubic(1), from_cubic(2), from_cubic(3), err)
       ! values up to fourteen, distances down to 0.04: roundings by 2/h and 8/h^2 at worst
-      call test%near(from_table(1), from_cubic(1), 1.0e-14_wp, 'value of a cubic from its table')
-      call test%near(from_table(2), from_cubic(2), 1.0e-13_wp, 'rate of a cubic from its table')
-      call test%near(from_table(3), from_cubic(3), 1.0e-11_wp, 'second derivative of a cubic from its table')
+      call test%near(from_table(1), from_cubic(1), 1.0e-14_wp, 'a table of a cubic has the values of the cubic')
+      call test%near(from_table(2), from_cubic(2), 1.0e-13_wp, 'a table of a cubic has the rates of the cubic')
+      call test%near(from_table(3), from_cubic(3), 1.0e-11_wp, 'a table of a cubic has the second derivatives of the cubic')
     end do
   end subroutine table_of_cubic
 
@@ -146,7 +149,7 @@ contains
 
     t = [(0.75_wp*i, i=0, 10)]
     call build_spline(t, sin(t), table%spline, err)
-    call test%no_error(err, 'a table of a sine')
+    call test%no_error(err, 'a table of a sine is accepted')
     do i = 1, 10
       call test%near(value_at(test, table, t(i)), sin(t(i)), round_off, 'a table runs through its points')
       call check_derivatives(test, table, 0.5_wp*(t(i) + t(i + 1)), 'a piece of a table')
@@ -164,16 +167,19 @@ contains
     table%place = place_type(12, 3)
     call build_spline(t, t**2, table%spline, err)
     call test%near(value_at(test, table, 1.0_wp), 1.0_wp, round_off, 'the first point belongs to the table')
-    call test%near(value_at(test, table, 3.0_wp), 9.0_wp, round_off, 'and so does the last')
-    call test%near(value_at(test, table, nearest(3.0_wp, 1.0_wp)), 9.0_wp, round_off, 'a last digit more does no harm')
-    call test%near(value_at(test, table, nearest(1.0_wp, -1.0_wp)), 1.0_wp, round_off, 'nor one less at the beginning')
+    call test%near(value_at(test, table, 3.0_wp), 9.0_wp, round_off, 'the last point belongs to the table')
+    call test%near(value_at(test, table, nearest(3.0_wp, 1.0_wp)), 9.0_wp, round_off, &
+                   'a time one unit in the last place beyond the end is taken as the end')
+    call test%near(value_at(test, table, nearest(1.0_wp, -1.0_wp)), 1.0_wp, round_off, &
+                   'a time one unit in the last place before the beginning is taken as the beginning')
     call table%evaluate(3.001_wp, q, dq, ddq, err)
-    call test%has_error(err, exit_data, 'after the end of a table')
-    call test%is_true(err%place%line == 12, 'it tells where the drive is written')
+    call test%has_error(err, exit_data, 'a time after the end of a table is refused')
+    call test%is_true(err%place%line == 12, 'the error of a time outside a table tells where the drive is written')
     call test%is_true(index(err%message, 'coordinate 7') > 0 .and. index(err%message, '1 to 3') > 0 .and. &
-                      index(err%message, '3.001') > 0, 'it names the coordinate, the range and the time')
+                      index(err%message, '3.001') > 0, &
+                      'the message about a time outside a table names the coordinate, the range and the time')
     call table%evaluate(0.999_wp, q, dq, ddq, err)
-    call test%has_error(err, exit_data, 'before the beginning of a table')
+    call test%has_error(err, exit_data, 'a time before the beginning of a table is refused')
   end subroutine ends_of_table
 
   !> Times of results: evenly spaced, the ends exact.

@@ -63,13 +63,14 @@ contains
     type(pose_type) :: composed
     logical :: is_screw
 
-    call test%near(largest_difference(pose_at(test, pair, q), expected), 0.0_wp, round_off, why//': pose')
+    call test%near(largest_difference(pose_at(test, pair, q), expected), 0.0_wp, round_off, why//': the pose is the composed one')
     call check_derivatives(test, pair, q, why)
     call pair%as_screw(factors, is_screw)
-    call test%is_true(is_screw, why//': it is a screw')
+    call test%is_true(is_screw, why//': the motion is a screw')
     composed = turn_and_slide(factors%turn*(q + factors%offset), factors%slide*(q + factors%offset))
     composed = compose(compose(factors%before, composed), factors%after)
-    call test%near(largest_difference(pose_at(test, pair, q), composed), 0.0_wp, round_off, why//': factors')
+    call test%near(largest_difference(pose_at(test, pair, q), composed), 0.0_wp, round_off, &
+                   why//': the factors compose to the pose')
   end subroutine check_pair
 
   !> T(q) = F motion(q) G^-1.
@@ -90,9 +91,9 @@ contains
                     compose(compose(f, turn_and_slide(q, pitch*q/(2.0_wp*pi))), inverse(g)), 'helical pair')
     ! with one frame for both, all link systems coincide at home
     call test%near(largest_difference(pose_at(test, revolute_pair(f, f), 0.0_wp), pose_type()), 0.0_wp, round_off, &
-                   'a revolute pair at home')
+                   'a revolute pair with equal frames has no displacement at zero')
     call test%near(largest_difference(pose_at(test, helical_pair(f, f, pitch), 0.0_wp), pose_type()), 0.0_wp, round_off, &
-                   'a helical pair at home')
+                   'a helical pair with equal frames has no displacement at zero')
   end subroutine with_frames
 
   !> T = Rz(theta) Tz(d) Tx(a) Rx(alpha) with q added to theta, or to d; a helical pair advances besides.
@@ -130,14 +131,15 @@ contains
     pitch = random%symmetric()
     on_axis = [0.0_wp, 0.0_wp, random%symmetric()]
     call test%near(maxval(abs(transformed(pose_at(test, revolute_pair(f, g), q), transformed(g, on_axis)) &
-                              - transformed(f, on_axis))), 0.0_wp, round_off, 'points of the axis of a revolute pair')
+                              - transformed(f, on_axis))), 0.0_wp, round_off, &
+                              'points of the axis of a revolute pair stay where they are')
     call test%near(maxval(abs(transformed(pose_at(test, prismatic_pair(f, g), q), transformed(g, on_axis)) &
                               - transformed(f, on_axis) - q*f%r(:, 3))), 0.0_wp, round_off, &
-                   'points of the axis of a prismatic pair')
+                   'points of the axis of a prismatic pair move along it by the coordinate')
     turned = pose_at(test, helical_pair(f, g, pitch), q + 2.0_wp*pi)
     turned%p = turned%p - pitch*f%r(:, 3)
     call test%near(largest_difference(turned, pose_at(test, helical_pair(f, g, pitch), q)), 0.0_wp, round_off, &
-                   'a full turn of a helical pair')
+                   'a helical pair advances by its pitch in a full turn')
   end subroutine fixed_axes
 
   subroutine kinds_and_units(test)
@@ -152,11 +154,14 @@ contains
     pair = helical_pair(home, home, -0.1_wp)
     call test%is_true(pair%kind_name() == 'helical' .and. pair%angular, 'a helical pair has an angle')
     pair = revolute_pair_dh(1.0_wp, 0.2_wp, 0.3_wp, 0.4_wp)
-    call test%is_true(pair%kind_name() == 'revolute' .and. pair%angular, 'whatever describes it')
+    call test%is_true(pair%kind_name() == 'revolute' .and. pair%angular, &
+                      'a revolute pair by Denavit-Hartenberg parameters has an angle')
     pair = prismatic_pair_dh(1.0_wp, 0.2_wp, 0.3_wp, 0.4_wp)
-    call test%is_true(pair%kind_name() == 'prismatic' .and. .not. pair%angular, 'whatever describes it')
+    call test%is_true(pair%kind_name() == 'prismatic' .and. .not. pair%angular, &
+                      'a prismatic pair by Denavit-Hartenberg parameters has a length')
     pair = helical_pair_dh(1.0_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.1_wp)
-    call test%is_true(pair%kind_name() == 'helical' .and. pair%angular, 'whatever describes it')
-    call test%is_true(pair%user_calls() == 0, 'none of them calls a user''s procedure')
+    call test%is_true(pair%kind_name() == 'helical' .and. pair%angular, &
+                      'a helical pair by Denavit-Hartenberg parameters has an angle')
+    call test%is_true(pair%user_calls() == 0, 'a pair of the program calls no procedure of a user')
   end subroutine kinds_and_units
 end program test_screw_pair

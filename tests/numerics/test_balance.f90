@@ -40,11 +40,12 @@ contains
       do j = 1, 6
         scaled(:, j) = a(:, j)*unit(j)/unit
       end do
-      call test%is_true(norm2(scaled) > 2.0_wp*norm2(a), 'its units make it large')
+      call test%is_true(norm2(scaled) > 2.0_wp*norm2(a), 'a matrix in bad units is large')
       call balance(size(a, 1), a)
       call balance(size(scaled, 1), scaled)
       ! three sweeps leave a few percent of the least there is
-      call test%is_true(abs(norm2(scaled) - norm2(a)) <= 0.1_wp*norm2(a), 'balanced, it is as large as without them')
+      call test%is_true(abs(norm2(scaled) - norm2(a)) <= 0.1_wp*norm2(a), &
+                        'a balanced matrix in bad units is as large as the one in good units')
     end do
   end subroutine units_are_of_no_account
 
@@ -61,7 +62,7 @@ contains
     before = norm2([(a(i, i), i=1, 5)])
     a = a + 100.0_wp*merge(1.0_wp, 0.0_wp, reshape([((i > j, i=1, 5), j=1, 5)], [5, 5]))
     call balance(size(a, 1), a)
-    call test%is_true(abs(norm2(a) - before) <= 1.0e-2_wp*before, 'a triangular matrix is as large as its diagonal')
+    call test%is_true(abs(norm2(a) - before) <= 1.0e-2_wp*before, 'a balanced triangular matrix is as large as its diagonal')
   end subroutine triangular_ones_become_diagonal
 
   !> Traces of powers are sums of powers of the eigenvalues.
@@ -74,14 +75,15 @@ contains
     a(2, :) = 1.0e3_wp*a(2, :)
     b = a
     call balance(size(b, 1), b)
-    call test%is_true(norm2(b) < norm2(a), 'it becomes smaller')
+    call test%is_true(norm2(b) < norm2(a), 'balancing makes a matrix smaller')
     power_a = a
     power_b = b
     do power = 1, 4
       trace_a = sum([(power_a(i, i), i=1, 4)])
       trace_b = sum([(power_b(i, i), i=1, 4)])
       ! round-off of products of entries up to 1e3
-      call test%is_true(abs(trace_a - trace_b) <= 1.0e-12_wp*norm2(a)**power, 'traces of powers stay')
+      call test%is_true(abs(trace_a - trace_b) <= 1.0e-12_wp*norm2(a)**power, &
+                        'balancing keeps the traces of the powers of a matrix')
       power_a = matmul(power_a, a)
       power_b = matmul(power_b, b)
     end do
@@ -94,8 +96,8 @@ contains
     a = 0.0_wp
     a(1, 1) = 2.0_wp
     call balance(size(a, 1), a)
-    call test%is_true(abs(norm2(a) - 2.0_wp) <= 0.0_wp, 'zeros stay zeros')
+    call test%is_true(abs(norm2(a) - 2.0_wp) <= 0.0_wp, 'balancing keeps zeros')
     call balance(size(none, 1), none)
-    call test%is_true(size(none) == 0, 'an empty matrix is left')
+    call test%is_true(size(none) == 0, 'balancing leaves an empty matrix empty')
   end subroutine zeros_are_left
 end program test_balance

@@ -82,10 +82,10 @@ contains
     system%a = matrix
     call system%factorize()
     if (value == 0) then
-      call test%is_true(system%rank() < n, why//': singular')
+      call test%is_true(system%rank() < n, why//': a singular matrix has not full rank')
     else
-      call test%is_true(system%rank() == n, why//': regular')
-      call test%is_true(system%determinant_sign() == merge(1, -1, value > 0), why//': sign')
+      call test%is_true(system%rank() == n, why//': a regular matrix has full rank')
+      call test%is_true(system%determinant_sign() == merge(1, -1, value > 0), why//': the sign is that of the determinant')
     end if
   end subroutine check_matrix
 
@@ -171,9 +171,9 @@ contains
     call system%create(3, 2)
     system%a = -1.0_wp
     call system%factorize()
-    call test%is_true(system%determinant_sign() == 1, 'what is not square has no sign')
+    call test%is_true(system%determinant_sign() == 1, 'the determinant of a matrix that is not square has no sign')
     call system%create(0, 0)
     call system%factorize()
-    call test%is_true(system%determinant_sign() == 1, 'the determinant of nothing is one')
+    call test%is_true(system%determinant_sign() == 1, 'the determinant of an empty matrix is one')
   end subroutine other_shapes
 end program test_determinant_sign

@@ -34,7 +34,7 @@ contains
       call test%near(trial_step(number, 1.0_wp)*4.0_wp, trial_step(number - 1, 1.0_wp), 0.0_wp, &
                      'each step is a quarter of the one before')
     end do
-    call test%near(trial_step(3, 1024.0_wp), 1024.0_wp*trial_step(3, 1.0_wp), 0.0_wp, 'steps go with the scale')
+    call test%near(trial_step(3, 1024.0_wp), 1024.0_wp*trial_step(3, 1.0_wp), 0.0_wp, 'steps are proportional to the scale')
   end subroutine steps
 
   !> A polynomial of degree 16 is its own interpolant: nothing but round-off remains.
@@ -50,9 +50,10 @@ contains
       end do
       call derivatives_from_stencil(values, h, first, second, error)
       largest = maxval(abs(values))
-      call test%is_true(abs(first - n*x**max(n - 1, 0)) <= 4.0_wp*epsilon(h)*largest/h, 'first derivative of x^n')
+      call test%is_true(abs(first - n*x**max(n - 1, 0)) <= 4.0_wp*epsilon(h)*largest/h, &
+                        'the first derivative of x^n is right to round-off')
       call test%is_true(abs(second - n*(n - 1)*x**max(n - 2, 0)) <= 8.0_wp*epsilon(h)*largest/h**2, &
-                        'second derivative of x^n')
+                        'the second derivative of x^n is right to round-off')
     end do
   end subroutine powers
 
@@ -70,9 +71,10 @@ contains
 
     rounding = epsilon(h)*maxval(abs(values))
     call derivatives_from_stencil(values, h, first, second, error)
-    call test%near(first, first_true, truncation_first*h**16*bound17 + 4.0_wp*rounding/h, 'first derivative of '//why)
+    call test%near(first, first_true, truncation_first*h**16*bound17 + 4.0_wp*rounding/h, &
+                   'the error of the first derivative keeps its bound for '//why)
     call test%near(second, second_true, truncation_second*h**16*bound18 + 8.0_wp*rounding/h**2, &
-                   'second derivative of '//why)
+                   'the error of the second derivative keeps its bound for '//why)
     call test%is_true(abs(second - second_true) <= 1.01_wp*error, 'the estimate covers the error of the second derivative of '//why)
   end subroutine check_stencil
 
@@ -143,12 +145,12 @@ contains
       call derivatives_from_stencil(values, h, first, second, error)
       e_first(j) = abs(first - cos(x))
       e_second(j) = abs(second + sin(x))
-      call test%is_true(error >= e_second(j), 'the estimate is not below the error')
+      call test%is_true(error >= e_second(j), 'the estimate of the error is not below the error')
     end do
     ! the next order changes the quotient of 65536 by a few tenths at these steps
     call test%is_true(e_first(1)/e_first(2) > 2.0_wp**15 .and. e_first(1)/e_first(2) < 2.0_wp**17, &
-                      'order 16 of the first derivative')
+                      'the first derivative is of order 16')
     call test%is_true(e_second(1)/e_second(2) > 2.0_wp**15 .and. e_second(1)/e_second(2) < 2.0_wp**17, &
-                      'order 16 of the second derivative')
+                      'the second derivative is of order 16')
   end subroutine order_and_estimate
 end program test_differentiation

@@ -24,14 +24,14 @@ program test_hermite
       call hermite%evaluate(x, v, dv, ddv)
       call power(x, 3*n - 1, y(1, 4), dy(1, 4), ddy(1, 4))
       ! round-off of a dozen differences over distances of one half or more
-      call test%near(v(1), y(1, 4), 1.0e-12_wp, 'a power')
-      call test%near(dv(1), dy(1, 4), 1.0e-11_wp, 'its derivative')
-      call test%near(ddv(1), ddy(1, 4), 1.0e-10_wp, 'its second derivative')
+      call test%near(v(1), y(1, 4), 1.0e-12_wp, 'a power is interpolated exactly')
+      call test%near(dv(1), dy(1, 4), 1.0e-11_wp, 'the derivative of a power is interpolated exactly')
+      call test%near(ddv(1), ddy(1, 4), 1.0e-10_wp, 'the second derivative of a power is interpolated exactly')
       if (n < 4) cycle
       ! |f^(12)|/12! times the product of the cubed distances: 2e-9/1e2; two more derivatives cost factors of ten
-      call test%near(v(2), sin(x), 1.0e-10_wp, 'a sine')
-      call test%near(dv(2), cos(x), 1.0e-9_wp, 'its cosine')
-      call test%near(ddv(2), -sin(x), 1.0e-8_wp, 'its second derivative')
+      call test%near(v(2), sin(x), 1.0e-10_wp, 'the sine is interpolated within the error of the formula')
+      call test%near(dv(2), cos(x), 1.0e-9_wp, 'the derivative of the interpolated sine is the cosine')
+      call test%near(ddv(2), -sin(x), 1.0e-8_wp, 'the second derivative of the interpolated sine is the negative sine')
     end do
   end do
   call test%finish()

@@ -21,11 +21,11 @@ program test_least_singular_value
   call equal_values()
   call equations%create(4, 0)
   call equations%factorize()
-  call test%is_true(equations%least_singular_value() > 1.0_wp, 'no columns: nothing is singular')
+  call test%is_true(equations%least_singular_value() > 1.0_wp, 'a matrix without columns is not singular')
   call equations%create(3, 2)
   equations%a = reshape([1.0_wp, 2.0_wp, 3.0_wp, 2.0_wp, 4.0_wp, 6.0_wp], [3, 2])
   call equations%factorize()
-  call test%near(equations%least_singular_value(), 0.0_wp, 1.0e-15_wp, 'two columns that are one')
+  call test%near(equations%least_singular_value(), 0.0_wp, 1.0e-15_wp, 'two equal columns have a least singular value of zero')
   call test%finish()
 
 contains
@@ -47,10 +47,11 @@ contains
     call equations%factorize()
     ! without vectors LAPACK takes another way, which divides by zero on purpose
     call dgesvd('A', 'N', m, n, a, m, s, u, m, vt, 1, work, size(work), info)
-    call test%is_true(info == 0, 'LAPACK converges')
+    call test%is_true(info == 0, 'the singular values of LAPACK converge')
     ! both are exact to round-off of the largest one; values close together slow the iteration down, which
     ! then ends within 1e-10 of the least
-    call test%near(equations%least_singular_value()/s(n), 1.0_wp, 1.0e-10_wp + 1.0e-14_wp*s(1)/s(n), 'least singular value')
+    call test%near(equations%least_singular_value()/s(n), 1.0_wp, 1.0e-10_wp + 1.0e-14_wp*s(1)/s(n), &
+                   'the least singular value is that of LAPACK')
   end subroutine compare
 
   !> An orthogonal matrix: all of them are one.
@@ -61,6 +62,6 @@ contains
     call equations%create(3, 3)
     equations%a = reshape([c, s, 0.0_wp, -s, c, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
     call equations%factorize()
-    call test%near(equations%least_singular_value(), 1.0_wp, 1.0e-14_wp, 'an orthogonal matrix')
+    call test%near(equations%least_singular_value(), 1.0_wp, 1.0e-14_wp, 'the least singular value of an orthogonal matrix is one')
   end subroutine equal_values
 end program test_least_singular_value

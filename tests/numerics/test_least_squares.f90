@@ -90,8 +90,8 @@ contains
     end do
     call test%is_true(full, 'random matrices have full rank')
     ! Householder factors are exact for a matrix that differs by some roundings; sixty of them add up at worst
-    call test%near(worst, 0.0_wp, 20.0_wp*epsilon(worst), 'the remainder stands across all columns, all shapes')
-    call test%near(worst_remainder, 0.0_wp, 20.0_wp*epsilon(worst), 'its length is as stated, all shapes')
+    call test%near(worst, 0.0_wp, 20.0_wp*epsilon(worst), 'the remainder stands across all columns, in all shapes')
+    call test%near(worst_remainder, 0.0_wp, 20.0_wp*epsilon(worst), 'the length of the remainder is as stated, in all shapes')
   end subroutine all_shapes
 
   !> Solution of A^T A x = A^T b by Cholesky's factorization, in quadruple precision.
@@ -153,7 +153,7 @@ contains
         condition = s(1)/s(n)
         ! first-order perturbation: roundings times cond |x| + cond^2 |remainder|/|A|
         allowed = 20.0_wp*epsilon(allowed)*(condition*norm2(expected) + condition**2*remainder/s(1))
-        call test%is_true(norm2(x - expected) <= allowed, 'the solution of the normal equations')
+        call test%is_true(norm2(x - expected) <= allowed, 'the solution is that of the normal equations')
       end do
     end do
   end subroutine against_normal_equations
@@ -180,12 +180,12 @@ contains
           call system%create(m, n)
           system%a = a
           call system%factorize()
-          call test%is_true(system%rank() == r, 'the rank of a product of thin matrices')
-          call test%is_true(system%conditioning() < 1.0e-12_wp, 'its columns depend on each other')
+          call test%is_true(system%rank() == r, 'a product of thin matrices has the rank of its factors')
+          call test%is_true(system%conditioning() < 1.0e-12_wp, 'the columns of a product of thin matrices depend on each other')
           call system%solve(b, x)
           call test%is_true(count(abs(x) > 0.0_wp) <= r, 'no more unknowns are used than the rank')
           ! columns left out are combinations of those used, by factors of a few tens at worst
-          call test%near(normality(a, b_kept, x), 0.0_wp, 1.0e-13_wp, 'still least squares')
+          call test%near(normality(a, b_kept, x), 0.0_wp, 1.0e-13_wp, 'a solution of less than full rank is one of least squares')
         end do
       end do
     end do
@@ -207,7 +207,7 @@ contains
       call test%is_true(system%rank() == 2, 'two parallel columns and one across have rank 2')
       b = [5.0_wp, 7.0_wp, 2.0_wp]
       call system%solve(b, x, remainder)
-      call test%near(remainder, 2.0_wp, 1.0e-15_wp, 'only what no column reaches remains')
+      call test%near(remainder, 2.0_wp, 1.0e-15_wp, 'the remainder is the part that no column reaches')
     end do
 
     do n = 1, 30   ! upper triangles of ones: the number of different rows
@@ -236,16 +236,17 @@ contains
       b(1:4) = [2.0_wp, 0.0_wp, 1.0_wp, 2.0_wp]
       call system%solve(b(1:4), x(1:n), remainder)
       call test%is_true(system%rank() == 0, 'a matrix of zeros has no rank')
-      call test%is_true(all(abs(x(1:n)) <= 0.0_wp), 'it moves nothing')
-      call test%near(remainder, 3.0_wp, 1.0e-15_wp, 'all remains')
+      call test%is_true(all(abs(x(1:n)) <= 0.0_wp), 'a matrix of zeros moves no unknown')
+      call test%near(remainder, 3.0_wp, 1.0e-15_wp, 'a matrix of zeros leaves the whole right side')
     end do
     call test%near(system%conditioning(), 0.0_wp, 0.0_wp, 'columns of zeros depend on each other')
     call system%create(3, 0)
-    call test%near(system%conditioning(), 1.0_wp, 0.0_wp, 'no columns do not')
+    call test%near(system%conditioning(), 1.0_wp, 0.0_wp, 'a matrix without columns has no columns that depend on each other')
     call system%create(0, 3)
     call system%factorize()
     call system%solve(b(1:0), x(1:3), remainder)
-    call test%is_true(system%rank() == 0 .and. maxval(abs(x(1:3))) <= 0.0_wp, 'no equations ask for nothing')
+    call test%is_true(system%rank() == 0 .and. maxval(abs(x(1:3))) <= 0.0_wp, &
+                      'a system without equations has rank zero and moves no unknown')
   end subroutine zero_matrices
 
   !> Columns across each other: the quotient of the shortest and the longest.
@@ -262,8 +263,9 @@ contains
       end do
       system%a(3, 2) = -3.0_wp*10.0_wp**(-k)
       call system%factorize()
-      call test%near(system%conditioning()*10.0_wp**k, 1.0_wp, 1.0e-15_wp, 'columns across each other')
-      call test%is_true(system%rank(1.0e-7_wp) == merge(4, 3, k < 7), 'rank by a tolerance of the caller')
+      call test%near(system%conditioning()*10.0_wp**k, 1.0_wp, 1.0e-15_wp, &
+                     'the conditioning of columns across each other is the ratio of their lengths')
+      call test%is_true(system%rank(1.0e-7_wp) == merge(4, 3, k < 7), 'the rank follows a tolerance of the caller')
     end do
     call system%create(2, 3)
     system%a = reshape([1.0_wp, 2.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 1.0_wp], [2, 3])
@@ -292,7 +294,8 @@ contains
         true = s(n)/s(1)
         factor = sqrt(real(n, wp))*sqrt(4.0_wp**n + 6*n - 1)/3.0_wp
         call test%is_true(system%conditioning() >= true*(1.0_wp - 1.0e-6_wp) .and. &
-                          system%conditioning() <= true*factor*(1.0_wp + 1.0e-6_wp), 'pivots between their bounds')
+                          system%conditioning() <= true*factor*(1.0_wp + 1.0e-6_wp), &
+                          'the conditioning by pivots lies between its bounds')
       end do
     end do
   end subroutine conditioning_within_bounds
@@ -318,7 +321,7 @@ contains
         b = matmul(a, expected)
         call system%solve(b, x)
         call test%is_true(norm2(x - expected) <= 20.0_wp*epsilon(x)*s(1)/s(n)*norm2(expected), &
-                          'a solution that is known, once more')
+                          'each right side gets its known solution')
       end do
     end do
   end subroutine several_right_sides
@@ -350,9 +353,10 @@ contains
       call more%solve(longer, y, left_of_more, tolerance)
       if (more%rank(tolerance) < 3) left_out = left_out + 1
       ! pivots that are used are at least half of the largest: some tens of roundings
-      call test%near(maxval(abs(x - y)), 0.0_wp, 1.0e-13_wp*max(1.0_wp, maxval(abs(y))), 'fewer columns')
-      call test%near(left, left_of_more, 1.0e-13_wp, 'what remains')
+      call test%near(maxval(abs(x - y)), 0.0_wp, 1.0e-13_wp*max(1.0_wp, maxval(abs(y))), &
+                     'the solution with a column left out is the same by both methods')
+      call test%near(left, left_of_more, 1.0e-13_wp, 'the remainder with a column left out is the same by both methods')
     end do
-    call test%is_true(left_out == 100, 'columns are left out each time')
+    call test%is_true(left_out == 100, 'a column is left out in each trial')
   end subroutine fewer_columns
 end program test_least_squares

@@ -17,7 +17,7 @@ program test_random
     x = random%symmetric()
   end do
   call test%is_true(random%seed == 399268537_long, 'number 10000 of the minimal standard generator')
-  call test%near(x, 2.0_wp*399268537.0_wp/2147483647.0_wp - 1.0_wp, 1.0e-15_wp, 'and it is brought to -1 .. 1')
+  call test%near(x, 2.0_wp*399268537.0_wp/2147483647.0_wp - 1.0_wp, 1.0e-15_wp, 'a number of the generator is brought to -1 .. 1')
 
   random = random_type()
   other%seed = 7_long

@@ -45,7 +45,7 @@ contains
           angles(i) = 10.0_wp**power*random%symmetric()
         end do
         call cosines_and_sines(n, angles(:n), turned(:, :n))
-        call test%near(error_of(angles(:n), turned(:, :n)), 0.0_wp, allowed, 'cosine and sine')
+        call test%near(error_of(angles(:n), turned(:, :n)), 0.0_wp, allowed, 'cosine and sine are those of quadruple precision')
       end do
     end do
   end subroutine all_sizes
@@ -60,7 +60,7 @@ contains
       angles = angles + max(1.0_wp, abs(angles(1)))*epsilon(1.0_wp)*[-1.0e6_wp, -10.0_wp, -1.0_wp, 0.0_wp, 1.0_wp, &
                                                                      10.0_wp, 1.0e6_wp]
       call cosines_and_sines(size(angles), angles, turned)
-      call test%near(error_of(angles, turned), 0.0_wp, allowed, 'beside eighths of a turn')
+      call test%near(error_of(angles, turned), 0.0_wp, allowed, 'cosine and sine are right beside eighths of a turn')
     end do
   end subroutine about_quarter_turns
 
@@ -68,8 +68,8 @@ contains
     real(wp) :: turned(2, 2)
 
     call cosines_and_sines(2, [0.0_wp, 1.0e-300_wp], turned)
-    call test%near(maxval(abs(turned(1, :) - 1.0_wp)), 0.0_wp, 0.0_wp, 'the cosine of nothing is one')
-    call test%near(turned(2, 1), 0.0_wp, 0.0_wp, 'its sine is nothing')
+    call test%near(maxval(abs(turned(1, :) - 1.0_wp)), 0.0_wp, 0.0_wp, 'the cosine of zero is one')
+    call test%near(turned(2, 1), 0.0_wp, 0.0_wp, 'the sine of zero is zero')
     call test%near(turned(2, 2)*1.0e300_wp, 1.0_wp, epsilon(1.0_wp), 'the sine of a tiny angle is the angle')
   end subroutine known_angles
 
@@ -79,6 +79,6 @@ contains
 
     angles = [1.0_wp, 1.0e9_wp, -1.0e15_wp]
     call cosines_and_sines(3, angles, turned)
-    call test%near(error_of(angles, turned), 0.0_wp, allowed, 'large angles')
+    call test%near(error_of(angles, turned), 0.0_wp, allowed, 'cosine and sine of large angles are right')
   end subroutine too_large
 end program test_sine_cosine

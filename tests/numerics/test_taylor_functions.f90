@@ -73,10 +73,10 @@ contains
           values(i) = value_real(number, argument_real(x + i*h, a))
         end do
         call derivatives_from_stencil(values, h, first, second, error)
-        call test%near(f%value, values(0), 1.0e-15_wp, 'function '//name//': value, one rounding')
+        call test%near(f%value, values(0), 1.0e-15_wp, 'function '//name//': the value is right to one rounding')
         ! round-off of values of order ten (u^-3: 200) by 2/h and 8/h^2; truncation is far below
-        call test%near(f%first, first, 1.0e-12_wp, 'function '//name//': first derivative')
-        call test%near(f%second, second, 1.0e-10_wp, 'function '//name//': second derivative')
+        call test%near(f%first, first, 1.0e-12_wp, 'function '//name//': the first derivative is the slope of the values')
+        call test%near(f%second, second, 1.0e-10_wp, 'function '//name//': the second derivative is the curvature of the values')
       end do
     end do
   end subroutine against_differences
@@ -89,8 +89,8 @@ contains
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     ! ten roundings of numbers of order one
-    call test%near(f%first, first, 4.0e-15_wp, why//': first derivative')
-    call test%near(f%second, second, 1.0e-14_wp, why//': second derivative')
+    call test%near(f%first, first, 4.0e-15_wp, why//': the first derivative is that of the closed form')
+    call test%near(f%second, second, 1.0e-14_wp, why//': the second derivative is that of the closed form')
   end subroutine derivatives
 
   subroutine textbook_derivatives(test)
@@ -129,9 +129,9 @@ contains
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     ! arguments between 0.15 and 0.85: the worst of the functions below multiplies roundings by fifty
-    call test%near(a%value, b%value, 1.0e-14_wp, why//': value')
-    call test%near(a%first, b%first, 1.0e-14_wp, why//': first derivative')
-    call test%near(a%second, b%second, 4.0e-14_wp, why//': second derivative')
+    call test%near(a%value, b%value, 1.0e-14_wp, why//': the values are equal')
+    call test%near(a%first, b%first, 1.0e-14_wp, why//': the first derivatives are equal')
+    call test%near(a%second, b%second, 4.0e-14_wp, why//': the second derivatives are equal')
   end subroutine same
 
   function random_argument(random) result(u)

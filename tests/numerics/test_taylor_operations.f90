@@ -31,9 +31,9 @@ contains
     type(taylor), intent(in) :: b              !< the right ones
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
-    call test%near(a%value, b%value, round_off, why//': value')
-    call test%near(a%first, b%first, round_off, why//': first derivative')
-    call test%near(a%second, b%second, round_off, why//': second derivative')
+    call test%near(a%value, b%value, round_off, why//': the values are equal')
+    call test%near(a%first, b%first, round_off, why//': the first derivatives are equal')
+    call test%near(a%second, b%second, round_off, why//': the second derivatives are equal')
   end subroutine same
 
   function random_taylor(random) result(a)
@@ -96,7 +96,7 @@ contains
       call same(test, abs(u)*abs(u), u*u, 'absolute value')
       call test%is_true(abs(u) >= 0.0_wp, 'no absolute value is negative')
       call same(test, min(u, v) + max(u, v), u + v, 'the lesser and the greater')
-      call test%is_true(min(u, v) <= max(u, v), 'the lesser is not the greater')
+      call test%is_true(min(u, v) <= max(u, v), 'the lesser of two numbers is not greater than the greater')
     end do
   end subroutine identities
 
@@ -201,12 +201,18 @@ contains
         y = real(j, wp)
         a = taylor(x, 5.0_wp, -3.0_wp)
         b = taylor(y, -7.0_wp, 2.0_wp)
-        call test%is_true(((a < b) .eqv. (i < j)) .and. ((a < y) .eqv. (i < j)) .and. ((x < b) .eqv. (i < j)), '<')
-        call test%is_true(((a <= b) .eqv. (i <= j)) .and. ((a <= y) .eqv. (i <= j)) .and. ((x <= b) .eqv. (i <= j)), '<=')
-        call test%is_true(((a > b) .eqv. (i > j)) .and. ((a > y) .eqv. (i > j)) .and. ((x > b) .eqv. (i > j)), '>')
-        call test%is_true(((a >= b) .eqv. (i >= j)) .and. ((a >= y) .eqv. (i >= j)) .and. ((x >= b) .eqv. (i >= j)), '>=')
-        call test%is_true(((a == b) .eqv. (i == j)) .and. ((a == y) .eqv. (i == j)) .and. ((x == b) .eqv. (i == j)), '==')
-        call test%is_true(((a /= b) .eqv. (i /= j)) .and. ((a /= y) .eqv. (i /= j)) .and. ((x /= b) .eqv. (i /= j)), '/=')
+        call test%is_true(((a < b) .eqv. (i < j)) .and. ((a < y) .eqv. (i < j)) .and. ((x < b) .eqv. (i < j)), &
+                          '< compares the values')
+        call test%is_true(((a <= b) .eqv. (i <= j)) .and. ((a <= y) .eqv. (i <= j)) .and. ((x <= b) .eqv. (i <= j)), &
+                          '<= compares the values')
+        call test%is_true(((a > b) .eqv. (i > j)) .and. ((a > y) .eqv. (i > j)) .and. ((x > b) .eqv. (i > j)), &
+                          '> compares the values')
+        call test%is_true(((a >= b) .eqv. (i >= j)) .and. ((a >= y) .eqv. (i >= j)) .and. ((x >= b) .eqv. (i >= j)), &
+                          '>= compares the values')
+        call test%is_true(((a == b) .eqv. (i == j)) .and. ((a == y) .eqv. (i == j)) .and. ((x == b) .eqv. (i == j)), &
+                          '== compares the values')
+        call test%is_true(((a /= b) .eqv. (i /= j)) .and. ((a /= y) .eqv. (i /= j)) .and. ((x /= b) .eqv. (i /= j)), &
+                          '/= compares the values')
       end do
     end do
   end subroutine comparisons
@@ -233,6 +239,7 @@ contains
     d(:, 2) = a(1:2)*[2.0_wp, 3.0_wp]
     call same(test, d(2, 1), constant(0.0_wp), 'a real number assigned to an array')
     call same(test, d(2, 2), 3.0_wp*a(2), 'a section times real numbers')
-    call test%is_true(all(abs(a) >= 0.0_wp) .and. all(max(a, b) >= min(a, b)), 'comparisons of arrays')
+    call test%is_true(all(abs(a) >= 0.0_wp) .and. all(max(a, b) >= min(a, b)), &
+                      'absolute value, maximum and minimum of arrays are taken entry by entry')
   end subroutine arrays
 end program test_taylor_operations

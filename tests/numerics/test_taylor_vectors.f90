@@ -43,12 +43,12 @@ contains
     type(taylor) :: two
 
     two = taylor(2.0_wp, 5.0_wp, -3.0_wp)
-    call test%is_true(two < 3 .and. .not. two < 2 .and. 1 < two .and. .not. 2 < two, 'less')
-    call test%is_true(two <= 2 .and. .not. two <= 1 .and. 2 <= two .and. .not. 3 <= two, 'less or equal')
-    call test%is_true(two > 1 .and. .not. two > 2 .and. 3 > two .and. .not. 2 > two, 'greater')
-    call test%is_true(two >= 2 .and. .not. two >= 3 .and. 2 >= two .and. .not. 1 >= two, 'greater or equal')
-    call test%is_true(two == 2 .and. .not. two == 3 .and. 2 == two .and. .not. 1 == two, 'equal')
-    call test%is_true(two /= 3 .and. .not. two /= 2 .and. 1 /= two .and. .not. 2 /= two, 'not equal')
+    call test%is_true(two < 3 .and. .not. two < 2 .and. 1 < two .and. .not. 2 < two, '< compares a value with an integer')
+    call test%is_true(two <= 2 .and. .not. two <= 1 .and. 2 <= two .and. .not. 3 <= two, '<= compares a value with an integer')
+    call test%is_true(two > 1 .and. .not. two > 2 .and. 3 > two .and. .not. 2 > two, '> compares a value with an integer')
+    call test%is_true(two >= 2 .and. .not. two >= 3 .and. 2 >= two .and. .not. 1 >= two, '>= compares a value with an integer')
+    call test%is_true(two == 2 .and. .not. two == 3 .and. 2 == two .and. .not. 1 == two, '== compares a value with an integer')
+    call test%is_true(two /= 3 .and. .not. two /= 2 .and. 1 /= two .and. .not. 2 /= two, '/= compares a value with an integer')
   end subroutine integers
 
   subroutine same(f, expected, why)
@@ -58,8 +58,8 @@ contains
     real(wp) :: scale
 
     scale = max(1.0_wp, abs(expected%value), abs(expected%first), abs(expected%second))
-    call test%near(f%value/scale, expected%value/scale, tolerance, why//': value')
-    call test%near(f%first/scale, expected%first/scale, tolerance, why//': first derivative')
-    call test%near(f%second/scale, expected%second/scale, tolerance, why//': second derivative')
+    call test%near(f%value/scale, expected%value/scale, tolerance, why//': the value is right')
+    call test%near(f%first/scale, expected%first/scale, tolerance, why//': the first derivative is right')
+    call test%near(f%second/scale, expected%second/scale, tolerance, why//': the second derivative is right')
   end subroutine same
 end program test_taylor_vectors

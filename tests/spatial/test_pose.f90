@@ -35,17 +35,22 @@ contains
       b = random_pose(random)
       c = random_pose(random)
       x = random_vector(random)
-      call test%near(largest_difference(compose(a, inverse(a)), identity_pose), 0.0_wp, round_off, 'a pose and its inverse')
-      call test%near(largest_difference(compose(inverse(a), a), identity_pose), 0.0_wp, round_off, 'the inverse and its pose')
-      call test%near(largest_difference(compose(a, identity_pose), a), 0.0_wp, 0.0_wp, 'nothing behind')
-      call test%near(largest_difference(compose(identity_pose, a), a), 0.0_wp, 0.0_wp, 'nothing before')
+      call test%near(largest_difference(compose(a, inverse(a)), identity_pose), 0.0_wp, round_off, &
+                     'a pose followed by its inverse is no displacement')
+      call test%near(largest_difference(compose(inverse(a), a), identity_pose), 0.0_wp, round_off, &
+                     'the inverse of a pose followed by the pose is no displacement')
+      call test%near(largest_difference(compose(a, identity_pose), a), 0.0_wp, 0.0_wp, &
+                     'a pose followed by no displacement is itself')
+      call test%near(largest_difference(compose(identity_pose, a), a), 0.0_wp, 0.0_wp, &
+                     'no displacement followed by a pose is the pose')
       call test%near(largest_difference(compose(compose(a, b), c), compose(a, compose(b, c))), 0.0_wp, round_off, &
-                     'association')
+                     'three poses can be composed from either end')
       call test%near(largest_difference(inverse(compose(a, b)), compose(inverse(b), inverse(a))), 0.0_wp, round_off, &
-                     'inverse of a product')
+                     'the inverse of a product is the product of the inverses in reverse')
       call test%near(maxval(abs(transformed(compose(a, b), x) - transformed(a, transformed(b, x)))), 0.0_wp, round_off, &
-                     'a point through two poses')
-      call test%near(maxval(abs(transformed(a, [0.0_wp, 0.0_wp, 0.0_wp]) - a%p)), 0.0_wp, 0.0_wp, 'the origin')
+                     'a point is moved by two poses as by their product')
+      call test%near(maxval(abs(transformed(a, [0.0_wp, 0.0_wp, 0.0_wp]) - a%p)), 0.0_wp, 0.0_wp, &
+                     'the origin is moved to the position of the pose')
     end do
   end subroutine composition
 
@@ -68,11 +73,13 @@ contains
       r2 = transformed(pose, [scale, 0.0_wp, 0.0_wp])
       r3 = transformed(pose, [along*scale, 0.0_wp, -across*scale])
       call pose_from_points(pose%p, r2, r3, found, ok)
-      call test%is_true(ok, 'three points in general')
+      call test%is_true(ok, 'three points in general give a pose')
       ! roundings of points over the least distance, 0.2 of the size
-      call test%near(maxval(abs(found%r - pose%r)), 0.0_wp, 5.0_wp*round_off, 'the frame of three points')
-      call test%near(maxval(abs(found%p - pose%p)), 0.0_wp, 0.0_wp, 'its origin')
-      call test%near(maxval(abs(matmul(found%r, transpose(found%r)) - identity)), 0.0_wp, round_off, 'R R^T = 1')
+      call test%near(maxval(abs(found%r - pose%r)), 0.0_wp, 5.0_wp*round_off, &
+                     'the axes of the pose of three points are those of the frame')
+      call test%near(maxval(abs(found%p - pose%p)), 0.0_wp, 0.0_wp, 'the origin of the pose of three points is the first point')
+      call test%near(maxval(abs(matmul(found%r, transpose(found%r)) - identity)), 0.0_wp, round_off, &
+                     'the rotation of three points satisfies R R^T = 1')
     end do
   end subroutine from_points
 
@@ -89,11 +96,12 @@ contains
         pose = random_pose(random)
         call pose_from_points(pose%p, transformed(pose, [1.0_wp, 0.0_wp, 0.0_wp]), &
                               transformed(pose, [0.7_wp, 0.0_wp, -10.0_wp**(-k)]), found, ok)
-        call test%is_true(ok, 'points close to one line')
+        call test%is_true(ok, 'points close to one line give a pose')
         call test%near(maxval(abs(matmul(found%r, transpose(found%r)) - identity)), 0.0_wp, round_off, &
-                       'R R^T = 1 close to one line')
+                       'the rotation of points close to one line satisfies R R^T = 1')
         ! roundings of the points over their distance from the line
-        call test%near(maxval(abs(found%r - pose%r)), 0.0_wp, 5.0e-15_wp*10.0_wp**k, 'the frame, as well as the plane is known')
+        call test%near(maxval(abs(found%r - pose%r)), 0.0_wp, 5.0e-15_wp*10.0_wp**k, &
+                       'the axes of points close to one line are found as well as their plane is known')
       end do
     end do
   end subroutine nearly_in_line
@@ -110,14 +118,14 @@ contains
       r1 = random_vector(random)
       d = random_vector(random)
       call pose_from_points(r1, r1 + d, r1 + d*(2.0_wp + random%symmetric()), pose, ok)
-      call test%is_true(.not. ok, 'three points in one line')
+      call test%is_true(.not. ok, 'three points in one line are refused')
     end do
     call pose_from_points(r1, r1, r1 + d, pose, ok)
-    call test%is_true(.not. ok, 'R2 in R1')
+    call test%is_true(.not. ok, 'equal first and second points are refused')
     call pose_from_points(r1, r1 + d, r1, pose, ok)
-    call test%is_true(.not. ok, 'R3 in R1')
+    call test%is_true(.not. ok, 'equal first and third points are refused')
     call pose_from_points(r1, r1 + d, r1 + d, pose, ok)
-    call test%is_true(.not. ok, 'R3 in R2')
+    call test%is_true(.not. ok, 'equal second and third points are refused')
   end subroutine in_line
 
   subroutine from_axis(test)
@@ -134,20 +142,23 @@ contains
       zero = random_unit(random)
       if (norm2(cross(axis, zero)) < 0.1_wp) cycle
       call pose_from_axis(point, axis*10.0_wp**(100.0_wp*random%symmetric()), zero*3.0_wp, pose, ok)
-      call test%is_true(ok, 'an axis and a direction across')
-      call test%near(maxval(abs(pose%p - point)), 0.0_wp, 0.0_wp, 'the origin')
-      call test%near(maxval(abs(pose%r(:, 3) - axis)), 0.0_wp, round_off, 'z along the axis')
-      call test%near(dot_product(cross(axis, zero), pose%r(:, 1)), 0.0_wp, round_off, 'x in the plane of axis and zero')
-      call test%is_true(dot_product(zero, pose%r(:, 1)) > 0.0_wp, 'x on the side of zero')
-      call test%near(maxval(abs(matmul(pose%r, transpose(pose%r)) - identity)), 0.0_wp, round_off, 'R R^T = 1')
-      call test%near(maxval(abs(cross(pose%r(:, 1), pose%r(:, 2)) - pose%r(:, 3))), 0.0_wp, round_off, 'right-handed')
+      call test%is_true(ok, 'an axis and a direction across it give a pose')
+      call test%near(maxval(abs(pose%p - point)), 0.0_wp, 0.0_wp, 'the origin of the pose of an axis is its point')
+      call test%near(maxval(abs(pose%r(:, 3) - axis)), 0.0_wp, round_off, 'the z axis of the pose of an axis lies along it')
+      call test%near(dot_product(cross(axis, zero), pose%r(:, 1)), 0.0_wp, round_off, &
+                     'the x axis lies in the plane of the axis and the zero direction')
+      call test%is_true(dot_product(zero, pose%r(:, 1)) > 0.0_wp, 'the x axis lies on the side of the zero direction')
+      call test%near(maxval(abs(matmul(pose%r, transpose(pose%r)) - identity)), 0.0_wp, round_off, &
+                     'the rotation of an axis and a direction satisfies R R^T = 1')
+      call test%near(maxval(abs(cross(pose%r(:, 1), pose%r(:, 2)) - pose%r(:, 3))), 0.0_wp, round_off, &
+                     'the axes of the pose of an axis and a direction are right-handed')
       call pose_from_axis(point, axis, axis*zero(1), pose, ok)
-      call test%is_true(.not. ok, 'zero along the axis')
+      call test%is_true(.not. ok, 'a zero direction along the axis is refused')
     end do
     call pose_from_axis(point, [0.0_wp, 0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], pose, ok)
-    call test%is_true(.not. ok, 'no axis')
+    call test%is_true(.not. ok, 'an axis of length zero is refused')
     call pose_from_axis(point, [1.0_wp, 0.0_wp, 0.0_wp], [0.0_wp, 0.0_wp, 0.0_wp], pose, ok)
-    call test%is_true(.not. ok, 'no zero direction')
+    call test%is_true(.not. ok, 'a zero direction of length zero is refused')
   end subroutine from_axis
 
   pure function moved(x, y, z) result(pose)
@@ -177,10 +188,10 @@ contains
       expected = compose(compose(expected, moved(0.0_wp, 0.0_wp, d)), moved(a, 0.0_wp, 0.0_wp))
       expected = compose(expected, pose_type(about_axis([1.0_wp, 0.0_wp, 0.0_wp], alpha), [0.0_wp, 0.0_wp, 0.0_wp]))
       call test%near(largest_difference(pose_from_dh(a, alpha, d, theta), expected), 0.0_wp, round_off, &
-                     'Denavit-Hartenberg parameters')
+                     'the pose of Denavit-Hartenberg parameters is the product of four displacements')
     end do
     call test%near(largest_difference(pose_from_dh(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp), identity_pose), 0.0_wp, 0.0_wp, &
-                   'parameters of zero')
+                   'Denavit-Hartenberg parameters of zero are no displacement')
   end subroutine denavit_hartenberg
 
   subroutine check_default(test, axis, expected, why)
@@ -191,7 +202,7 @@ contains
     real(wp) :: zero(3)
 
     zero = default_zero(axis)
-    call test%near(maxval(abs(zero - identity(:, expected))), 0.0_wp, 0.0_wp, why)
+    call test%near(maxval(abs(zero - identity(:, expected))), 0.0_wp, 0.0_wp, why//': the zero direction is the right one')
   end subroutine check_default
 
   !> The first of x, y, z at 45 degrees or more, by the angle itself; at exactly 45 it counts, whatever

@@ -32,20 +32,21 @@ contains
       a = random_vector(random)
       b = random_vector(random)
       c = random_vector(random)
-      call test%near(dot_product(cross(a, b), a), 0.0_wp, round_off, 'a product stands across its first factor')
-      call test%near(dot_product(cross(a, b), b), 0.0_wp, round_off, 'and across its second')
+      call test%near(dot_product(cross(a, b), a), 0.0_wp, round_off, 'a vector product stands across its first factor')
+      call test%near(dot_product(cross(a, b), b), 0.0_wp, round_off, 'a vector product stands across its second factor')
       call test%near(norm2(cross(a, b))**2, dot_product(a, a)*dot_product(b, b) - dot_product(a, b)**2, 2.0_wp*round_off, &
-                     'Lagrange''s identity')
+                     'a vector product satisfies Lagrange''s identity')
       call test%near(maxval(abs(cross(a, cross(b, c)) - (b*dot_product(a, c) - c*dot_product(a, b)))), 0.0_wp, &
-                     2.0_wp*round_off, 'product of three')
+                     2.0_wp*round_off, 'a vector product of three factors satisfies its expansion')
       matrix(:, 1) = cross(a, identity(:, 1))
       matrix(:, 2) = cross(a, identity(:, 2))
       matrix(:, 3) = cross(a, identity(:, 3))
-      call test%near(maxval(abs(axial_vector(matrix) - a)), 0.0_wp, 0.0_wp, 'vector of a skew matrix')
+      call test%near(maxval(abs(axial_vector(matrix) - a)), 0.0_wp, 0.0_wp, 'the vector of a skew matrix is the one that made it')
       call test%near(maxval(abs(axial_vector(matrix + outer(b, b)) - a)), 0.0_wp, round_off, &
-                     'a symmetric part does not count')
+                     'a symmetric part does not change the vector of a matrix')
     end do
-    call test%near(maxval(abs(cross(identity(:, 1), identity(:, 2)) - identity(:, 3))), 0.0_wp, 0.0_wp, 'x by y is z')
+    call test%near(maxval(abs(cross(identity(:, 1), identity(:, 2)) - identity(:, 3))), 0.0_wp, 0.0_wp, &
+                   'the vector product of x and y is z')
   end subroutine vectors
 
   pure function outer(a, b) result(c)
@@ -66,12 +67,13 @@ contains
     do k = -290, 300, 10
       a = random_unit(random)
       e = unit(a*10.0_wp**k)
-      call test%near(maxval(abs(e - a)), 0.0_wp, round_off, 'a direction of any length')
-      call test%near(norm2(e), 1.0_wp, round_off, 'length one')
+      call test%near(maxval(abs(e - a)), 0.0_wp, round_off, 'a direction of any length gives its unit vector')
+      call test%near(norm2(e), 1.0_wp, round_off, 'a unit vector has length one')
     end do
-    call test%near(maxval(abs(unit([0.0_wp, 0.0_wp, 0.0_wp]))), 0.0_wp, 0.0_wp, 'zero stays zero')
+    call test%near(maxval(abs(unit([0.0_wp, 0.0_wp, 0.0_wp]))), 0.0_wp, 0.0_wp, 'the unit vector of zero is zero')
     e = unit([huge(1.0_wp), huge(1.0_wp), 0.0_wp])
-    call test%near(maxval(abs(e - [sqrt(0.5_wp), sqrt(0.5_wp), 0.0_wp])), 0.0_wp, round_off, 'the longest vector')
+    call test%near(maxval(abs(e - [sqrt(0.5_wp), sqrt(0.5_wp), 0.0_wp])), 0.0_wp, round_off, &
+                   'the unit vector of the longest vector is found without overflow')
   end subroutine unit_vectors
 
   subroutine axis_and_angle(test)
@@ -85,19 +87,21 @@ contains
       angle = 10.0_wp*random%symmetric()
       other = 10.0_wp*random%symmetric()
       r = about_axis(e, angle)
-      call test%near(maxval(abs(matmul(r, transpose(r)) - identity)), 0.0_wp, round_off, 'R R^T = 1')
-      call test%near(maxval(abs(cross(r(:, 1), r(:, 2)) - r(:, 3))), 0.0_wp, round_off, 'right-handed')
-      call test%near(maxval(abs(matmul(r, e) - e)), 0.0_wp, round_off, 'the axis stays')
+      call test%near(maxval(abs(matmul(r, transpose(r)) - identity)), 0.0_wp, round_off, &
+                     'a rotation about an axis satisfies R R^T = 1')
+      call test%near(maxval(abs(cross(r(:, 1), r(:, 2)) - r(:, 3))), 0.0_wp, round_off, 'a rotation about an axis is right-handed')
+      call test%near(maxval(abs(matmul(r, e) - e)), 0.0_wp, round_off, 'a rotation keeps its axis')
       call test%near(maxval(abs(r - rotation_from_quaternion([cos(0.5_wp*angle), sin(0.5_wp*angle)*e]))), 0.0_wp, &
-                     round_off, 'the rotation of its quaternion')
+                     round_off, 'a rotation about an axis is that of its quaternion')
       ! angles up to twenty: roundings of the sum
       call test%near(maxval(abs(matmul(r, about_axis(e, other)) - about_axis(e, angle + other))), 0.0_wp, &
-                     5.0_wp*round_off, 'angles add')
+                     5.0_wp*round_off, 'the angles of rotations about one axis add')
       a = random_vector(random)
       call test%near(maxval(abs(matmul(r, a) - (cos(angle)*a + sin(angle)*cross(e, a) &
                                                 + (1.0_wp - cos(angle))*dot_product(e, a)*e))), 0.0_wp, round_off, &
-                     'Rodrigues'' formula')
-      call test%near(maxval(abs(about_z(angle) - about_axis([0.0_wp, 0.0_wp, 1.0_wp], angle))), 0.0_wp, round_off, 'about z')
+                     'a rotation of a vector satisfies Rodrigues'' formula')
+      call test%near(maxval(abs(about_z(angle) - about_axis([0.0_wp, 0.0_wp, 1.0_wp], angle))), 0.0_wp, round_off, &
+                     'a rotation about z is one about the axis z')
     end do
     call test%near(maxval(abs(matmul(about_z(0.5_wp*pi), identity(:, 1)) - identity(:, 2))), 0.0_wp, round_off, &
                    'a quarter turn about z brings x to y')
@@ -118,16 +122,18 @@ contains
           angle = 0.5_wp*pi*place
           angle = merge(angle - offset, angle + offset, place == 2)
           phi = rotation_vector(about_axis(e, angle))
-          call test%near(maxval(abs(phi - angle*e)), 0.0_wp, 4.0_wp*round_off, 'axis times angle')
+          call test%near(maxval(abs(phi - angle*e)), 0.0_wp, 4.0_wp*round_off, 'the rotation vector is axis times angle')
           if (place /= 1) cycle
           phi = rotation_vector(about_axis(e, angle - 2.0_wp*offset))
           if (angle < 2.0_wp*offset) phi = -phi   ! past zero the axis points the other way
           if (angle >= 2.0_wp*offset) &
-            call test%near(maxval(abs(phi - (angle - 2.0_wp*offset)*e)), 0.0_wp, 4.0_wp*round_off, 'below a right angle')
+            call test%near(maxval(abs(phi - (angle - 2.0_wp*offset)*e)), 0.0_wp, 4.0_wp*round_off, &
+                           'the rotation vector below a right angle is axis times angle')
         end do
       end do
       phi = rotation_vector(about_axis(e, pi + 0.3_wp))
-      call test%near(maxval(abs(phi + (pi - 0.3_wp)*e)), 0.0_wp, 4.0_wp*round_off, 'beyond a half turn: the shorter way back')
+      call test%near(maxval(abs(phi + (pi - 0.3_wp)*e)), 0.0_wp, 4.0_wp*round_off, &
+                     'the rotation vector beyond a half turn takes the shorter way back')
     end do
   end subroutine vector_of_rotation
 
@@ -144,10 +150,11 @@ contains
         angle = 1.7_wp*10.0_wp**k
         phi = rotation_vector(about_axis(e, angle))
         ! the skew part is a difference of two entries that hold 1 - cos beside sin: angle/2 roundings more
-        call test%is_true(maxval(abs(phi - angle*e)) <= round_off*angle, 'a small rotation, to its last digits')
+        call test%is_true(maxval(abs(phi - angle*e)) <= round_off*angle, &
+                          'the vector of a small rotation is right to its last digits')
       end do
     end do
-    call test%near(maxval(abs(rotation_vector(identity))), 0.0_wp, 0.0_wp, 'no rotation')
+    call test%near(maxval(abs(rotation_vector(identity))), 0.0_wp, 0.0_wp, 'the vector of no rotation is zero')
   end subroutine vector_of_small_rotation
 
   !> At 180 degrees the axis is known but for its sense.
@@ -171,8 +178,9 @@ contains
         end do
       end do
       phi = rotation_vector(r)
-      call test%near(norm2(phi), pi, round_off, 'a half turn')
-      call test%near(min(norm2(phi - pi*e), norm2(phi + pi*e)), 0.0_wp, 4.0_wp*round_off, 'about its axis')
+      call test%near(norm2(phi), pi, round_off, 'the vector of a half turn has the length pi')
+      call test%near(min(norm2(phi - pi*e), norm2(phi + pi*e)), 0.0_wp, 4.0_wp*round_off, &
+                     'the vector of a half turn lies along its axis')
     end do
   end subroutine half_turns
 
@@ -191,8 +199,9 @@ contains
       if (norm2(given) < 0.1_wp) cycle
       given = given/norm2(given)
       found = quaternion(rotation_from_quaternion(given))
-      call test%is_true(found(1) >= 0.0_wp, 'of two opposite quaternions the one with w >= 0')
-      call test%near(min(norm2(found - given), norm2(found + given)), 0.0_wp, 2.0_wp*round_off, 'quaternion of a rotation')
+      call test%is_true(found(1) >= 0.0_wp, 'of two opposite quaternions the one with w >= 0 is found')
+      call test%near(min(norm2(found - given), norm2(found + given)), 0.0_wp, 2.0_wp*round_off, &
+                     'the quaternion of a rotation is the one that made it')
     end do
   end subroutine quaternion_of_any_rotation
 
@@ -206,8 +215,9 @@ contains
       r = random_rotation(random)
       phi = rotation_vector(r)
       angle = norm2(phi)
-      call test%is_true(angle <= pi*(1.0_wp + epsilon(pi)), 'no angle exceeds a half turn')
-      call test%near(maxval(abs(about_axis(unit(phi), angle) - r)), 0.0_wp, 2.0_wp*round_off, 'back to the same rotation')
+      call test%is_true(angle <= pi*(1.0_wp + epsilon(pi)), 'no rotation vector is longer than a half turn')
+      call test%near(maxval(abs(about_axis(unit(phi), angle) - r)), 0.0_wp, 2.0_wp*round_off, &
+                     'a rotation vector leads back to its rotation')
       call test%near(maxval(abs(rotation_vector(transpose(r)) + phi)), 0.0_wp, 4.0_wp*round_off, &
                      'the opposite rotation has the opposite vector')
     end do

@@ -64,11 +64,13 @@ contains
       c = random_screw(random)
       x = random%symmetric()
       y = random%symmetric()
-      call test%near(maxval(abs(bracket(a, a))), 0.0_wp, round_off, 'a screw does not change itself')
-      call test%near(maxval(abs(bracket(a, b) + bracket(b, a))), 0.0_wp, round_off, 'exchange turns the sign')
-      call test%near(maxval(abs(bracket(a, x*b + y*c) - x*bracket(a, b) - y*bracket(a, c))), 0.0_wp, round_off, 'linear')
+      call test%near(maxval(abs(bracket(a, a))), 0.0_wp, round_off, 'the bracket of a screw with itself is zero')
+      call test%near(maxval(abs(bracket(a, b) + bracket(b, a))), 0.0_wp, round_off, &
+                     'the exchange of two screws turns the sign of their bracket')
+      call test%near(maxval(abs(bracket(a, x*b + y*c) - x*bracket(a, b) - y*bracket(a, c))), 0.0_wp, round_off, &
+                     'the bracket is linear')
       call test%near(maxval(abs(bracket(a, bracket(b, c)) + bracket(b, bracket(c, a)) + bracket(c, bracket(a, b)))), &
-                     0.0_wp, round_off, 'Jacobi''s identity')
+                     0.0_wp, round_off, 'the bracket satisfies Jacobi''s identity')
     end do
   end subroutine bracket_identities
 
@@ -90,10 +92,12 @@ contains
       velocity_b = a(4:6) + cross(a(1:3), point_b)
       in_a = moved_screw(x_ab, a)
       velocity_a = in_a(4:6) + cross(in_a(1:3), point_a)
-      call test%near(maxval(abs(velocity_a - matmul(x_ab%r, velocity_b))), 0.0_wp, round_off, 'velocity of a point')
-      call test%near(maxval(abs(moved_screw(inverse(x_ab), in_a) - a)), 0.0_wp, round_off, 'there and back')
+      call test%near(maxval(abs(velocity_a - matmul(x_ab%r, velocity_b))), 0.0_wp, round_off, &
+                     'a screw in another frame gives the same velocity of a point')
+      call test%near(maxval(abs(moved_screw(inverse(x_ab), in_a) - a)), 0.0_wp, round_off, &
+                     'a screw that is moved there and back is the same')
       call test%near(maxval(abs(moved_screw(compose(x_ab, x_bc), a) - moved_screw(x_ab, moved_screw(x_bc, a)))), 0.0_wp, &
-                     round_off, 'two changes of frame')
+                     round_off, 'two changes of frame are one change by the product of the poses')
       call test%near(maxval(abs(bracket(in_a, moved_screw(x_ab, b)) - moved_screw(x_ab, bracket(a, b)))), 0.0_wp, &
                      round_off, 'brackets change with their screws')
     end do
@@ -125,8 +129,8 @@ contains
       do k = 1, 6
         call derivatives_from_stencil(moved(k, :), h, first, second, error)
         ! roundings of numbers up to three, by 2/h and 8/h^2
-        call test%near(first, rate(k), 2.0e-13_wp, 'a bracket is a rate')
-        call test%near(second, rate_rate(k), 2.0e-11_wp, 'a bracket of brackets is the rate of the rate')
+        call test%near(first, rate(k), 2.0e-13_wp, 'a bracket is the rate of a moving screw')
+        call test%near(second, rate_rate(k), 2.0e-11_wp, 'a bracket of brackets is the second derivative of a moving screw')
       end do
     end do
   end subroutine bracket_as_rate
@@ -145,7 +149,7 @@ contains
       product(i, i) = product(i, i) - 1.0_wp
     end do
     call test%is_true(all(abs(product) <= round_off), why//': the basis is orthonormal')
-    call test%is_true(within(basis, rank, screws), why//': it spans the screws')
+    call test%is_true(within(basis, rank, screws), why//': the basis spans the screws')
   end subroutine check_basis
 
   !> Whether all columns are combinations of the first `rank` columns of an orthonormal basis.
@@ -170,7 +174,7 @@ contains
       do r = 1, min(n, 6)
         screws = matmul(random_matrix(random, 6, r), random_matrix(random, r, n))
         call orthonormal_basis(screws, tolerance, basis, rank)
-        call test%is_true(rank == r, 'rank of screws made of fewer')
+        call test%is_true(rank == r, 'screws made of fewer have the rank of these')
         call check_basis(test, basis, rank, screws, 'screws made of fewer')
       end do
     end do
@@ -184,9 +188,9 @@ contains
     screws(1, 2) = 1.0_wp
     screws(5, 2) = 1.0e-6_wp
     call orthonormal_basis(screws, 1.0e-5_wp, basis, rank)
-    call test%is_true(rank == 1, 'below the tolerance screws are the same')
+    call test%is_true(rank == 1, 'screws that differ by less than the tolerance are the same')
     call orthonormal_basis(screws, 1.0e-8_wp, basis, rank)
-    call test%is_true(rank == 2, 'above it they are not')
+    call test%is_true(rank == 2, 'screws that differ by more than the tolerance are not the same')
   end subroutine bases
 
   !> Check the algebra of some screws, written in a random frame: its dimension, that it holds the screws,
@@ -207,7 +211,7 @@ contains
       moved(:, i) = moved_screw(frame, screws(:, i))
     end do
     call generated_algebra(moved, tolerance, basis, rank)
-    call test%is_true(rank == dimension, why//': its dimension')
+    call test%is_true(rank == dimension, why//': the algebra has the right dimension')
     call check_basis(test, basis, rank, moved, why)
     closed = .true.
     do i = 1, rank
@@ -215,7 +219,7 @@ contains
         closed = closed .and. within(basis, rank, reshape(bracket(basis(:, i), basis(:, j)), [6, 1]))
       end do
     end do
-    call test%is_true(closed, why//': closed under the bracket')
+    call test%is_true(closed, why//': the algebra is closed under the bracket')
   end subroutine check_algebra
 
   !> The subgroups of rigid motions, from few of their joints and from many.
@@ -236,35 +240,39 @@ contains
       if (abs(dot_product(u, cross(v, w))) < 0.1_wp) cycle   ! too close to one plane
       if (norm2(q - p - 0.1_wp*z) < 0.3_wp) cycle            ! too close to one axis
 
-      call check_algebra(test, random, reshape(joint(u, p, 0.0_wp), [6, 1]), 1, 'one axis')
-      call check_algebra(test, random, reshape(joint(u, p, 0.3_wp), [6, 1]), 1, 'one helical axis')
-      call check_algebra(test, random, reshape([joint(z, p, 0.0_wp), joint(z, q, 0.0_wp)], [6, 2]), 3, 'planar, two axes')
+      call check_algebra(test, random, reshape(joint(u, p, 0.0_wp), [6, 1]), 1, 'screws of one axis')
+      call check_algebra(test, random, reshape(joint(u, p, 0.3_wp), [6, 1]), 1, 'screws of one helical axis')
+      call check_algebra(test, random, reshape([joint(z, p, 0.0_wp), joint(z, q, 0.0_wp)], [6, 2]), 3, 'planar screws of two axes')
       call check_algebra(test, random, reshape([joint(z, p, 0.0_wp), joint(z, q, 0.0_wp), joint(z, s, 0.0_wp), &
-                                                slide(x), slide(y)], [6, 5]), 3, 'planar, five joints')
-      call check_algebra(test, random, reshape([joint(z, p, 0.0_wp), slide(x + y)], [6, 2]), 3, 'planar, axis and slide')
+                                                slide(x), slide(y)], [6, 5]), 3, 'planar screws of five joints')
+      call check_algebra(test, random, reshape([joint(z, p, 0.0_wp), slide(x + y)], [6, 2]), 3, &
+                         'planar screws of an axis and a slide')
       call check_algebra(test, random, reshape([joint(z, p, 0.4_wp), joint(z, q, 0.4_wp)], [6, 2]), 3, &
                          'parallel screws of one pitch')
-      call check_algebra(test, random, reshape([joint(u, p, 0.0_wp), joint(v, p, 0.0_wp)], [6, 2]), 3, 'spherical, two axes')
+      call check_algebra(test, random, reshape([joint(u, p, 0.0_wp), joint(v, p, 0.0_wp)], [6, 2]), 3, &
+                         'spherical screws of two axes')
       call check_algebra(test, random, reshape([joint(u, p, 0.0_wp), joint(v, p, 0.0_wp), joint(w, p, 0.0_wp), &
-                                                joint(u + v, p, 0.0_wp)], [6, 4]), 3, 'spherical, four axes')
+                                                joint(u + v, p, 0.0_wp)], [6, 4]), 3, 'spherical screws of four axes')
       call check_algebra(test, random, reshape(slide(u), [6, 1]), 1, 'one translation')
       call check_algebra(test, random, reshape([slide(u), slide(v), slide(u - v)], [6, 3]), 2, 'translations in a plane')
       call check_algebra(test, random, reshape([slide(u), slide(v), slide(w), slide(x)], [6, 4]), 3, 'all translations')
-      call check_algebra(test, random, reshape([joint(u, p, 0.0_wp), slide(u)], [6, 2]), 2, 'cylindrical')
+      call check_algebra(test, random, reshape([joint(u, p, 0.0_wp), slide(u)], [6, 2]), 2, &
+                         'cylindrical screws of an axis and a slide')
       call check_algebra(test, random, reshape([joint(u, p, 0.2_wp), joint(u, p + 2.0_wp*u, -0.1_wp), slide(u)], [6, 3]), 2, &
-                         'cylindrical, with screws')
-      call check_algebra(test, random, reshape([joint(z, p, 0.0_wp), joint(z, q, 0.0_wp), slide(z)], [6, 3]), 4, 'Schoenflies')
+                         'cylindrical screws of helical axes')
+      call check_algebra(test, random, reshape([joint(z, p, 0.0_wp), joint(z, q, 0.0_wp), slide(z)], [6, 3]), 4, &
+                         'Schoenflies screws')
       call check_algebra(test, random, reshape([joint(z, p, 0.3_wp), joint(z, q, -0.2_wp)], [6, 2]), 4, &
                          'parallel screws of two pitches')
       call check_algebra(test, random, reshape([slide(u), slide(v), slide(w), joint(z, p, 0.1_wp)], [6, 4]), 4, &
                          'all translations and an axis')
       call check_algebra(test, random, reshape([joint(u, p, 0.0_wp), joint(v, p + w, 0.0_wp)], [6, 2]), 6, 'two skew axes')
       call check_algebra(test, random, reshape([joint(u, p, 0.0_wp), joint(v, p, 0.0_wp), slide(w)], [6, 3]), 6, &
-                         'spherical and a translation')
+                         'screws of two meeting axes and a translation')
       call check_algebra(test, random, reshape([joint(u, p, 0.1_wp), joint(v, q, 0.0_wp), joint(w, s, 0.0_wp)], [6, 3]), 6, &
-                         'general')
+                         'screws in general')
     end do
-    call check_algebra(test, random, reshape([real(wp) ::], [6, 0]), 0, 'no joints')
+    call check_algebra(test, random, reshape([real(wp) ::], [6, 0]), 0, 'screws of no joints')
   end subroutine algebras
 
   !> Split the space of some screws, written in a random frame: how many directions there are, that the slides belong to
@@ -289,14 +297,14 @@ contains
     end do
     call orthonormal_basis(moved, tolerance, basis, rank)
     call split_space(basis(:, :rank), turns, turning, slides, sliding, screwing)
-    call test%is_true(turning == n_turns .and. sliding == n_slides, why//': turnings and slides')
-    call test%is_true(screwing .eqv. by_screwing, why//': whether it screws')
+    call test%is_true(turning == n_turns .and. sliding == n_slides, why//': the numbers of rotations and translations are right')
+    call test%is_true(screwing .eqv. by_screwing, why//': a rotation that is tied to a translation is told from a free one')
     do i = 1, sliding
-      call test%near(norm2(slides(:, i)), 1.0_wp, round_off, why//': unit vectors')
-      call test%is_true(within(basis, rank, reshape(slide(slides(:, i)), [6, 1])), why//': a slide of the space')
+      call test%near(norm2(slides(:, i)), 1.0_wp, round_off, why//': the translations are unit vectors')
+      call test%is_true(within(basis, rank, reshape(slide(slides(:, i)), [6, 1])), why//': each translation belongs to the space')
     end do
     if (turning == 1) call test%near(abs(dot_product(turns(:, 1), matmul(frame%r, axis))), 1.0_wp, 10.0_wp*tolerance, &
-                                     why//': its axis')
+                                     why//': the axis is the given one')
   end subroutine check_split
 
   !> The directions about which the subgroups of rigid motions turn, and along which they slide.
@@ -310,23 +318,23 @@ contains
 
     do i = 1, 20
       p = random_vector(random)
-      call check_split(test, random, reshape(joint(z, p, 0.0_wp), [6, 1]), 1, 0, .false., z, 'one axis')
-      call check_split(test, random, reshape(joint(z, p, 0.3_wp), [6, 1]), 1, 0, .true., z, 'one helical axis')
-      call check_split(test, random, reshape([joint(z, p, 0.3_wp), slide(z)], [6, 2]), 1, 1, .false., z, 'cylindrical')
-      call check_split(test, random, reshape([joint(z, p, 0.0_wp), slide(x), slide(y)], [6, 3]), 1, 2, .false., z, 'planar')
+      call check_split(test, random, reshape(joint(z, p, 0.0_wp), [6, 1]), 1, 0, .false., z, 'screws of one axis')
+      call check_split(test, random, reshape(joint(z, p, 0.3_wp), [6, 1]), 1, 0, .true., z, 'screws of one helical axis')
+      call check_split(test, random, reshape([joint(z, p, 0.3_wp), slide(z)], [6, 2]), 1, 1, .false., z, 'cylindrical screws')
+      call check_split(test, random, reshape([joint(z, p, 0.0_wp), slide(x), slide(y)], [6, 3]), 1, 2, .false., z, 'planar screws')
       call check_split(test, random, reshape([joint(z, p, 0.4_wp), slide(x), slide(y)], [6, 3]), 1, 2, .true., z, &
                        'parallel screws of one pitch')
       call check_split(test, random, reshape([joint(z, p, 0.4_wp), slide(x), slide(y), slide(z)], [6, 4]), 1, 3, .false., z, &
-                       'Schoenflies')
+                       'Schoenflies screws')
       call check_split(test, random, reshape([joint(x, p, 0.0_wp), joint(y, p, 0.0_wp), joint(z, p, 0.0_wp)], [6, 3]), 3, 0, &
-                       .false., z, 'spherical')
-      call check_split(test, random, reshape([slide(x + p), slide(y)], [6, 2]), 0, 2, .false., z, 'two slides')
+                       .false., z, 'spherical screws')
+      call check_split(test, random, reshape([slide(x + p), slide(y)], [6, 2]), 0, 2, .false., z, 'screws of two slides')
     end do
     ! as simple as can be: slides along the axes of the frame where these lie in their plane
     call orthonormal_basis(reshape([joint(z, x + 2.0_wp*y, 0.0_wp), slide(x + y), slide(x - 2.0_wp*y)], [6, 3]), tolerance, &
                            basis, rank)
     call split_space(basis(:, :rank), turns, turning, slides, sliding, screwing)
-    call test%near(maxval(abs(abs(slides(:, 1)) - x)), 0.0_wp, round_off, 'planar: along x')
-    call test%near(maxval(abs(abs(slides(:, 2)) - y)), 0.0_wp, round_off, 'planar: along y')
+    call test%near(maxval(abs(abs(slides(:, 1)) - x)), 0.0_wp, round_off, 'the first translation of planar screws lies along x')
+    call test%near(maxval(abs(abs(slides(:, 2)) - y)), 0.0_wp, round_off, 'the second translation of planar screws lies along y')
   end subroutine split_spaces
 end program test_screw

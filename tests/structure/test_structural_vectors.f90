@@ -48,25 +48,26 @@ contains
 
     vectors = fig_1()
     call structure_from_vectors(vectors, structure, independent, findings, n_links=6, n_coordinates=7)
-    call tester%is_true(size(findings) == 0, 'Fig. 1 is good')
-    call tester%is_true(structure%n_links == 6 .and. structure%n_coordinates == 7, 'with 6 links and 7 coordinates')
+    call tester%is_true(size(findings) == 0, 'the vectors of Fig. 1 are good')
+    call tester%is_true(structure%n_links == 6 .and. structure%n_coordinates == 7, 'Fig. 1 has 6 links and 7 coordinates')
     call tester%is_true(all(structure%links == reshape([1, 6, 6, 5, 5, 3, 2, 3, 1, 2, 4, 1, 3, 4], [2, 7])), &
-                        'whose pairs join the links of the figure')
-    call tester%is_true(count(independent) == 1 .and. independent(5), 'and 5 independent')
+                        'the pairs of Fig. 1 join the links of the figure')
+    call tester%is_true(count(independent) == 1 .and. independent(5), 'coordinate 5 of Fig. 1 is the independent one')
     deallocate (vectors%nrw)
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(size(findings) == 0 .and. all(vectors%nrw == [0, 0, 0, 0, 1, 1, 1, 1, 2]), 'nrw is computed')
+    call tester%is_true(size(findings) == 0 .and. all(vectors%nrw == [0, 0, 0, 0, 1, 1, 1, 1, 2]), &
+                        'nrw of Fig. 1 is computed from the other vectors')
     ! not in the program's order and longer than needed: the first ring is cut into an open chain
     ! and a closed one
     vectors = some_vectors([1, 4, 3, 1, 2, 3], [0, 6, 7, 0, 5, 4], [1, 0, 0, 1, 1, 0])
     vectors%nws = [0, 4, 3, 0, 1, 2]
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(size(findings) == 0, 'another order and a longer set are good too')
-    call tester%is_true(all(vectors%nrw == [0, 0, 0, 0, 0, 1]), 'with one closure at its end')
+    call tester%is_true(size(findings) == 0, 'vectors in another order and of a longer set are good, too')
+    call tester%is_true(all(vectors%nrw == [0, 0, 0, 0, 0, 1]), 'nrw counts one closure at the end of the closed chain')
     chains = chains_of(vectors)
-    call tester%is_true(.not. chains(1)%closed .and. chains(2)%closed, 'an open chain and a closed one')
+    call tester%is_true(.not. chains(1)%closed .and. chains(2)%closed, 'the first chain is open and the second is closed')
     call tester%is_true(all(chains%start == 1) .and. all(chains%first == [2, 5]) .and. all(chains%last == [3, 6]), &
-                        'with the places of their steps')
+                        'each chain has the places of its steps')
   end subroutine good_vectors
 
   !> Exactly one finding, with this name, place and text in it.
@@ -83,14 +84,17 @@ contains
     integer :: i
 
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(size(findings) == 1, why//': one finding, not '//to_text(size(findings)))
+    call tester%is_true(size(findings) == 1, why//': there is one finding, not '//to_text(size(findings)))
     do i = 1, size(findings)
       if (size(findings) > 1) print '(2a)', '  ', findings(i)%message
     end do
     if (size(findings) == 0) return
-    call tester%is_true(findings(1)%name == name, why//': named '//trim(findings(1)%name))
-    call tester%is_true(all(findings(1)%index == [position, 0]), why//': placed at '//to_text(findings(1)%index))
-    call tester%is_true(index(findings(1)%message, text) > 0, why//': says: '//findings(1)%message)
+    call tester%is_true(findings(1)%name == name, &
+                        why//': the finding names '//name//', not '//trim(findings(1)%name))
+    call tester%is_true(all(findings(1)%index == [position, 0]), &
+                        why//': the finding tells the right place, not '//to_text(findings(1)%index))
+    call tester%is_true(index(findings(1)%message, text) > 0, &
+                        why//': the message holds the right part, and is: '//findings(1)%message)
   end subroutine one_finding
 
   subroutine wrong_sizes(tester)
@@ -114,13 +118,13 @@ contains
     call one_finding(tester, vectors, 'nrg', 0, 'at least one step', 'only the head')
     vectors = fig_1()
     call structure_from_vectors(vectors, structure, independent, findings, n_links=20, n_coordinates=7)
-    call tester%is_true(size(findings) == 1, 'too short for the number of links')
+    call tester%is_true(size(findings) == 1, 'vectors that are too short for the number of links have one finding')
     vectors = fig_1()
     call structure_from_vectors(vectors, structure, independent, findings, n_links=7, n_coordinates=8)
-    call tester%is_true(size(findings) == 2, 'a link and a coordinate that are said to be there are missing')
+    call tester%is_true(size(findings) == 2, 'a missing link and a missing coordinate are two findings')
     vectors = fig_1()
     call structure_from_vectors(vectors, structure, independent, findings, n_links=5, n_coordinates=6)
-    call tester%is_true(size(findings) == 2, 'a link and a coordinate more than are said to be there')
+    call tester%is_true(size(findings) == 2, 'a link too many and a coordinate too many are two findings')
   end subroutine wrong_sizes
 
   subroutine wrong_numbers(tester)
@@ -133,11 +137,13 @@ contains
     vectors = fig_1()
     vectors%nrg(1) = 2
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 1), 'the first link must be the frame')
+    call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 1), &
+                        'vectors that do not begin with the frame have a finding at position 1 of nrg')
     vectors = fig_1()
     vectors%nws(1) = 3
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 1), 'the first coordinate must be 0')
+    call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 1), &
+                        'vectors whose first coordinate is not 0 have a finding at position 1 of nws')
     vectors = fig_1()
     vectors%rdw(3) = 2
     call one_finding(tester, vectors, 'rdw', 3, 'rdw(3) = 2', 'neither 0 nor 1')
@@ -150,20 +156,24 @@ contains
     vectors = fig_1()
     vectors%nws(9) = 2
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 9), 'a coordinate used twice')
-    call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 0), 'and the other one missing')
+    call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 9), &
+                        'a coordinate that is used twice has a finding at its second place')
+    call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 0), &
+                        'a coordinate that is missing has a finding of nws')
     vectors = fig_1()
     vectors%nrg(8) = 1000000000
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 8), 'a mistyped link is out of range')
+    call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 8), 'a link out of range has a finding at its place')
     vectors = fig_1()
     vectors%nws(8) = -huge(1)
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 8), 'a negative coordinate')
+    call tester%is_true(any(findings%name == 'nws' .and. findings%index(1) == 8), &
+                        'a negative coordinate has a finding at its place')
     vectors = fig_1()
     vectors%nrw(3) = huge(1)
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(any(findings%name == 'nrw' .and. findings%index(1) == 3), 'a huge number of closures')
+    call tester%is_true(any(findings%name == 'nrw' .and. findings%index(1) == 3), &
+                        'a huge number of closures has a finding at its place')
   end subroutine wrong_numbers
 
   subroutine wrong_chains(tester)
@@ -192,7 +202,8 @@ contains
     type(finding_type), allocatable :: findings(:)
 
     call structure_from_vectors(vectors, structure, independent, findings)
-    call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 3), 'a step from a link to itself')
+    call tester%is_true(any(findings%name == 'nrg' .and. findings%index(1) == 3), &
+                        'a step from a link to itself has a finding at its place')
   end subroutine check_self_step
 
   subroutine wrong_closures(tester)

@@ -41,10 +41,10 @@ contains
 
     call structure_from_matrix(matrix_of(6, fig_1), 7, [5], structure, independent, findings)
     call tester%is_true(size(findings) == 0, 'the matrix of Fig. 1 is good')
-    call tester%is_true(structure%n_links == 6 .and. structure%n_coordinates == 7, 'it has 6 links and 7 coordinates')
+    call tester%is_true(structure%n_links == 6 .and. structure%n_coordinates == 7, 'Fig. 1 has 6 links and 7 coordinates')
     call tester%is_true(all(structure%links == reshape([1, 6, 5, 6, 3, 5, 2, 3, 1, 2, 1, 4, 3, 4], [2, 7])), &
-                        'its pairs join the links of the figure')
-    call tester%is_true(all(independent .eqv. only_5), 'its independent coordinate is 5')
+                        'the pairs of Fig. 1 join the links of the figure')
+    call tester%is_true(all(independent .eqv. only_5), 'coordinate 5 of Fig. 1 is the independent one')
     call structure_from_pairs(6, fig_1, [5], structure, independent, findings)
     call tester%is_true(size(findings) == 0 .and. all(structure%links == fig_1), 'the pairs of Fig. 1 are good')
     call structure_from_pairs(2, reshape([1, 2, 2, 1], [2, 2]), [integer ::], structure, independent, findings)
@@ -62,14 +62,17 @@ contains
     integer, intent(in) :: index_(2)                !< the place of the mistake in them
     integer :: i
 
-    call tester%is_true(size(findings) == 1, why//': one finding, not '//to_text(size(findings)))
+    call tester%is_true(size(findings) == 1, why//': there is one finding, not '//to_text(size(findings)))
     do i = 1, size(findings)
       if (size(findings) > 1) print '(2a)', '  ', findings(i)%message
     end do
     if (size(findings) == 0) return
-    call tester%is_true(findings(1)%name == name, why//': named '//trim(findings(1)%name))
-    call tester%is_true(all(findings(1)%index == index_), why//': placed at '//to_text(findings(1)%index))
-    call tester%is_true(index(findings(1)%message, text) > 0, why//': says: '//findings(1)%message)
+    call tester%is_true(findings(1)%name == name, &
+                        why//': the finding names '//name//', not '//trim(findings(1)%name))
+    call tester%is_true(all(findings(1)%index == index_), &
+                        why//': the finding tells the right place, not '//to_text(findings(1)%index))
+    call tester%is_true(index(findings(1)%message, text) > 0, &
+                        why//': the message holds the right part, and is: '//findings(1)%message)
   end subroutine one_finding
 
   subroutine bad_matrices(tester)
@@ -120,9 +123,10 @@ contains
     call structure_from_matrix(c, 8, [0, 5, 5], structure, independent, findings)
     call tester%is_true(size(findings) == 6, 'six faults at once give six findings')
     call structure_from_matrix(reshape([0], [1, 1]), 1, [integer ::], structure, independent, findings)
-    call tester%is_true(size(findings) == 2, 'a single link: too few links, and its coordinate is missing')
+    call tester%is_true(size(findings) == 2, &
+                        'a single link has two findings: there are too few links, and its coordinate is missing')
     call structure_from_matrix(reshape([integer ::], [0, 0]), 0, [integer ::], structure, independent, findings)
-    call tester%is_true(size(findings) == 2, 'no link and no coordinate at all')
+    call tester%is_true(size(findings) == 2, 'a structure without links and coordinates has two findings')
   end subroutine bad_matrices
 
   subroutine bad_pairs(tester)
@@ -154,7 +158,7 @@ contains
     call one_finding(tester, findings, 'links', [0, 0], 'cannot all be connected by 7 pairs', &
                      'a mistyped number of links')
     call structure_from_pairs(2, reshape([integer ::], [2, 0]), [integer ::], structure, independent, findings)
-    call tester%is_true(size(findings) == 2, 'no pairs: none at all, and link 2 is loose')
+    call tester%is_true(size(findings) == 2, 'a structure without pairs has two findings: there are no pairs, and link 2 is loose')
   end subroutine bad_pairs
 
   subroutine bad_independent(tester)

@@ -34,7 +34,7 @@ contains
     call structure_from_pairs(n, reshape(l, [2, size(l)/2]), cq, structure, independent, findings)
     call tester%is_true(size(findings) == 0, 'good pairs have no findings')
     call transform(structure, independent, vectors)
-    call tester%is_true(what_is_wrong(structure, independent, vectors) == '', 'vectors as defined')
+    call tester%is_true(what_is_wrong(structure, independent, vectors) == '', 'the vectors of good pairs are as defined')
   end subroutine transform_pairs
 
   subroutine fig_1(tester)
@@ -50,16 +50,16 @@ contains
     call structure_from_matrix(c, 7, [5], structure, independent, findings)
     call tester%is_true(size(findings) == 0, 'Fig. 1 has no findings')
     call transform(structure, independent, vectors)
-    call tester%is_true(same(vectors%nrg, [1, 2, 3, 4, 1, 1, 6, 5, 3]), 'nrg of Fig. 1 as printed')
-    call tester%is_true(same(vectors%nws, [0, 5, 4, 7, 6, 0, 1, 2, 3]), 'nws of Fig. 1 as printed')
-    call tester%is_true(same(vectors%rdw, [1, 1, 0, 0, 0, 1, 0, 0, 0]), 'rdw of Fig. 1 as printed')
+    call tester%is_true(same(vectors%nrg, [1, 2, 3, 4, 1, 1, 6, 5, 3]), 'nrg of Fig. 1 is as printed')
+    call tester%is_true(same(vectors%nws, [0, 5, 4, 7, 6, 0, 1, 2, 3]), 'nws of Fig. 1 is as printed')
+    call tester%is_true(same(vectors%rdw, [1, 1, 0, 0, 0, 1, 0, 0, 0]), 'rdw of Fig. 1 is as printed')
     call tester%is_true(same(vectors%nrw, [0, 0, 0, 0, 1, 1, 1, 1, 2]), &
-                        'nrw of Fig. 1 by its definition: link 1 at position 5 closes the first chain')
+                        'nrw of Fig. 1 is as defined: link 1 at position 5 closes the first chain')
     call tester%is_true(count(vectors%nws == 0) == 2, 'Fig. 1 has two chains')
     chains = chains_of(vectors)
-    call tester%is_true(all(chains%closed), 'both of them closed')
+    call tester%is_true(all(chains%closed), 'both chains of Fig. 1 are closed')
     call tester%is_true(all(chains%start == 1) .and. all(chains%first == [2, 7]) .and. all(chains%last == [5, 9]), &
-                        'and they stand where nws is not 0')
+                        'the chains of Fig. 1 stand where nws is not 0')
   end subroutine fig_1
 
   !> Cases worked out by hand from the rules.
@@ -68,34 +68,35 @@ contains
     type(structural_vectors_type) :: vectors
 
     call transform_pairs(tester, 2, [2, 1], [1], vectors)
-    call tester%is_true(same(vectors%nrg, [1, 2]) .and. same(vectors%nws, [0, 1]), 'one pair is one open chain')
+    call tester%is_true(same(vectors%nrg, [1, 2]) .and. same(vectors%nws, [0, 1]), 'one pair makes one open chain')
 
     call transform_pairs(tester, 2, [1, 2, 1, 2, 2, 1], [2], vectors)
     call tester%is_true(same(vectors%nrg, [1, 2, 1, 1, 2]) .and. same(vectors%nws, [0, 2, 1, 0, 3]), &
-                        'three pairs between two links: a chain of two of them, then a chain of one')
+                        'three pairs between two links make a chain of two of them, then a chain of one')
 
     call transform_pairs(tester, 5, [2, 1, 2, 3, 3, 4, 4, 5, 5, 3], [1, 2], vectors)
     call tester%is_true(same(vectors%nrg, [1, 2, 3, 4, 5, 3]) .and. same(vectors%nws, [0, 1, 2, 3, 4, 5]), &
                         'a ring at the end of two bridges is one chain that closes on itself')
-    call tester%is_true(same(vectors%nrw, [0, 0, 0, 0, 0, 1]), 'and counts one closure')
+    call tester%is_true(same(vectors%nrw, [0, 0, 0, 0, 0, 1]), 'a ring at the end of two bridges counts one closure')
 
     call transform_pairs(tester, 6, [1, 2, 2, 3, 3, 4, 4, 3, 2, 5, 5, 6, 6, 5], [1, 2, 5], vectors)
     call tester%is_true(same(vectors%nrg, [1, 2, 3, 4, 3, 2, 5, 6, 5]), &
-                        'of two rings equally far over bridges, the one by the lesser coordinate')
+                        'of two rings equally far over bridges, the one by the lesser coordinate comes first')
     call transform_pairs(tester, 6, [1, 2, 2, 3, 3, 4, 4, 3, 2, 5, 5, 6, 6, 5], [1, 5], vectors)
     call tester%is_true(same(vectors%nrg, [1, 2, 5, 6, 5, 2, 3, 4, 3]), &
-                        'of two rings over bridges, the one with fewer dependent coordinates on the way')
+                        'of two rings over bridges, the one with fewer dependent coordinates on the way comes first')
 
     call transform_pairs(tester, 5, [1, 2, 2, 3, 1, 4, 4, 5], [4], vectors)
     call tester%is_true(same(vectors%nrg, [1, 2, 3, 1, 4, 5]) .and. same(vectors%nws, [0, 1, 2, 0, 3, 4]), &
-                        'open chains by the least coordinate at the start')
+                        'open chains are ordered by the least coordinate at their start')
     call transform_pairs(tester, 5, [1, 2, 2, 3, 1, 4, 4, 5], [3], vectors)
-    call tester%is_true(same(vectors%nrg, [1, 4, 5, 1, 2, 3]), 'open chains by an independent coordinate first')
+    call tester%is_true(same(vectors%nrg, [1, 4, 5, 1, 2, 3]), &
+                        'an open chain that starts with an independent coordinate comes first')
 
     ! both rings have three dependent coordinates, the second one is longer by an independent one
     call transform_pairs(tester, 6, [1, 2, 2, 3, 3, 1, 1, 4, 4, 5, 5, 6, 6, 1], [7], vectors)
     call tester%is_true(same(vectors%nws, [0, 1, 2, 3, 0, 7, 6, 5, 4]), &
-                        'fewest coordinates first; the end with the independent coordinate starts')
+                        'the chain with the fewest coordinates comes first and starts at its end with the independent coordinate')
   end subroutine small_cases
 
   !> The rules taken literally give the same on small structures.

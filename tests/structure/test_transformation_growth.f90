@@ -36,10 +36,11 @@ contains
     call measure(tester, kind, 10000, 3, work_large, time_large, pairs_large)
     print '(a20,2(a,f8.1),2(a,f9.3))', kind_names(kind), 'operations a pair:', work_small/pairs_small, &
       ' and', work_large/pairs_large, '   ms:', 1000*time_small, ' and', 1000*time_large
-    call tester%is_true(work_large < most*work_small, trim(kind_names(kind))//': operations grow near-linearly')
+    call tester%is_true(work_large < most*work_small, &
+                        trim(kind_names(kind))//': the number of operations grows almost in proportion to the links')
     ! time is only a rough witness on a busy machine: twice the factor, and half a millisecond of slack
     call tester%is_true(time_large < 2*most*(time_small + 5.0e-4_wp), &
-                        trim(kind_names(kind))//': time grows near-linearly')
+                        trim(kind_names(kind))//': the time grows almost in proportion to the links')
   end subroutine check_growth
 
   !> Mean operations and least time of some structures.
