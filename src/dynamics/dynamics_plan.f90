@@ -279,6 +279,9 @@ contains
     logical :: bears(0:plan%n_coordinates)
     integer :: b, i, k, s
 
+    allocate (dynamics%closed(0:plan%n_coordinates), dynamics%carries_columns(0:plan%n_coordinates), source=.false.)
+    dynamics%closed(1:) = clusters%closed
+    dynamics%carries_columns(:) = dynamics%closed .and. dynamics%carries
     bears = .false.
     bears(dynamics%bodies%frame) = .true.
     bears(plan%frame_of(dynamics%loaded)) = .true.

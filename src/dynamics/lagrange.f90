@@ -20,7 +20,7 @@ module mech9_lagrange
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_block_motion, only: move_block
   use mech9_generalized_forces, only: collect_loads, collect_forces, add_generalized
-  use mech9_frame_motion, only: spread_all_accelerations
+  use mech9_frame_motion, only: spread_all_velocities, spread_all_accelerations
   implicit none
   private
   public :: find_motion, find_equations, check_inertia, complete_accelerations
@@ -128,6 +128,11 @@ contains
     do i = 1, size(plan%independent)
       state%ddq(plan%independent(i)) = 0.0_wp
     end do
+    if (size(plan%closures) == 0) then
+      call spread_all_velocities(plan, state)
+      call spread_all_accelerations(plan, state)
+      return
+    end if
     work%expects = .false.
     do b = 1, size(plan%blocks)
       call move_block(plan, dynamics, b, state, work, err)

@@ -58,6 +58,8 @@ module mech9_lagrange_types
     integer, allocatable :: parent_entry(:)            !< (entries) the same column in the parent frame, 0 for none
     integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame, or 0
     logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
+    logical, allocatable :: closed(:)                  !< (0:M) the frame belongs to a closed cluster
+    logical, allocatable :: carries_columns(:)         !< (0:M) both; columns of other frames are not used in an evaluation
     integer, allocatable :: acting(:)                  !< numbers of the loads that are not idle
     logical, allocatable :: load_links(:)              !< (N) whether a load acts on the link or reads its motion
     integer, allocatable :: loaded(:)                  !< numbers of these links but link 1, which does not move
@@ -138,7 +140,7 @@ module mech9_lagrange_types
       logical, intent(out) :: moved                         !< whether it was done
     end subroutine block_mover
 
-    !> Outward recursion of the Jacobian's entries over the frames of a block.
+    !> Outward recursion of the Jacobian's entries over the frames of a block that belong to its closed cluster.
     pure subroutine jacobian_spreader(self, plan, dynamics, block, state, all_frames, jacobian)
       import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, block_type, state_type, jacobian_type
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
@@ -146,7 +148,7 @@ module mech9_lagrange_types
       type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
       type(block_type), intent(in) :: block                 !< the block
       type(state_type), intent(in) :: state                 !< with the poses of the frames
-      logical, intent(in) :: all_frames                     !< also frames that carry nothing
+      logical, intent(in) :: all_frames                     !< also frames of closed clusters that carry nothing
       type(jacobian_type), intent(inout) :: jacobian        !< with `b` of the block's steps
     end subroutine jacobian_spreader
 
@@ -203,7 +205,7 @@ module mech9_lagrange_types
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
       type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
-      type(lagrange_work_type), intent(inout) :: work       !< with the columns of all frames; gets the results
+      type(lagrange_work_type), intent(inout) :: work       !< with the columns of closed clusters; gets the results
     end subroutine tree_weigher
 
     !> Sum over the bodies of half m v^2 of the centre and half omega . I omega.

@@ -5,9 +5,8 @@ module mech9_planar_dynamics
   use mech9_least_squares, only: least_squares_type, nearly_dependent
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, planar_motion_type
-  use mech9_planar_motion, only: to_plane
+  use mech9_planar_motion, only: to_plane, planar_accelerations
   use mech9_planar_closure, only: planar_bias_rates, planar_difference
-  use mech9_frame_motion, only: spread_accelerations
   use mech9_block_solver, only: block_work_type
   use mech9_planar_lagrange, only: planar_body_type, planar_body, spread_columns, add_bodies => add_inertia, &
     planar_wrench, add_force => add_link_force, planar_kinetic_energy
@@ -100,8 +99,8 @@ contains
     logical, intent(out) :: moved                      !< whether the block is conditioned well enough
 
     moved = conditioning >= nearly_dependent
-    if (moved) call move_in_plane(plan, dynamics, plan%blocks(b), self%blocks(b), state, work%jacobian, work%sides, &
-                                  work%blocks(b))
+    if (moved) call move_in_plane(plan, dynamics, plan%blocks(b), dynamics%first_closed(b), self%blocks(b), state, &
+                                  work%jacobian, work%sides, work%blocks(b))
   end subroutine move_regular_block
 
   !> Form the Jacobian of a block in planar arithmetic and factorize it.
@@ -116,12 +115,13 @@ contains
     call equations%factorize()
   end subroutine factorize_in_plane
 
-  !> Move a well conditioned block in planar arithmetic: each frame is moved once, then once more with the
-  !> accelerations of the dependent coordinates.
-  subroutine move_in_plane(plan, dynamics, block, flat, state, jacobian, sides, work)
+  !> Move a well conditioned block in planar arithmetic: each frame is moved once, then those of its closed cluster and beyond once
+  !> more with the accelerations of the dependent coordinates.
+  subroutine move_in_plane(plan, dynamics, block, first_closed, flat, state, jacobian, sides, work)
     type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics     !< the plan of dynamics
     type(block_type), intent(in) :: block                !< the block
+    integer, intent(in) :: first_closed                  !< its first step in a closed cluster
     type(planar_block_type), intent(in) :: flat          !< the loops of the block
     type(state_type), intent(inout) :: state             !< with poses and independent rates; gets the motion of the block
     type(jacobian_type), intent(inout) :: jacobian       !< with the entries of earlier blocks; gets those of this one
@@ -150,7 +150,7 @@ contains
       end do
     end do
     call move_frames(m, n_b, plan%planar%steps, block%first_step, block%last_step, dynamics%first, &
-                     dynamics%parent_entry, dynamics%carries, jacobian%b, state%dq, state%planar%pose, &
+                     dynamics%parent_entry, dynamics%carries_columns, jacobian%b, state%dq, state%planar%pose, &
                      state%planar%slide, jacobian%flat, state%planar%velocity, state%planar%acceleration)
     call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, work%right)
     call work%equations%solve(work%right, work%change)
@@ -158,22 +158,28 @@ contains
       k = block%coordinates(i)
       state%ddq(k) = -work%change(i)*plan%unit_of(k)
     end do
-    call spread_accelerations(plan, block, block%last_step, state)
+    call planar_accelerations(plan%planar, first_closed, block%last_step, state%dq, state%ddq, state%planar)
   end subroutine move_in_plane
 
-  !> Outward recursion of the Jacobian's entries over the frames of a block.
+  !> Outward recursion of the Jacobian's entries over the frames of a block that belong to its closed cluster.
   pure subroutine spread_jacobian(self, plan, dynamics, block, state, all_frames, jacobian)
     class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(block_type), intent(in) :: block              !< the block
     type(state_type), intent(in) :: state              !< with the poses of the frames
-    logical, intent(in) :: all_frames                  !< also frames that carry nothing
+    logical, intent(in) :: all_frames                  !< also frames of closed clusters that carry nothing
     type(jacobian_type), intent(inout) :: jacobian     !< with `b` of the block's steps
 
-    call spread_columns(plan%n_coordinates, size(jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
-                        dynamics%first, dynamics%parent_entry, dynamics%carries, all_frames, jacobian%b, &
-                        state%planar%pose, state%planar%slide, jacobian%flat)
+    if (all_frames) then
+      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
+                          dynamics%first, dynamics%parent_entry, dynamics%closed, jacobian%b, state%planar%pose, &
+                          state%planar%slide, jacobian%flat)
+    else
+      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
+                          dynamics%first, dynamics%parent_entry, dynamics%carries_columns, jacobian%b, state%planar%pose, &
+                          state%planar%slide, jacobian%flat)
+    end if
   end subroutine spread_jacobian
 
   !> Velocity of the closing frame relative to the target, as rows of the closure's equations, per unit rate of one
@@ -293,13 +299,18 @@ contains
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
-    type(lagrange_work_type), intent(inout) :: work    !< with the columns of all frames; gets the results
+    type(lagrange_work_type), intent(inout) :: work    !< with the columns of closed clusters; gets the results
     real(wp) :: whole(size(work%forces))
     integer :: i, m, n, n_entries
 
     m = plan%n_coordinates
     n = size(work%forces)
     n_entries = size(dynamics%column)
+    do i = 1, m
+      if (dynamics%closed(i) .or. dynamics%first(i) == dynamics%first(i + 1)) cycle
+      work%jacobian%flat(1, dynamics%first(i)) = plan%planar%steps(i)%turn
+      work%jacobian%flat(2:3, dynamics%first(i)) = merge(0.0_wp, state%planar%slide(:, i), plan%planar%steps(i)%turns)
+    end do
     associate (motion => state%planar, own => work%planar, columns => work%jacobian%flat)
       call set_applied(plan, dynamics, state, work)
       call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, own)

@@ -40,8 +40,8 @@ contains
     flat = planar_body_type(plan%frame_of(body%link), body%mass, centre(1:2), inertia(3, 3))
   end function planar_body
 
-  !> Outward recursion of the columns of frames first .. last.
-  pure subroutine spread_columns(m, n, steps, first, last, entries, parent_entry, carries, all_frames, b, f, slide, columns)
+  !> Outward recursion of the columns of those of the frames first .. last that are marked.
+  pure subroutine spread_columns(m, n, steps, first, last, entries, parent_entry, marked, b, f, slide, columns)
     integer, intent(in) :: m                         !< number of steps
     integer, intent(in) :: n                         !< number of entries
     type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
@@ -49,8 +49,7 @@ contains
     integer, intent(in) :: last                      !< to this one
     integer, intent(in) :: entries(0:m + 1)          !< first entry of each frame
     integer, intent(in) :: parent_entry(n)           !< the same column in the parent frame, 0 for none
-    logical, intent(in) :: carries(0:m)              !< a mass, a load or a later chain depends on the frame
-    logical, intent(in) :: all_frames                !< whether frames that carry nothing are included
+    logical, intent(in) :: marked(0:m)               !< the columns of the frame are found
     real(wp), intent(in) :: b(n)                     !< B, rate of the step's coordinate per unit rate of an independent one
     real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
     real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate
@@ -59,7 +58,7 @@ contains
     integer :: s
 
     do s = first, last
-      if (.not. (all_frames .or. carries(s))) cycle
+      if (.not. marked(s)) cycle
       x = f(3, s) - f(3, steps(s)%parent)
       y = f(4, s) - f(4, steps(s)%parent)
       call carry_columns(n, entries(s), entries(s + 1) - 1, parent_entry, steps(s), slide(:, s), x, y, b, columns)

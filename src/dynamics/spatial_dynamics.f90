@@ -87,20 +87,20 @@ contains
     moved = .false.
   end subroutine move_regular_block
 
-  !> Outward recursion of the Jacobian's entries over the frames of a block.
+  !> Outward recursion of the Jacobian's entries over the frames of a block that belong to its closed cluster.
   pure subroutine spread_jacobian(self, plan, dynamics, block, state, all_frames, jacobian)
     class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(block_type), intent(in) :: block              !< the block
     type(state_type), intent(in) :: state              !< with the poses of the frames
-    logical, intent(in) :: all_frames                  !< also frames that carry nothing
+    logical, intent(in) :: all_frames                  !< also frames of closed clusters that carry nothing
     type(jacobian_type), intent(inout) :: jacobian     !< with `b` of the block's steps
     real(wp) :: arm(3)
     integer :: s, e, p
 
     do s = block%first_step, block%last_step
-      if (.not. (all_frames .or. dynamics%carries(s))) cycle
+      if (.not. (dynamics%carries_columns(s) .or. all_frames .and. dynamics%closed(s))) cycle
       arm = state%p(:, s) - state%p(:, plan%steps(s)%parent)
       do e = dynamics%first(s), dynamics%first(s + 1) - 1
         jacobian%w(:, e) = jacobian%b(e)*state%axis_w(:, s)
@@ -302,13 +302,18 @@ contains
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
-    type(lagrange_work_type), intent(inout) :: work    !< with the columns of all frames; gets the results
+    type(lagrange_work_type), intent(inout) :: work    !< with the columns of closed clusters; gets the results
     real(wp) :: whole(size(work%forces))
     integer :: i, m, n, n_entries
 
     m = plan%n_coordinates
     n = size(work%forces)
     n_entries = size(dynamics%column)
+    do i = 1, m
+      if (dynamics%closed(i) .or. dynamics%first(i) == dynamics%first(i + 1)) cycle
+      work%jacobian%w(:, dynamics%first(i)) = state%axis_w(:, i)
+      work%jacobian%v(:, dynamics%first(i)) = state%axis_v(:, i)
+    end do
     associate (chains => self%articulated, own => work%articulated, jacobian => work%jacobian)
       call set_applied(plan, dynamics, state, work)
       call set_bodies(m, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, state%alpha, &
