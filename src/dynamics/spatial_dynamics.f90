@@ -10,8 +10,8 @@ module mech9_spatial_dynamics
     go_inward, go_outward
   use mech9_cluster_bodies, only: find_rest, eliminate_cluster, find_accelerations, move_cluster
   use mech9_tree_coefficients, only: accelerate_in_space, collect_in_space
-  use mech9_lagrange_types, only: frame_body_type, dynamics_plan_type, jacobian_type, lagrange_work_type, &
-    dynamics_arithmetic_type
+  use mech9_spatial_lagrange, only: spread_columns, add_body
+  use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
   implicit none
   private
   public :: spatial_dynamics_type, new_spatial_dynamics
@@ -96,21 +96,16 @@ contains
     type(state_type), intent(in) :: state              !< with the poses of the frames
     logical, intent(in) :: all_frames                  !< also frames of closed clusters that carry nothing
     type(jacobian_type), intent(inout) :: jacobian     !< with `b` of the block's steps
-    real(wp) :: arm(3)
-    integer :: s, e, p
 
-    do s = block%first_step, block%last_step
-      if (.not. (dynamics%carries_columns(s) .or. all_frames .and. dynamics%closed(s))) cycle
-      arm = state%p(:, s) - state%p(:, plan%steps(s)%parent)
-      do e = dynamics%first(s), dynamics%first(s + 1) - 1
-        jacobian%w(:, e) = jacobian%b(e)*state%axis_w(:, s)
-        jacobian%v(:, e) = jacobian%b(e)*state%axis_v(:, s)
-        p = dynamics%parent_entry(e)
-        if (p == 0) cycle
-        jacobian%w(:, e) = jacobian%w(:, e) + jacobian%w(:, p)
-        jacobian%v(:, e) = jacobian%v(:, e) + jacobian%v(:, p) + cross(jacobian%w(:, p), arm)
-      end do
-    end do
+    if (all_frames) then
+      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%steps, block%first_step, block%last_step, dynamics%first, &
+                          dynamics%parent_entry, dynamics%closed, jacobian%b, state%p, state%axis_w, state%axis_v, jacobian%w, &
+                          jacobian%v)
+    else
+      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%steps, block%first_step, block%last_step, dynamics%first, &
+                          dynamics%parent_entry, dynamics%carries_columns, jacobian%b, state%p, state%axis_w, state%axis_v, &
+                          jacobian%w, jacobian%v)
+    end if
   end subroutine spread_jacobian
 
   !> Velocity of the closing frame relative to the target, as rows of the closure's equations, per unit rate of one
@@ -150,52 +145,6 @@ contains
       call add_body(dynamics, dynamics%bodies(i), state, work)
     end do
   end subroutine add_inertia
-
-  !> Add the coefficients, velocity terms and weight of one body.
-  pure subroutine add_body(dynamics, body, state, work)
-    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
-    type(frame_body_type), intent(in) :: body          !< the body
-    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
-    type(lagrange_work_type), intent(inout) :: work    !< with the entries of the Jacobian; gets the sums
-    real(wp) :: arm(3), force(3), torque(3), j_c(3), momentum(3), spin(3)
-    integer :: f, e, d, p, r
-
-    f = body%frame
-    arm = turn(state%r(:, :, f), body%centre)
-    force = body%mass*(state%a(:, f) + cross(state%alpha(:, f), arm) &
-                       + cross(state%omega(:, f), cross(state%omega(:, f), arm)))
-    torque = 0.0_wp
-    if (.not. body%is_point) then
-      spin = inertia_times(body, state%r(:, :, f), state%omega(:, f))
-      torque = inertia_times(body, state%r(:, :, f), state%alpha(:, f)) + cross(state%omega(:, f), spin)
-    end if
-    do e = dynamics%first(f), dynamics%first(f + 1) - 1
-      p = dynamics%column(e)
-      j_c = work%jacobian%v(:, e) + cross(work%jacobian%w(:, e), arm)
-      work%velocity_terms(p) = work%velocity_terms(p) + dot_product(j_c, force) &
-                               + dot_product(work%jacobian%w(:, e), torque)
-      work%forces(p) = work%forces(p) + body%mass*dot_product(j_c, dynamics%gravity)
-      momentum = body%mass*j_c
-      spin = cross(arm, momentum)
-      if (.not. body%is_point) spin = spin + inertia_times(body, state%r(:, :, f), work%jacobian%w(:, e))
-      ! J_c,r = J_v,r + J_w,r x arm, so that J_c,r . m J_c,p splits into J_v,r and J_w,r
-      do d = e, dynamics%first(f + 1) - 1
-        r = dynamics%column(d)
-        work%coefficients(r, p) = work%coefficients(r, p) + dot_product(work%jacobian%v(:, d), momentum) &
-                                  + dot_product(work%jacobian%w(:, d), spin)
-      end do
-    end do
-  end subroutine add_body
-
-  !> The product of a body's inertia tensor about its centre, in fixed axes, and a vector.
-  pure function inertia_times(body, r, vector) result(product)
-    type(frame_body_type), intent(in) :: body   !< the body
-    real(wp), intent(in) :: r(3, 3)             !< rotation of its frame
-    real(wp), intent(in) :: vector(3)           !< in fixed axes
-    real(wp) :: product(3)                   !< in fixed axes
-
-    product = turn(r, turn(body%inertia, turn_back(r, vector)))
-  end function inertia_times
 
   !> Add the generalized forces (25) of the loads on one link.
   pure subroutine add_link_force(self, plan, dynamics, state, link, work)
