@@ -50,7 +50,7 @@ contains
     type(error_type), allocatable :: err
 
     call model%mechanism%pairs(k)%pair%evaluate(q, motion, err)
-    call tester%no_error(err, why)
+    call tester%no_error(err, why//': the pair has a motion')
     call tester%near(maxval(abs(motion%pose%r - r)), 0.0_wp, 4.0_wp*round_off, why//': rotation')
     call tester%near(maxval(abs(motion%pose%p - p)), 0.0_wp, 4.0_wp*round_off, why//': translation')
   end subroutine pose_is

@@ -54,7 +54,7 @@ contains
     type(error_type), allocatable :: err
 
     call read_text(text, request, err)
-    call tester%no_error(err, text)
+    call tester%no_error(err, text//': the request is accepted')
     if (allocated(err)) return
     call tester%is_true(size(request%curves) == size(x), text//': so many curves')
     if (size(request%curves) /= size(x)) return
@@ -120,7 +120,7 @@ contains
     type(error_type), allocatable :: err
 
     call read_text(text, request, err)
-    call tester%has_error(err, exit_usage, text)
+    call tester%has_error(err, exit_usage, text//': the request is refused')
     if (allocated(err)) call tester%is_true(index(err%message, words) > 0, text//': '//err%message)
   end subroutine check_refusal
 

@@ -40,7 +40,7 @@ contains
     real(wp) :: q(3), finer
 
     call drive%evaluate(t, q(1), q(2), q(3), err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': the drive has a value')
     finer = merge(1.0_wp, 1.0e-3_wp, drive%plain_values)
     call test%near(q(1), expected(1), 1.0e-12_wp*finer, why//': value')
     call test%near(q(2), expected(2), 1.0e-11_wp*finer, why//': rate')
