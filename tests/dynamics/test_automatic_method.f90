@@ -81,7 +81,8 @@ contains
     call test%is_true(by_turns%method_changes >= 4, &
                       'the method changes there and back as stiffness comes and fades')
     call test%is_true(by_turns%rate_evaluations < explicit%rate_evaluations .and. &
-                      by_turns%rate_evaluations < implicit%rate_evaluations, 'changes of the method cost less than either method alone')
+                      by_turns%rate_evaluations < implicit%rate_evaluations, &
+                      'changes of the method cost less than either method alone')
   end subroutine check_there_and_back
 
   !> Values within a step come from the method that made it, also after it was decided that the other one goes on.
