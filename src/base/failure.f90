@@ -18,7 +18,7 @@ module mech9_failure
   public :: failure_few_points, failure_points_order, failure_no_spline
   public :: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
   public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
-  public :: failure_accuracy, last_failure
+  public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -123,7 +123,11 @@ module mech9_failure
   !> A motion cannot be as accurate as was asked for: t (of the first position that is not), deviation (estimated error there),
   !> tolerance (allowed error).
   integer, parameter :: failure_accuracy = 50
-  integer, parameter :: last_failure = 50
+  !> The rates of some coordinates no longer determine a motion of the links: coordinates, t.
+  integer, parameter :: failure_gimbal_lock = 51
+  !> The angles of a ball joint could not be followed through gimbal lock: coordinates, t.
+  integer, parameter :: failure_lost_angles = 52
+  integer, parameter :: last_failure = 52
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

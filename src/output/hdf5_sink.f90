@@ -261,11 +261,14 @@ contains
     integer, intent(in) :: n_independent          !< how many coordinates are independent
     integer :: i
 
-    call self%events%start(2, 1 + n_independent, most_events, 0)
-    call self%events%add('events/time', [1], [integer ::], 'when other coordinates became the independent ones', 's', &
+    call self%events%start(3, 1 + 2*n_independent, most_events, 0)
+    call self%events%add('events/time', [1], [integer ::], 'when other coordinates were taken', 's', &
                          [character(len=5) ::])
     call self%events%add('events/independent', [(1 + i, i=1, n_independent)], [n_independent], &
                          'the independent coordinates from then on', '1', ['/events/time   ', '/events/freedom'], whole=.true.)
+    call self%events%add('events/replaced', [(1 + n_independent + i, i=1, n_independent)], [n_independent], &
+                         '1 where another angle is integrated in place of this coordinate, near gimbal lock', '1', &
+                         ['/events/time   ', '/events/freedom'], whole=.true.)
     call self%events%create(self%file)
     call self%file%put('events/freedom', [(i, i=1, n_independent)], 'number of the degree of freedom')
     call self%file%make_scale('events/freedom')
@@ -273,14 +276,18 @@ contains
   end subroutine begin_events
 
   !> Write the events of the run.
-  subroutine write_events(self, times, independent)
+  subroutine write_events(self, times, independent, replaced)
     class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
     real(wp), intent(in) :: times(:)              !< times of the events [s]
     integer, intent(in) :: independent(:, :)      !< (degrees of freedom, events) numbers of the independent coordinates then
-    real(wp) :: rows(1 + size(independent, 1), size(times))
+    logical, intent(in) :: replaced(:, :)         !< (degrees of freedom, events) another angle is integrated in its place
+    real(wp) :: rows(1 + 2*size(independent, 1), size(times))
+    integer :: n
 
+    n = size(independent, 1)
     rows(1, :) = times
-    rows(2:, :) = real(independent, wp)
+    rows(2:1 + n, :) = real(independent, wp)
+    rows(2 + n:, :) = merge(1.0_wp, 0.0_wp, replaced)
     call self%events%append_rows(self%file, rows)
   end subroutine write_events
 

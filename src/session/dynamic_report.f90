@@ -13,6 +13,7 @@ module mech9_dynamic_report
   use mech9_integration_methods, only: integration_methods
   use mech9_block_solver, only: work_count_type
   use mech9_integrator, only: integration_statistics_type
+  use mech9_simulation, only: coordinate_change_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each, begin_report, add_structure
   implicit none
@@ -47,8 +48,7 @@ contains
     if (simulation%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(simulation%conditioning%least, 3)//' at t = '//to_text(simulation%conditioning%t, 6)//' s'
     do i = 1, size(simulation%events)
-      write (unit, '(a)') 't = '//to_text(simulation%events(i)%t, 8)//' s: independent coordinates are now '// &
-        to_text(simulation%events(i)%independent)
+      write (unit, '(a)') 't = '//to_text(simulation%events(i)%t, 8)//' s: '//event_words(simulation%events, i)
     end do
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_dynamic_report
@@ -62,6 +62,33 @@ contains
     if (counts%method_changes > 0) &
       words = ' ('//to_text(counts%implicit_steps)//' by bdf; changes of the method: '//to_text(counts%method_changes)//')'
   end function by_bdf
+
+  !> An event in words.
+  pure function event_words(events, i) result(words)
+    type(coordinate_change_type), intent(in) :: events(:)   !< all events, in the order of time
+    integer, intent(in) :: i                                !< number of the one that is meant
+    character(len=:), allocatable :: words
+    integer, allocatable :: before(:)
+
+    allocate (before(0))
+    if (i > 1) before = events(i - 1)%replaced
+    words = ''
+    if (size(events(i)%replaced) > 0) then
+      words = 'near gimbal lock, other angles are integrated in place of coordinates '//to_text(events(i)%replaced)
+    else if (size(before) > 0) then
+      words = 'coordinates '//to_text(before)//' are integrated themselves again'
+    end if
+    if (same_numbers(before, events(i)%replaced)) words = 'independent coordinates are now '//to_text(events(i)%independent)
+  end function event_words
+
+  !> Whether two lists hold the same numbers.
+  pure logical function same_numbers(a, b)
+    integer, intent(in) :: a(:)   !< a list
+    integer, intent(in) :: b(:)   !< another list
+
+    same_numbers = size(a) == size(b)
+    if (same_numbers) same_numbers = all(a == b)
+  end function same_numbers
 
   !> The method in use.
   pure function method_of(simulation) result(name)
@@ -186,7 +213,7 @@ contains
     call json%end_array()
   end subroutine add_coefficients
 
-  !> Add the changes of the independent coordinates.
+  !> Add the changes of the independent coordinates, and of the angles that are integrated.
   subroutine add_events(json, simulation)
     type(json_type), intent(inout) :: json                 !< the report, inside its object
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
@@ -199,6 +226,11 @@ contains
       call json%begin_array('independent')
       do k = 1, size(simulation%events(i)%independent)
         call json%add(simulation%events(i)%independent(k))
+      end do
+      call json%end_array()
+      call json%begin_array('replaced')
+      do k = 1, size(simulation%events(i)%replaced)
+        call json%add(simulation%events(i)%replaced(k))
       end do
       call json%end_array()
       call json%end_object()
@@ -233,11 +265,13 @@ contains
   subroutine write_events(hdf5, simulation)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
-    integer :: independent(size(simulation%motion%system%plan%independent), size(simulation%events)), i
+    integer :: independent(size(simulation%motion%system%plan%independent), size(simulation%events)), k, i
+    logical :: replaced(size(independent, 1), size(independent, 2))
 
     do i = 1, size(simulation%events)
       independent(:, i) = simulation%events(i)%independent
+      replaced(:, i) = [(any(simulation%events(i)%replaced == independent(k, i)), k=1, size(independent, 1))]
     end do
-    call hdf5%write_events(simulation%events%t, independent)
+    call hdf5%write_events(simulation%events%t, independent, replaced)
   end subroutine write_events
 end module mech9_dynamic_report

@@ -4,8 +4,7 @@ module mech9_free_simulation
   use mech9_kinds, only: wp
   use mech9_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
-  use mech9_failure, only: failure_no_initial_position, failure_singular_block, failure_singular_start_block, &
-    failure_infinite_rate
+  use mech9_failure, only: failure_no_initial_position, failure_lost_angles
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -15,14 +14,14 @@ module mech9_free_simulation
   use mech9_conditioning, only: conditioning_type
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_integrator, only: integration_statistics_type
-  use mech9_integrated_vector, only: coordinate_of
-  use mech9_motion_system, only: set_motion_system
+  use mech9_integrated_vector, only: unpack_state
+  use mech9_motion_system, only: set_motion_system, find_coefficients
   use mech9_integrated_motion, only: integrated_motion_type
+  use mech9_stopped_motion, only: name_cause, name_cause_at_start
   use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
   implicit none
   private
   public :: free_simulation_type, new_free_simulation, assemble_free
-
 
   type, extends(simulation_type) :: free_simulation_type
     type(integrated_motion_type) :: motion
@@ -42,6 +41,8 @@ module mech9_free_simulation
     procedure, private :: step
     procedure, private :: look_between
     procedure, private :: change_coordinates
+    procedure, private :: change_angles
+    procedure, private :: continue_angles
   end type free_simulation_type
 
 contains
@@ -78,6 +79,7 @@ contains
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     logical, intent(in), optional :: pictures               !< the motion of all links is requested; not unless given
     type(plan_type) :: used
+    type(state_type) :: start
 
     simulation%model => model
     simulation%with_energies = model%request%output%energies
@@ -91,15 +93,19 @@ contains
     used = plan
     call leave_out_unrequested(used, simulation%requested)
     call request_planned(used, simulation%requested)
+    start = assembled
+    call simulation%motion%angles%begin(model, model%problem%partition, used, start, err)
+    if (allocated(err)) return
     allocate (simulation%motion%system)
-    call set_motion_system(model, model%problem%partition, used, assembled, simulation%motion%system, err)
+    call set_motion_system(model, model%problem%partition, used, start, simulation%motion%system, err)
     if (allocated(err)) then
-      if (allocated(err%failure)) then
-        if (err%failure%kind == failure_singular_block) err%failure%kind = failure_singular_start_block
-      end if
+      call name_cause_at_start(model, plan, assembled, err)
       return
     end if
     simulation%coefficients = simulation%motion%system%work%coefficients
+    if (.not. simulation%motion%angles%in_use()) return
+    call find_coefficients(model%mechanism, simulation%motion%angles%plan, assembled, simulation%coefficients, err)
+    if (.not. allocated(err)) call add_event(simulation)
   end subroutine new_free_simulation
 
   !> Begin to integrate. The position at the start is that of the system.
@@ -110,6 +116,7 @@ contains
 
     self%motion%t = t
     call self%motion%begin(err)
+    if (.not. allocated(err)) call self%motion%show_angles(err)
   end subroutine begin
 
   !> The motion at time t, by steps up to there or beyond.
@@ -120,6 +127,7 @@ contains
     logical :: found
 
     self%steps_onto = .false.
+    found = .false.
     associate (motion => self%motion)
       do
         do while ((t - motion%t)*sign(1.0_wp, self%end - self%model%request%time%start) > 0.0_wp)
@@ -129,14 +137,64 @@ contains
         end do
         if (.not. abs(t - motion%t) > 0.0_wp) exit
         call self%look_between(t, found)
-        if (found) return
+        if (found) exit
         self%steps_onto = .true.
         call motion%step_back(t, err)
         if (allocated(err)) return
       end do
-      call motion%system%move_to(t, motion%y, err)
+      if (.not. found) call motion%system%move_to(t, motion%y, err)
+      if (.not. allocated(err)) call self%continue_angles(t, err)
+      if (.not. allocated(err)) call motion%show_angles(err)
     end associate
   end subroutine go_to
+
+  !> Continue the angles of the data file to a time within the last step, over ways that are short enough, if others are
+  !> integrated. The system stands at this time before and after.
+  subroutine continue_angles(self, t, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                            !< time within the last step [s]
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    real(wp) :: part, to
+
+    associate (motion => self%motion, angles => self%motion%angles)
+      if (.not. angles%in_use()) return
+      if (angles%may_continue(motion%system%state)) then
+        call angles%continue_to(motion%system%state)
+        return
+      end if
+      part = 0.5_wp*(t - angles%t)
+      do while (abs(t - angles%t) > 0.0_wp)
+        to = angles%t + part
+        if (abs(part) >= abs(t - angles%t)) to = t
+        call stand_at(self, to, err)
+        if (allocated(err)) return
+        if (angles%may_continue(motion%system%state)) then
+          call angles%continue_to(motion%system%state)
+          part = 2.0_wp*part
+        else
+          part = 0.5_wp*(to - angles%t)
+        end if
+      end do
+    end associate
+  end subroutine continue_angles
+
+  !> Move the system to a time within the last step, or to its end.
+  subroutine stand_at(self, t, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                            !< the time [s]
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    logical :: found
+
+    if (.not. abs(t - self%motion%t) > 0.0_wp) then
+      call self%motion%system%move_to(t, self%motion%y, err)
+      return
+    end if
+    call self%look_between(t, found)
+    if (found) return
+    call raise(err, exit_singular, failure_lost_angles)
+    err%failure%t = t
+    err%failure%coordinates = self%motion%angles%replaced_coordinates()
+  end subroutine stand_at
 
   !> One accepted step towards t, with a change of coordinates before it where that helps. It may go beyond, but near
   !> a singular position of the independent coordinates, where the times that are asked for are ends of steps.
@@ -148,6 +206,8 @@ contains
     real(wp) :: farthest
     logical :: changed, is_regular
 
+    call self%change_angles(err)
+    if (allocated(err)) return
     associate (motion => self%motion)
       is_regular = motion%conditioning_here > doubtful_conditioning
       if (is_regular) motion%look_below = doubtful_conditioning
@@ -173,19 +233,9 @@ contains
       call self%change_coordinates(changed, err)
       if (changed .or. allocated(err)) return
     end if
-    call name_coordinate(self%motion%system%plan, failure)
+    call name_cause(self%motion%system, self%motion%t, self%motion%y, self%coefficients, failure)
     call move_alloc(failure, err)
   end subroutine step
-
-  !> Name the coordinate whose motion is not finite.
-  pure subroutine name_coordinate(plan, failure)
-    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
-    type(error_type), intent(inout) :: failure      !< of an integration; gets the coordinate, if it is of this kind
-
-    if (.not. allocated(failure%failure)) return
-    if (failure%failure%kind /= failure_infinite_rate) return
-    failure%failure%coordinates = [coordinate_of(plan, failure%failure%number)]
-  end subroutine name_coordinate
 
   !> Go on in better conditioned independent coordinates, if there are any; that is an event.
   subroutine change_coordinates(self, changed, err)
@@ -194,25 +244,44 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
     call self%motion%change_coordinates(self%requested, changed, err)
-    if (changed) call add_event(self%events, self%motion%t, self%motion%system%plan%independent)
+    if (changed) call add_event(self)
   end subroutine change_coordinates
 
-  !> One more event. By hand: an array constructor of them would leak (gfortran 12).
-  pure subroutine add_event(events, t, independent)
-    type(coordinate_change_type), allocatable, intent(inout) :: events(:)   !< in the order of time
-    real(wp), intent(in) :: t                                               !< time of the new one [s]
-    integer, intent(in) :: independent(:)                                   !< the independent coordinates from then on
-    type(coordinate_change_type), allocatable :: grown(:)
-    integer :: i
+  !> Go on with other angles in ball joints that are near gimbal lock; that is an event.
+  subroutine change_angles(self, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    logical :: changed
 
-    allocate (grown(size(events) + 1))
-    do i = 1, size(events)
-      grown(i)%t = events(i)%t
-      call move_alloc(events(i)%independent, grown(i)%independent)
+    associate (motion => self%motion)
+      if (size(motion%angles%joints) == 0) return
+      if (motion%angles%in_use()) then
+        call unpack_state(motion%system%plan, motion%t, motion%y, motion%system%state)
+        call self%continue_angles(motion%t, err)
+        if (allocated(err)) return
+      end if
+      call motion%change_angles(changed, err)
+    end associate
+    if (changed) call add_event(self)
+  end subroutine change_angles
+
+  !> One more event: the present choice of coordinates. By hand: an array constructor of them would leak (gfortran 12).
+  subroutine add_event(self)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    type(coordinate_change_type), allocatable :: grown(:)
+    integer :: i, n
+
+    n = size(self%events)
+    allocate (grown(n + 1))
+    do i = 1, n
+      grown(i)%t = self%events(i)%t
+      call move_alloc(self%events(i)%independent, grown(i)%independent)
+      call move_alloc(self%events(i)%replaced, grown(i)%replaced)
     end do
-    grown(size(grown))%t = t
-    grown(size(grown))%independent = independent
-    call move_alloc(grown, events)
+    grown(n + 1)%t = self%motion%t
+    grown(n + 1)%independent = self%motion%system%plan%independent
+    grown(n + 1)%replaced = self%motion%angles%replaced_coordinates()
+    call move_alloc(grown, self%events)
   end subroutine add_event
 
   !> The motion at a time within the last step: by the method's own interpolation, or by dense output from the ends of the last
@@ -249,14 +318,19 @@ contains
     end associate
   end subroutine look_between
 
-  !> The plan in the present independent coordinates, and the present state.
+  !> The plan in the present independent coordinates and the present state, in the angles of the data file.
   subroutine present(self, plan, state)
     class(free_simulation_type), intent(in), target :: self   !< the simulation
     type(plan_type), pointer, intent(out) :: plan             !< the plan that is executed
     type(state_type), pointer, intent(out) :: state           !< the present state
 
-    plan => self%motion%system%plan
-    state => self%motion%system%state
+    if (self%motion%angles%in_use()) then
+      plan => self%motion%angles%plan
+      state => self%motion%angles%state
+    else
+      plan => self%motion%system%plan
+      state => self%motion%system%state
+    end if
   end subroutine present
 
   !> Largest closure error of the present position [m].

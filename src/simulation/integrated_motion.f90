@@ -14,6 +14,7 @@ module mech9_integrated_motion
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_coordinate_choice, only: best_independent, carry_over
   use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_ball_angles, only: ball_angles_type
   use mech9_dense_output, only: dense_output_type
   use mech9_side_steps, only: side_steps_type, begin_integration
   implicit none
@@ -24,6 +25,7 @@ module mech9_integrated_motion
   !> It must not be copied: the integrator keeps hold of the system.
   type :: integrated_motion_type
     type(motion_system_type), pointer :: system => null()   !< owned
+    type(ball_angles_type) :: angles              !< of ball joints, as in the data file
     type(integrator_type) :: integrator
     type(dense_output_type) :: dense_output       !< motion within the last step
     type(side_steps_type) :: aside                !< steps to times at which dense output is not certain
@@ -36,6 +38,8 @@ module mech9_integrated_motion
   contains
     procedure :: begin
     procedure :: change_coordinates
+    procedure :: change_angles
+    procedure :: show_angles
     procedure :: insert
     procedure :: step_back
     procedure :: statistics
@@ -66,6 +70,7 @@ contains
     logical, intent(out) :: changed                        !< the independent coordinates are others now
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(motion_system_type), allocatable :: other
+    type(ball_angles_type) :: angles
     type(error_type), allocatable :: failure
     type(partition_type) :: partition
     type(plan_type) :: plan
@@ -84,7 +89,15 @@ contains
       return
     end if
     call self%system%partition%with_independent(self%system%model%mechanism%structure, independent, partition)
-    call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, plan, state, failure)
+    if (self%angles%in_use()) then
+      call self%show_angles(err)
+      if (allocated(err)) return
+      call carry_over(self%system%model%mechanism, partition, self%system%plan, self%angles%state, requested, plan, state, failure)
+    else
+      call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, plan, state, failure)
+    end if
+    if (gives_up(failure, err)) return
+    call angles%begin(self%system%model, partition, plan, state, failure)
     if (gives_up(failure, err)) return
     allocate (other)
     call set_motion_system(self%system%model, partition, plan, state, other, failure)
@@ -94,10 +107,53 @@ contains
       self%look_below = self%system%conditioning()/worthwhile_improvement
       return
     end if
+    self%angles = angles
     call replace_system(self, other)
     changed = .true.
     call self%begin(err)
   end subroutine change_coordinates
+
+  !> Go on with other angles in the ball joints whose present ones are near gimbal lock.
+  subroutine change_angles(self, changed, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion, to whose end the angles are continued
+    logical, intent(out) :: changed                        !< the angles are others now
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(motion_system_type), allocatable :: other
+    type(ball_angles_type) :: angles
+    type(error_type), allocatable :: failure
+    type(plan_type) :: plan
+    type(state_type) :: state
+
+    changed = .false.
+    if (.not. any(self%angles%in_doubt(self%y))) return
+    call self%system%settle(self%t, self%y, failure)
+    if (.not. allocated(failure)) call self%system%present(failure)
+    if (.not. allocated(failure)) call self%show_angles(failure)
+    if (gives_up(failure, err)) return
+    angles = self%angles
+    call angles%change(self%system%state, plan, state, failure)
+    if (gives_up(failure, err)) return
+    allocate (other)
+    call set_motion_system(self%system%model, self%system%partition, plan, state, other, failure)
+    if (gives_up(failure, err)) return
+    self%angles = angles
+    call replace_system(self, other)
+    changed = .true.
+    call self%begin(err)
+  end subroutine change_angles
+
+  !> Show the present state of the system in the angles of the data file, if others are integrated.
+  subroutine show_angles(self, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion, with angles continued to the present state
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp) :: dddq(self%system%plan%n_coordinates)
+
+    if (.not. self%angles%in_use()) return
+    call self%angles%continue_to(self%system%state)
+    dddq = 0.0_wp
+    if (self%angles%in_lock()) call self%system%third_derivatives(dddq, err)
+    if (.not. allocated(err)) call self%angles%show(self%system%state, dddq, err)
+  end subroutine show_angles
 
   !> Whether there is a failure. One that has nothing to do with the choice of coordinates is handed on.
   logical function gives_up(failure, err)

@@ -5,10 +5,11 @@
 !> half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: trusted_between_steps, trusted_closing
+  use mech9_tolerances, only: trusted_between_steps, trusted_closing, third_derivative_step
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_singular_step, failure_unclosed_step
   use mech9_partition, only: partition_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -24,7 +25,7 @@ module mech9_motion_system
   use mech9_frame_motion, only: place_all
   implicit none
   private
-  public :: motion_system_type, set_motion_system
+  public :: motion_system_type, set_motion_system, find_coefficients
 
 
   type, extends(ode_system_type) :: motion_system_type
@@ -46,6 +47,7 @@ module mech9_motion_system
     procedure :: close_near
     procedure :: move_to
     procedure :: resume
+    procedure :: third_derivatives
     procedure :: present
     procedure :: conditioning
     procedure :: signs
@@ -77,6 +79,24 @@ contains
     call system%present(err)
     if (.not. allocated(err)) call check_inertia(plan, system%dynamics, system%work, err)
   end subroutine set_motion_system
+
+  !> The coefficients of motion in a position.
+  subroutine find_coefficients(mechanism, plan, assembled, coefficients, err)
+    type(mechanism_type), intent(in) :: mechanism            !< the mechanism
+    type(plan_type), intent(in) :: plan                      !< its plan
+    type(state_type), intent(in) :: assembled                !< the position, with rates
+    real(wp), allocatable, intent(out) :: coefficients(:, :) !< a_pr, lower triangle [kg m^2, kg m, kg]
+    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(state_type) :: state
+
+    call make_dynamics_plan(mechanism, plan, dynamics)
+    work = new_lagrange_work(plan, dynamics)
+    state = assembled
+    call find_equations(mechanism, plan, dynamics, state, work, err)
+    if (.not. allocated(err)) coefficients = work%coefficients
+  end subroutine find_coefficients
 
   !> Length of the vector that is integrated.
   pure integer function size_of_vector(self)
@@ -195,6 +215,30 @@ contains
     if (.not. allocated(err)) call self%present(err)
   end subroutine move_to
 
+  !> The third derivatives of the independent coordinates at the present state, to about 1e-10, by a central difference of the
+  !> accelerations; those of the others are zero. The system stands at the same state afterwards.
+  subroutine third_derivatives(self, dddq, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system, with the motion of its state
+    real(wp), intent(out) :: dddq(:)                    !< (M) [rad/s^3, m/s^3]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), dimension(self%size_of_vector()) :: y, ydot
+    real(wp) :: t, dt
+
+    t = self%state%t
+    y = self%vector()
+    dddq = 0.0_wp
+    call pack_rates(self%plan, self%state, self%state%ddq(self%plan%independent), ydot)
+    dt = third_derivative_step/max(maxval(abs(self%state%dq)/self%plan%unit_of), &
+                                   sqrt(maxval(abs(self%state%ddq)/self%plan%unit_of)), tiny(dt)/epsilon(dt))
+    call self%move_to(t + dt, y + dt*ydot, err)
+    if (allocated(err)) return
+    dddq(self%plan%independent) = self%state%ddq(self%plan%independent)
+    call self%move_to(t - dt, y - dt*ydot, err)
+    if (allocated(err)) return
+    dddq(self%plan%independent) = (dddq(self%plan%independent) - self%state%ddq(self%plan%independent))/(2.0_wp*dt)
+    call self%move_to(t, y, err)
+  end subroutine third_derivatives
+
   !> Go on with the expectation that held before side steps.
   pure subroutine resume(self, expectation)
     class(motion_system_type), intent(inout) :: self    !< the motion system
@@ -217,8 +261,8 @@ contains
   end subroutine present
 
   !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.
-  real(wp) function conditioning(self)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
+  pure real(wp) function conditioning(self)
+    class(motion_system_type), intent(in) :: self   !< the motion system
     integer :: b
 
     conditioning = 1.0_wp

@@ -29,10 +29,11 @@ module mech9_simulation
     integer(long) :: crossings = 0           !< singular positions that were crossed
   end type simulation_statistics_type
 
-  !> An event: a change of the independent coordinates.
+  !> An event: a change of the independent coordinates, or of the angles that are integrated for ball joints.
   type :: coordinate_change_type
     real(wp) :: t = 0.0_wp                   !< time of the change [s]
     integer, allocatable :: independent(:)   !< the independent coordinates from then on, ascending
+    integer, allocatable :: replaced(:)      !< of these, angles for which others are integrated from then on, near gimbal lock
   end type coordinate_change_type
 
   !> Errors at the outputs of a motion, as other runs of it tell (mech9_accuracy).

@@ -14,7 +14,7 @@ module mech9_explanation
     failure_unclosed_step, failure_other_branch, failure_infinite_rate, failure_infinite_jacobian, failure_few_points, &
     failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
-    failure_interrupted, failure_accuracy
+    failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -228,6 +228,13 @@ contains
     case (failure_other_branch)
       text = 'with other independent coordinates the chains close on another branch: coordinate '// &
              to_text(failure%coordinates)//' would jump'
+    case (failure_gimbal_lock)
+      text = 'the motion comes to gimbal lock at t = '//to_text(failure%t, 10)//' s: there coordinates '// &
+             to_text(failure%coordinates)//' can move together without moving any mass, so that the forces do not determine '// &
+             'their accelerations. Turn about the axes in another order, or give the links between them inertia'
+    case (failure_lost_angles)
+      text = 'coordinates '//to_text(failure%coordinates)//' cannot be continued through gimbal lock at t = '// &
+             to_text(failure%t, 10)//' s; lower the tolerances, or turn about the axes in another order'
     case (failure_infinite_rate)
       if (allocated(failure%coordinates)) then
         text = 'the motion of coordinate '//to_text(failure%coordinates)

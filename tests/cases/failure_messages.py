@@ -31,6 +31,7 @@ UNREACHABLE = {
     'step_settings': 'an error of the program itself',
     'few_points': 'the reader of tables refuses the file',
     'points_order': 'the reader of tables refuses the line with its place',
+    'lost_angles': 'positions within a step that was made are always found',
     'not_started': 'the programs start each motion',
     'backwards': 'the times of a data file are in order',
     'interrupted': 'a signal leads to it: interrupted_run.py',
@@ -58,6 +59,12 @@ def structure(*independent):
 
 ROCKER = (1.2, 0.7, 0.9, 0.4)        # ground, crank, coupler, rocker; the crank cannot turn round
 FLAT = (1.0, 0.4, 1.0, 0.4)          # a parallelogram, in one line at 0 degrees
+# the second axis has turned by 90 degrees: the first and the third one are parallel
+BALL_JOINT = ("&mechanism angle_unit='deg' /\n&structure cq=1,2,3 /\n"
+              + ''.join(f"&pair coordinate={k}, links={k},{k + 1}, kind='revolute', axis={axis} /\n"
+                        f'&initial coordinate={k}, position={90 if k == 2 else 0} /\n'
+                        for k, axis in enumerate(('1,0,0', '0,1,0', '0,0,1'), 1))
+              + '&body link=4, mass=1, centre=0,0,0.1, inertia=1,1,1,0,0,0 /\n')
 BODY = '&body link=2, mass=1, centre=0.1,0,0 /\n'
 START = initial(1, 40, ', velocity=10')
 
@@ -269,6 +276,11 @@ def free_cases():
         ('no_inertia', four_bar(ROCKER, START), (), DATA,
          ['independent coordinate 1 has no inertia: no link with mass moves with it (apart from those that the independent '
           'coordinates before it move already); give a &body']),
+        # the load keeps the angles as they are
+        ('gimbal_lock', BALL_JOINT + "&load kind='coordinate', coordinate=1, damping=1 /\n", (), SINGULAR,
+         ['the motion comes to gimbal lock at t = 0 s: there coordinates 1, 3 can move together without moving any mass, so that '
+          'the forces do not determine their accelerations. Turn about the axes in another order, or give the links between them '
+          'inertia']),
         ('no_initial_position', four_bar(ROCKER, BODY), (), DATA,
          ['case.nml:3:1: the independent coordinate 1 of this pair has no initial position; give &initial coordinate=1, '
           'position=..., velocity=... /']),

@@ -231,6 +231,7 @@ def test_dynamics(session):
         checks.equal(file['events/time'].shape[0], 0, 'no change of coordinates')
         checks.true(file['diagnostics/steps'][()] > 0 and text(file['diagnostics/method']) != '', 'how it was integrated')
     test_events(session)
+    test_replaced_angles(session)
 
 
 def test_events(session):
@@ -247,6 +248,27 @@ def test_events(session):
         checks.equal(file['events/time'][:].tolist(), [event['t'] for event in events], 'when coordinates changed')
         checks.equal(file['events/independent'][:].tolist(), [event['independent'] for event in events], 'and to which')
         checks.true(np.all(np.diff(file['events/time'][:]) >= 0), 'in their order')
+        checks.true(not np.any(file['events/replaced'][:]), 'all coordinates are integrated themselves')
+
+
+def test_replaced_angles(session):
+    """Angles that others replace near gimbal lock: a top on a ball joint that comes near to it."""
+    checks = session.checks
+    with open(session.path('ball.nml'), 'w', encoding='utf-8') as file:
+        file.write("&mechanism /\n&structure cq=1,2,3 /\n&gravity acceleration=0,0,-9.81 /\n&time end=2, intervals=200 /\n"
+                   '&initial coordinate=1, position=0.4, velocity=3 /\n&initial coordinate=2, position=0.3, velocity=8 /\n'
+                   '&initial coordinate=3, position=0.2, velocity=7 /\n'
+                   '&body link=4, mass=1, centre=0,0,0.1, inertia=0.002,0.002,0.001,0,0,0 /\n')
+        for k, axis in enumerate(('1,0,0', '0,1,0', '0,0,1'), 1):
+            file.write(f"&pair coordinate={k}, links={k},{k + 1}, kind='revolute', axis={axis} /\n")
+    table, path = session.both(session.mech9d, 'ball.nml', '--report', 'run.json')
+    with open(session.path('run.json'), encoding='utf-8') as report:
+        events = json.load(report)['events']
+    checks.true(len(events) > 1 and events[0]['replaced'] == [1, 2, 3] and events[1]['replaced'] == [], 'forth and back', events)
+    with h5py.File(path, 'r') as file:
+        check_rows(checks, table, file, 'past gimbal lock')
+        replaced = [[int(k in event['replaced']) for k in (1, 2, 3)] for event in events]
+        checks.equal(file['events/replaced'][:].tolist(), replaced, 'which angles are replaced')
 
 
 def test_dead_point(session):

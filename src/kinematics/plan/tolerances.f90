@@ -17,7 +17,8 @@ module mech9_tolerances
     clear_pivot, dead_growth, crossing_pivot, crossing_growth, stuck_pivot, last_pivot, probe_move, longest_growth, &
     far_slide, escaped_slide, escaping_speed, escape_law, just_short_of_end, shorter_crossing, trusted_crossing, &
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
-    refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia
+    refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
+    doubtful_margin, short_way, third_derivative_step, locked, locked_together
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -215,6 +216,20 @@ module mech9_tolerances
   real(wp), parameter :: trusted_between_steps = 1.0e-3_wp
   !> Steepest slope between two neighbouring triple zeros, times their distance, against the height: 3.4.
   real(wp), parameter :: steepest_slope = 4.0_wp
+  !> The angles of a ball joint are replaced by others where the sine of the angle between their first and third axis is below
+  !> this. The others' sine is then above 0.9.
+  real(wp), parameter :: doubtful_margin = 0.4_wp
+  !> Longest way of a ball joint's third axis over which its angles are continued at once, in parts of its distance from gimbal
+  !> lock. They cannot change by half a turn while this is below 1; ways are bounded by twice the greater speed of both ends.
+  real(wp), parameter :: short_way = 0.5_wp
+  !> An integration that cannot go on stands in gimbal lock if the least singular value of the coefficients of motion is below
+  !> this part of that at the start: integrations come to 1e-6 rad of it, and the value is about the square of the distance.
+  real(wp), parameter :: locked = 1.0e-6_wp
+  !> Coordinates have a part in gimbal lock that is at least this part of the largest.
+  real(wp), parameter :: locked_together = 0.1_wp
+  !> Distance in time of two evaluations whose difference gives third derivatives, over the time that the motion takes for
+  !> 1 rad: the square of this and round-off over it are both the error, about 1e-10.
+  real(wp), parameter :: third_derivative_step = 1.0e-5_wp
 
 contains
 

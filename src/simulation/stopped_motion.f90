@@ -1,0 +1,141 @@
+!> The cause for which a free motion cannot begin or go on.
+!>
+!> In gimbal lock some coordinates can move together without moving any mass: the matrix of the coefficients of motion is
+!> singular, although each coordinate has inertia. Its entries are divided by the roots of the diagonal ones, so that units do
+!> not matter. Long chains have nearly singular matrices everywhere; so the least singular value counts against that of the
+!> start.
+module mech9_stopped_motion
+  use mech9_kinds, only: wp
+  use mech9_tolerances, only: locked, locked_together
+  use mech9_error, only: error_type, raise, exit_singular, exit_integrator
+  use mech9_failure, only: failure_gimbal_lock, failure_no_inertia, failure_infinite_rate, failure_singular_block, &
+    failure_singular_start_block
+  use mech9_lapack, only: dgesvd
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_frame_motion, only: place_all
+  use mech9_lagrange, only: find_equations
+  use mech9_integrated_vector, only: coordinate_of
+  use mech9_motion_system, only: motion_system_type, find_coefficients
+  implicit none
+  private
+  public :: name_cause, name_cause_at_start, find_lock
+
+contains
+
+  !> Complete the failure of an integration: the coordinate whose motion is not finite, or gimbal lock, if that is its cause.
+  subroutine name_cause(system, t, y, at_start, failure)
+    type(motion_system_type), intent(inout) :: system             !< the system; it may be moved to the end of the last step
+    real(wp), intent(in) :: t                                     !< end of the last step [s]
+    real(wp), intent(in) :: y(:)                                  !< the vector there
+    real(wp), intent(in) :: at_start(:, :)                        !< coefficients of motion at the start, lower triangle
+    type(error_type), allocatable, intent(inout) :: failure       !< of the integration; perhaps another one afterwards
+    type(error_type), allocatable :: err
+    logical :: is_locked(size(at_start, 1))
+
+    call name_coordinate(system%plan, failure)
+    if (.not. (failure%code == exit_integrator .or. is_of_kind(failure, failure_no_inertia))) return
+    call system%move_to(t, y, err)
+    if (allocated(err)) return
+    call find_equations(system%model%mechanism, system%plan, system%dynamics, system%state, system%work, err)
+    if (allocated(err)) return
+    is_locked = find_lock(system%work%coefficients, at_start)
+    if (any(is_locked)) call refuse_lock(pack(system%plan%independent, is_locked), t, failure)
+  end subroutine name_cause
+
+  !> Complete the failure of a start: a singular block, or gimbal lock where it seems that a coordinate has no inertia. Open
+  !> chains are in gimbal lock if they are not in another position.
+  subroutine name_cause_at_start(model, plan, assembled, failure)
+    type(model_type), intent(in) :: model                     !< the model
+    type(plan_type), intent(in) :: plan                       !< its plan
+    type(state_type), intent(in) :: assembled                 !< the start, with rates
+    type(error_type), allocatable, intent(inout) :: failure   !< of the start; perhaps another one afterwards
+    type(error_type), allocatable :: err
+    type(state_type) :: elsewhere
+    real(wp), allocatable :: at_start(:, :), others(:, :)
+    logical :: is_locked(size(plan%independent))
+    integer :: i
+
+    if (is_of_kind(failure, failure_singular_block)) failure%failure%kind = failure_singular_start_block
+    if (.not. is_of_kind(failure, failure_no_inertia) .or. size(plan%closures) > 0) return
+    call find_coefficients(model%mechanism, plan, assembled, at_start, err)
+    if (allocated(err)) return
+    elsewhere = assembled
+    elsewhere%q = [(assembled%q(i) + plan%unit_of(i)*(0.4_wp + 0.3_wp*sin(real(i, wp))), i=1, plan%n_coordinates)]
+    call place_all(plan, elsewhere, err)
+    if (.not. allocated(err)) call find_coefficients(model%mechanism, plan, elsewhere, others, err)
+    if (allocated(err)) return
+    is_locked = find_lock(at_start, others)
+    if (any(is_locked)) call refuse_lock(pack(plan%independent, is_locked), assembled%t, failure)
+  end subroutine name_cause_at_start
+
+  !> Whether a failure is of a kind.
+  pure logical function is_of_kind(failure, kind)
+    type(error_type), intent(in) :: failure   !< the failure
+    integer, intent(in) :: kind               !< one of the constants of mech9_failure
+
+    is_of_kind = .false.
+    if (allocated(failure%failure)) is_of_kind = failure%failure%kind == kind
+  end function is_of_kind
+
+  !> Replace a failure by gimbal lock.
+  subroutine refuse_lock(coordinates, t, failure)
+    integer, intent(in) :: coordinates(:)                     !< those that move together
+    real(wp), intent(in) :: t                                 !< when [s]
+    type(error_type), allocatable, intent(inout) :: failure   !< any; gimbal lock afterwards
+
+    call raise(failure, exit_singular, failure_gimbal_lock)
+    failure%failure%coordinates = coordinates
+    failure%failure%t = t
+  end subroutine refuse_lock
+
+  !> Name the coordinate whose motion is not finite.
+  pure subroutine name_coordinate(plan, failure)
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(error_type), intent(inout) :: failure      !< of an integration; gets the coordinate, if it is of this kind
+
+    if (is_of_kind(failure, failure_infinite_rate)) failure%failure%coordinates = [coordinate_of(plan, failure%failure%number)]
+  end subroutine name_coordinate
+
+  !> The coordinates that can nearly move together without moving any mass; none where there is no gimbal lock.
+  function find_lock(coefficients, at_start) result(is_locked)
+    real(wp), intent(in) :: coefficients(:, :)   !< coefficients of motion, lower triangle
+    real(wp), intent(in) :: at_start(:, :)       !< those of the start
+    logical :: is_locked(size(coefficients, 1))
+    real(wp) :: least, least_at_start, motion(size(coefficients, 1)), ignored(size(coefficients, 1))
+
+    call find_least(coefficients, least, motion)
+    call find_least(at_start, least_at_start, ignored)
+    is_locked = least < locked*least_at_start .and. abs(motion) > locked_together*maxval(abs(motion))
+  end function find_lock
+
+  !> The least singular value of the coefficients of motion with ones in their diagonal, and its vector.
+  subroutine find_least(coefficients, least, motion)
+    real(wp), intent(in) :: coefficients(:, :)   !< lower triangle
+    real(wp), intent(out) :: least               !< 0: singular, 1: best; 1 where a diagonal coefficient is not above zero
+    real(wp), intent(out) :: motion(:)           !< the coordinates' parts in it, in units that give each the same inertia
+    real(wp), dimension(size(motion), size(motion)) :: a, vectors
+    real(wp) :: root(size(motion)), values(size(motion)), work(10*size(motion)), unused(1, 1)
+    integer :: i, k, n, info
+
+    n = size(motion)
+    least = 1.0_wp
+    motion = 0.0_wp
+    do i = 1, n
+      if (.not. coefficients(i, i) > 0.0_wp) return
+      root(i) = sqrt(coefficients(i, i))
+    end do
+    do k = 1, n
+      do i = k, n
+        a(i, k) = coefficients(i, k)/(root(i)*root(k))
+        a(k, i) = a(i, k)
+      end do
+    end do
+    if (.not. all(abs(a) <= huge(a))) return
+    call dgesvd('N', 'A', n, n, a, n, values, unused, 1, vectors, n, work, size(work), info)
+    if (info /= 0) return
+    least = values(n)
+    motion = vectors(n, :)
+  end subroutine find_least
+end module mech9_stopped_motion
