@@ -3,12 +3,16 @@
 !> Small matrices, the rule in mechanisms, are factorized by the Householder loops of mech9_householder,
 !> which are faster than a call of LAPACK there; larger ones by LAPACK. Three well determined equations in three unknowns
 !> are solved by cofactors, which are faster still; their QR factors are found only where more than a solution is
-!> wanted. Nothing is allocated after `create`.
+!> wanted. Sparse matrices that are clearly regular are factorized by fronts (mech9_front_factors), without exchange of
+!> columns; their factors with column pivoting are found only where the pivots between the largest and the least are wanted.
+!> Nothing is allocated after `create`.
 module mech9_least_squares
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgeqp3, dormqr
   use mech9_householder, only: householder, reflect, back_substitute
   use mech9_cofactors, only: invert_by_cofactors
+  use mech9_front_plan, only: front_plan_type
+  use mech9_front_factors, only: front_factors_type, new_front_factors
   implicit none
   private
   public :: least_squares_type, nearly_dependent
@@ -17,6 +21,10 @@ module mech9_least_squares
   integer, parameter :: lapack_from = 24
   !> Columns with a pivot below this part of the largest are nearly dependent: round-off may determine their unknowns.
   real(wp), parameter :: nearly_dependent = 0.05_wp
+
+  !> A sparse matrix whose least pivot is above this part of the largest is regular, and may be factorized by fronts. Below, all
+  !> pivots are found as for full matrices, so that ranks and singular positions are judged by the same numbers.
+  real(wp), parameter :: clearly_regular = 1.0e-4_wp
 
   !> A matrix, its factors, and scratch of the right size.
   type :: least_squares_type
@@ -27,11 +35,13 @@ module mech9_least_squares
     real(wp), allocatable, private :: lengths(:)      !< of the pivots, not increasing
     logical :: by_cofactors = .false.           !< a is still the matrix, and `inverse` solves
     real(wp) :: inverse(3, 3) = 0.0_wp          !< of the matrix, where that is solved by cofactors
+    logical, private :: by_fronts = .false.     !< a is still the matrix, and `fronts` solves
+    type(front_factors_type), private :: fronts !< factors of a sparse matrix
     integer, allocatable, private :: order(:)
     real(wp), allocatable, private :: tau(:)
     real(wp), allocatable, private :: reciprocal(:)   !< of the pivots that are not lost in round-off
     integer, private :: safe_rank = 0                 !< columns that are independent beyond round-off
-    integer, private :: sign_of_det = 1               !< of the matrix, where cofactors or Householder loops give it
+    integer, private :: sign_of_det = 1   !< of the matrix, where cofactors, fronts or Householder loops give it
     real(wp), allocatable, private :: norms(:)
     real(wp), allocatable, private :: work(:)
   contains
@@ -49,13 +59,17 @@ module mech9_least_squares
 contains
 
   !> Make room for m equations in n unknowns.
-  pure subroutine create(self, m, n)
-    class(least_squares_type), intent(inout) :: self   !< gets room for the matrix and its factors
-    integer, intent(in) :: m                           !< number of equations
-    integer, intent(in) :: n                           !< number of unknowns
+  pure subroutine create(self, m, n, fronts)
+    class(least_squares_type), intent(inout) :: self       !< gets room for the matrix and its factors
+    integer, intent(in) :: m                               !< number of equations
+    integer, intent(in) :: n                               !< number of unknowns
+    type(front_plan_type), intent(in), optional :: fronts  !< of a sparse matrix, which is zero outside their groups
 
     self%m = m
     self%n = n
+    self%by_fronts = .false.
+    self%fronts = front_factors_type()
+    if (present(fronts)) self%fronts = new_front_factors(fronts)
     if (allocated(self%a)) deallocate (self%a, self%pivot, self%order, self%tau, self%reciprocal, self%norms, &
                                        self%lengths, self%work)
     allocate (self%a(m, n), self%tau(n), self%reciprocal(n), self%norms(n), self%lengths(min(m, n)), source=0.0_wp)
@@ -70,12 +84,19 @@ contains
 
     if (present(matrix)) call copy(self%m*self%n, matrix, self%a)
     self%by_cofactors = .false.
+    self%by_fronts = .false.
     if (self%m == 3 .and. self%n == 3) then
       call invert_by_cofactors(self%a, self%inverse, self%lengths, self%sign_of_det)
       self%by_cofactors = self%lengths(3) > nearly_dependent*self%lengths(1)
+    else if (self%fronts%plan%used) then
+      call self%fronts%factorize(self%a)
+      self%by_fronts = self%fronts%diagonal_ratio > clearly_regular
     end if
     if (self%by_cofactors) then
       self%safe_rank = 3
+    else if (self%by_fronts) then
+      self%safe_rank = self%n
+      self%sign_of_det = self%fronts%sign_of_det
     else
       call find_factors(self)
     end if
@@ -87,6 +108,7 @@ contains
     integer :: info, j
 
     self%by_cofactors = .false.
+    self%by_fronts = .false.
     if (self%n < lapack_from) then
       call householder(self%m, self%n, self%a, self%pivot, self%tau, self%sign_of_det, self%norms)
     else
@@ -113,8 +135,16 @@ contains
     real(wp), intent(out), optional :: remainder       !< length of the residual a x - b
     real(wp), intent(in), optional :: tolerance        !< part of the largest pivot, below which a column is not used
     real(wp), intent(in), optional :: round_off            !< error of x by round-off in a well determined column, in the unit of x
+    real(wp) :: conditioning
     integer :: j, k, info, rank
 
+    if (self%by_fronts) then
+      if (needs_pivots(self, tolerance, round_off)) call find_factors(self)
+    end if
+    if (self%by_fronts) then
+      call self%fronts%solve(b, x, remainder)
+      return
+    end if
     rank = self%safe_rank
     if (present(tolerance)) rank = min(rank, rank_within(self, tolerance))
     if (self%by_cofactors) then
@@ -135,7 +165,9 @@ contains
       call dormqr('L', 'T', self%m, 1, k, self%a, self%m, self%tau, b, self%m, self%work, size(self%work), info)
     end if
     if (present(remainder)) remainder = norm2(b(rank + 1:self%m))
-    if (present(round_off) .and. self%conditioning() < nearly_dependent) then
+    conditioning = 1.0_wp
+    if (present(round_off)) conditioning = self%conditioning()
+    if (conditioning < nearly_dependent) then
       call substitute_above_round_off(self, rank, round_off, b)
     else
       call back_substitute(self%m, rank, self%a, self%reciprocal, b)
@@ -145,6 +177,33 @@ contains
       x(self%pivot(j)) = b(j)
     end do
   end subroutine solve
+
+  !> Find the largest and the least pivot of a matrix that is factorized by fronts. If the matrix is not clearly regular, it is
+  !> factorized with column pivoting instead.
+  subroutine find_pivots(self)
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
+
+    if (.not. self%by_fronts .or. self%fronts%judged) return
+    call self%fronts%find_distances()
+    self%lengths(1) = self%fronts%largest
+    self%lengths(self%n) = self%fronts%least
+    if (.not. self%fronts%least > clearly_regular*self%fronts%largest) call find_factors(self)
+  end subroutine find_pivots
+
+  !> Whether a solution depends on the pivots between the largest and the least, which fronts do not give.
+  logical function needs_pivots(self, tolerance, round_off) result(needs)
+    class(least_squares_type), intent(inout) :: self   !< the matrix, factorized by fronts
+    real(wp), intent(in), optional :: tolerance        !< part of the largest pivot, below which a column is not used
+    real(wp), intent(in), optional :: round_off        !< nearly dependent columns may be left out
+
+    real(wp) :: least
+
+    least = 0.0_wp
+    if (present(tolerance)) least = tolerance
+    if (present(round_off)) least = max(least, nearly_dependent)
+    needs = .false.
+    if (least > 0.0_wp) needs = .not. self%conditioning() > least
+  end function needs_pivots
 
   !> Copy the elements of an array in the order of memory.
   pure subroutine copy(n, from, to)
@@ -175,12 +234,15 @@ contains
   end subroutine substitute_above_round_off
 
   !> Number of columns that are independent beyond round-off.
-  pure integer function rank(self, tolerance)
-    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
-    real(wp), intent(in), optional :: tolerance     !< against the largest; round-off unless given
+  integer function rank(self, tolerance)
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
+    real(wp), intent(in), optional :: tolerance        !< against the largest; round-off unless given
 
+    if (self%by_fronts .and. present(tolerance)) then
+      if (needs_pivots(self, tolerance)) call find_factors(self)
+    end if
     rank = self%safe_rank
-    if (present(tolerance)) rank = rank_within(self, tolerance)
+    if (present(tolerance) .and. .not. self%by_fronts) rank = rank_within(self, tolerance)
   end function rank
 
   !> Number of pivots above this part of the largest.
@@ -194,27 +256,30 @@ contains
   end function rank_within
 
   !> Length of the largest pivot: about the largest singular value; 0 where there is none.
-  pure real(wp) function largest_pivot(self)
-    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
+  real(wp) function largest_pivot(self)
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
 
+    call find_pivots(self)
     largest_pivot = 0.0_wp
     if (size(self%lengths) > 0) largest_pivot = self%lengths(1)
   end function largest_pivot
 
   !> Length of the least pivot: about the least singular value, somewhat above it; 0 where there are fewer
   !> equations than unknowns, or none.
-  pure real(wp) function least_pivot(self)
-    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
+  real(wp) function least_pivot(self)
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
 
+    call find_pivots(self)
     least_pivot = 0.0_wp
     if (self%n > 0 .and. self%m >= self%n) least_pivot = self%lengths(self%n)
   end function least_pivot
 
   !> Least against largest pivot: about the reciprocal condition number; 0 where columns depend on
   !> each other, 1 where there are none.
-  pure real(wp) function conditioning(self)
-    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
+  real(wp) function conditioning(self)
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
 
+    call find_pivots(self)
     conditioning = 1.0_wp
     if (self%n == 0) return
     conditioning = 0.0_wp
@@ -236,6 +301,11 @@ contains
     if (n == 0) return
     least = 0.0_wp
     if (self%rank() < n) return
+    call find_pivots(self)
+    if (self%by_fronts) then
+      least = self%fronts%least_singular_value()
+      return
+    end if
     if (self%by_cofactors) call find_factors(self)
     ! column pivoting leaves the left singular vector of the least singular value mostly along the last row of R; the
     ! small other numbers serve where it does not
@@ -294,7 +364,7 @@ contains
 
     sign = 1
     if (self%m /= self%n) return
-    if (self%n < lapack_from) then
+    if (self%n < lapack_from .or. self%by_fronts) then
       sign = self%sign_of_det
       return
     end if

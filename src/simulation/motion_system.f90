@@ -261,8 +261,8 @@ contains
   end subroutine present
 
   !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.
-  pure real(wp) function conditioning(self)
-    class(motion_system_type), intent(in) :: self   !< the motion system
+  real(wp) function conditioning(self)
+    class(motion_system_type), intent(inout) :: self   !< the motion system
     integer :: b
 
     conditioning = 1.0_wp

@@ -31,10 +31,12 @@ contains
       z = y
       call integrate(orbit, 'prince-dormand', 10.0_wp**(-k), 20.0_wp, y, explicit, err)
       call integrate(orbit, 'auto', 10.0_wp**(-k), 20.0_wp, z, by_turns, err)
-      call test%no_error(err, 'three orbits')
-      call test%is_true(maxval(abs(y - z)) <= 0.0_wp, 'the same end')
-      call test%is_true(by_turns%rate_evaluations == explicit%rate_evaluations, 'by the same evaluations')
-      call test%is_true(by_turns%method_changes == 0 .and. by_turns%implicit_steps == 0, 'without a change of the method')
+      call test%no_error(err, 'orbits are integrated by both methods')
+      call test%is_true(maxval(abs(y - z)) <= 0.0_wp, 'an orbit has the same end by the explicit method alone')
+      call test%is_true(by_turns%rate_evaluations == explicit%rate_evaluations, &
+                        'an orbit takes the evaluations of the explicit method alone')
+      call test%is_true(by_turns%method_changes == 0 .and. by_turns%implicit_steps == 0, &
+                        'an orbit takes no change of the method')
     end do
   end subroutine check_not_stiff
 
@@ -50,12 +52,14 @@ contains
     z = y
     call integrate(stiff, 'bdf', tolerance, 10.0_wp, y, implicit, err)
     call integrate(stiff, 'auto', tolerance, 10.0_wp, z, by_turns, err)
-    call test%no_error(err, 'stiff equations')
+    call test%no_error(err, 'stiff equations are integrated')
     ! the explicit method needs about 2e5
-    call test%is_true(by_turns%rate_evaluations < 1.2_wp*implicit%rate_evaluations + 300.0_wp, 'by hardly more evaluations')
-    call test%is_true(by_turns%method_changes == 1, 'with one change of the method')
-    call test%is_true(by_turns%implicit_steps > 0.8_wp*by_turns%steps, 'soon after the start')
-    call test%near(maxval(abs(z - cos(10.0_wp))), 0.0_wp, 10.0_wp*tolerance, 'the end is right')
+    call test%is_true(by_turns%rate_evaluations < 1.2_wp*implicit%rate_evaluations + 300.0_wp, &
+                      'stiff equations take hardly more evaluations than by the implicit method alone')
+    call test%is_true(by_turns%method_changes == 1, 'stiff equations take one change of the method')
+    call test%is_true(by_turns%implicit_steps > 0.8_wp*by_turns%steps, &
+                      'the method changes soon after the start of stiff equations')
+    call test%near(maxval(abs(z - cos(10.0_wp))), 0.0_wp, 10.0_wp*tolerance, 'the end of stiff equations is right')
   end subroutine check_stiff
 
   !> The explicit method goes on where the stiffness fades, the implicit one where it comes back.
@@ -71,11 +75,14 @@ contains
     call integrate(fading, 'bdf', 1.0e-8_wp, 40.0_wp*pi, y, implicit, err)
     y = 1.0_wp
     call integrate(fading, 'auto', 1.0e-8_wp, 40.0_wp*pi, y, by_turns, err)
-    call test%no_error(err, 'stiffness that fades')
-    call test%near(maxval(abs(y - 1.0_wp)), 0.0_wp, 1.0e-7_wp, 'the end is right')
-    call test%is_true(by_turns%method_changes >= 4, 'the method changes there and back')
+    call test%no_error(err, 'equations whose stiffness fades are integrated')
+    call test%near(maxval(abs(y - 1.0_wp)), 0.0_wp, 1.0e-7_wp, &
+                   'the end of equations whose stiffness fades is right')
+    call test%is_true(by_turns%method_changes >= 4, &
+                      'the method changes there and back as stiffness comes and fades')
     call test%is_true(by_turns%rate_evaluations < explicit%rate_evaluations .and. &
-                      by_turns%rate_evaluations < implicit%rate_evaluations, 'and costs less than either')
+                      by_turns%rate_evaluations < implicit%rate_evaluations, &
+                      'changes of the method cost less than either method alone')
   end subroutine check_there_and_back
 
   !> Values within a step come from the method that made it, also after it was decided that the other one goes on.
@@ -101,9 +108,9 @@ contains
       told = told + 1
       worst = max(worst, maxval(abs(between - cos(inside))))
     end do
-    call test%no_error(err, 'values within steps')
-    call test%is_true(told > 100, 'most steps are the implicit method''s')
-    call test%near(worst, 0.0_wp, 1.0e-7_wp, 'and tell them rightly')
+    call test%no_error(err, 'an integration with values within steps succeeds')
+    call test%is_true(told > 100, 'most steps are made by the implicit method')
+    call test%near(worst, 0.0_wp, 1.0e-7_wp, 'values within steps of the implicit method are right')
     call integrator%destroy()
   end subroutine check_inside_steps
 
@@ -126,9 +133,9 @@ contains
       call integrator%step(5.0_wp, t, y, err)
     end do
     counts = integrator%statistics()
-    call test%no_error(err, 'a restart')
-    call test%near(maxval(abs(y - cos(5.0_wp))), 0.0_wp, 1.0e-6_wp, 'it goes on rightly')
-    call test%is_true(counts%method_changes == 1, 'by the implicit method')
+    call test%no_error(err, 'an integration goes on after a restart')
+    call test%near(maxval(abs(y - cos(5.0_wp))), 0.0_wp, 1.0e-6_wp, 'the end after a restart is right')
+    call test%is_true(counts%method_changes == 1, 'the implicit method goes on after a restart')
     call integrator%destroy()
   end subroutine check_restart
 end program test_automatic_method

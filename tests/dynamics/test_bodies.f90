@@ -84,14 +84,14 @@ contains
     real(wp), parameter :: tolerance = 1.0e-13_wp
 
     call find(first, plan, dynamics, a, err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': the first equations are found')
     call find(second, plan, dynamics, b, err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': the second equations are found')
     call test%near(largest(a%coefficients - b%coefficients)/largest(a%coefficients), 0.0_wp, tolerance, &
-                   why//': coefficients')
+                   why//': the coefficients are equal')
     call test%near(maxval(abs(a%velocity_terms - b%velocity_terms))/maxval(abs(a%velocity_terms)), 0.0_wp, tolerance, &
-                   why//': velocity terms')
-    call test%near(maxval(abs(a%forces - b%forces))/maxval(abs(a%forces)), 0.0_wp, tolerance, why//': forces')
+                   why//': the velocity terms are equal')
+    call test%near(maxval(abs(a%forces - b%forces))/maxval(abs(a%forces)), 0.0_wp, tolerance, why//': the forces are equal')
   end subroutine check_same
 
   !> The largest entry of the lower triangle, which alone is kept.
@@ -166,7 +166,7 @@ contains
     call check_same(test, model, padded, 'bodies without mass, and one of the frame')
     call find(padded, plan, dynamics, work, err)
     call test%is_true(size(dynamics%bodies) == 1, 'one link with mass is one body in the plan')
-    call test%is_true(dynamics%carries(plan%frame_of(2)), 'its frame is kept')
+    call test%is_true(dynamics%carries(plan%frame_of(2)), 'the frame of the link with mass is kept')
     call test%is_true(.not. dynamics%carries(plan%closures(1)%closing), &
                       'the frame by which the loop closes has no mass of its own')
   end subroutine test_massless
@@ -183,16 +183,18 @@ contains
     call open_chain(model)
     call without_loads(model)
     call find(model, plan, dynamics, work, err)
-    call test%has_error(err, exit_data, 'no body at all')
-    call test%is_true(index(message_of(err), 'coordinate 1 ') > 0, 'the first coordinate is named: '//message_of(err))
+    call test%has_error(err, exit_data, 'a mechanism without bodies is refused')
+    call test%is_true(index(message_of(err), 'coordinate 1 ') > 0, &
+                      'the first coordinate without inertia is named: '//message_of(err))
     call add_body(model, 2, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
     call add_body(model, 3, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
     call find(model, plan, dynamics, work, err)
-    call test%has_error(err, exit_data, 'nothing on the last link')
-    call test%is_true(index(message_of(err), 'coordinate 3 ') > 0, 'the last coordinate is named: '//message_of(err))
+    call test%has_error(err, exit_data, 'a mechanism without mass on its last link is refused')
+    call test%is_true(index(message_of(err), 'coordinate 3 ') > 0, &
+                      'the last coordinate without inertia is named: '//message_of(err))
     call add_body(model, 4, 1.0_wp, [0.2_wp, 0.3_wp, 0.4_wp], identity)
     call find(model, plan, dynamics, work, err)
-    call test%no_error(err, 'a body on every link')
+    call test%no_error(err, 'a mechanism with a body on every link is accepted')
   end subroutine test_no_inertia
 
   !> Inertia without mass, turned by a torque on its coordinate: J ddq = M.
@@ -210,8 +212,8 @@ contains
     call add_body(model, 2, 0.0_wp, origin, 0.25_wp*identity)
     call add_load(model, coordinate_load_type(coordinate=1, force=3.0_wp))
     call find(model, plan, dynamics, work, err)
-    call test%no_error(err, 'flywheel')
-    call test%near(work%accelerations(1), 12.0_wp, 1.0e-15_wp, 'a flywheel: 3/0.25')
+    call test%no_error(err, 'the accelerations of a flywheel are found')
+    call test%near(work%accelerations(1), 12.0_wp, 1.0e-15_wp, 'the acceleration of a flywheel is 3/0.25')
   end subroutine test_flywheel
 
   !> A double pendulum of two point masses, angles q1 and q1 + q2 from the x axis, gravity along x:
@@ -235,14 +237,21 @@ contains
     call add_body(model, 2, m1, [l1, 0.0_wp, 0.0_wp], 0.0_wp*identity)
     call add_body(model, 3, m2, [l2, 0.0_wp, 0.0_wp], 0.0_wp*identity)
     call find(model, plan, dynamics, work, err)
-    call test%no_error(err, 'double pendulum')
-    call test%near(work%coefficients(1, 1), (m1 + m2)*l1**2 + m2*l2**2 + 2.0_wp*m2*l1*l2*c, 1.0e-15_wp, 'a11')
-    call test%near(work%coefficients(2, 1), m2*l2**2 + m2*l1*l2*c, 1.0e-15_wp, 'a12')
-    call test%near(work%coefficients(2, 2), m2*l2**2, 1.0e-15_wp, 'a22')
-    call test%near(work%velocity_terms(1), -m2*l1*l2*s*(2.0_wp*rate1*rate2 + rate2**2), 1.0e-15_wp, 'h1')
-    call test%near(work%velocity_terms(2), m2*l1*l2*s*rate1**2, 1.0e-15_wp, 'h2')
-    call test%near(work%forces(1), -(m1 + m2)*g*l1*sin(q1) - m2*g*l2*sin(q1 + q2), 1.0e-15_wp, 'Q1')
-    call test%near(work%forces(2), -m2*g*l2*sin(q1 + q2), 1.0e-15_wp, 'Q2')
+    call test%no_error(err, 'the accelerations of a double pendulum are found')
+    call test%near(work%coefficients(1, 1), (m1 + m2)*l1**2 + m2*l2**2 + 2.0_wp*m2*l1*l2*c, 1.0e-15_wp, &
+                   'the coefficient a11 of a double pendulum is that of its closed form')
+    call test%near(work%coefficients(2, 1), m2*l2**2 + m2*l1*l2*c, 1.0e-15_wp, &
+                   'the coefficient a12 of a double pendulum is that of its closed form')
+    call test%near(work%coefficients(2, 2), m2*l2**2, 1.0e-15_wp, &
+                   'the coefficient a22 of a double pendulum is that of its closed form')
+    call test%near(work%velocity_terms(1), -m2*l1*l2*s*(2.0_wp*rate1*rate2 + rate2**2), 1.0e-15_wp, &
+                   'the velocity term h1 of a double pendulum is that of its closed form')
+    call test%near(work%velocity_terms(2), m2*l1*l2*s*rate1**2, 1.0e-15_wp, &
+                   'the velocity term h2 of a double pendulum is that of its closed form')
+    call test%near(work%forces(1), -(m1 + m2)*g*l1*sin(q1) - m2*g*l2*sin(q1 + q2), 1.0e-15_wp, &
+                   'the force Q1 of a double pendulum is that of its closed form')
+    call test%near(work%forces(2), -m2*g*l2*sin(q1 + q2), 1.0e-15_wp, &
+                   'the force Q2 of a double pendulum is that of its closed form')
   end subroutine test_double_pendulum
 
   !> A spring of free length zero may shrink to nothing, where its damper alone is left; any other may not.
@@ -260,11 +269,12 @@ contains
     call add_body(model, 2, 2.0_wp, origin, 0.0_wp*identity)
     call add_load(model, spring_load_type(links=[1, 2], stiffness=5.0_wp, damping=3.0_wp))
     call find(model, plan, dynamics, work, err)
-    call test%no_error(err, 'a spring of free length zero')
+    call test%no_error(err, 'a spring of free length zero may shrink to nothing')
     ! the rate that `find` gives to a first coordinate is 0.6
-    call test%near(work%accelerations(1), -3.0_wp*0.6_wp/2.0_wp, 1.0e-15_wp, 'its damper alone: -3 v/2')
+    call test%near(work%accelerations(1), -3.0_wp*0.6_wp/2.0_wp, 1.0e-15_wp, &
+                   'a spring of length zero acts by its damper alone, -3 v/2')
     call add_load(model, spring_load_type(links=[1, 2], stiffness=5.0_wp, free_length=0.1_wp))
     call find(model, plan, dynamics, work, err)
-    call test%has_error(err, exit_integrator, 'a spring of free length 0.1 m shrunk to nothing')
+    call test%has_error(err, exit_integrator, 'a spring of free length 0.1 m that shrinks to nothing is refused')
   end subroutine test_spring_without_length
 end program test_bodies

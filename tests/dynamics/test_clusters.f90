@@ -66,16 +66,17 @@ contains
         call check_literally(flat, 'a structure')
       end if
       if (.not. planar) cycle
-      call test%is_true(flat%plan%planar%used, 'a structure in the plane')
+      call test%is_true(flat%plan%planar%used, 'a structure in the plane takes planar arithmetic')
       space%model = flat%model
       call prepare(space, .true., found)
-      call test%is_true(found, 'the same in space')
+      call test%is_true(found, 'the same structure in space has a position')
       call check_motion(space, 'the same in space')
       call test%near(maxval(abs(space%work%accelerations - flat%work%accelerations)) &
-                     /maxval(abs(flat%work%accelerations)), 0.0_wp, 1.0e-11_wp, 'both arithmetics')
+                     /maxval(abs(flat%work%accelerations)), 0.0_wp, 1.0e-11_wp, &
+                     'planar and spatial arithmetic give the same accelerations')
     end do
-    call test%is_true(compared > 60, 'most positions serve')
-    call test%is_true(literal == 12, 'some are compared with the literal equations')
+    call test%is_true(compared > 60, 'most of the random positions are regular')
+    call test%is_true(literal == 12, 'twelve positions are compared with the literal equations')
   end subroutine random_structures
 
   !> Twenty modules of an open link and a four-bar in series, then a ladder, in the plane and in space.
@@ -95,7 +96,7 @@ contains
       call add_ladder(random, structure%n_links, 3, structure)
       call finished(random, structure, this%model)
       call prepare(this, .false., found)
-      call test%is_true(found, 'modules in series: plan')
+      call test%is_true(found, 'modules in series have a position')
       if (found) call check_motion(this, 'modules in series')
     end do
   end subroutine series
@@ -111,13 +112,13 @@ contains
     call add_ladder(random, 1, 3, structure)
     call finished(random, structure, this%model)
     call prepare(this, .false., found)
-    call test%is_true(found, 'a ladder: plan')
+    call test%is_true(found, 'a ladder has a position')
     call test%is_true(.not. this%dynamics%articulated, 'a ladder on link 1 is one cluster')
     call check_motion(this, 'a ladder')
     call add_ladder(random, 1, 1, structure)
     call finished(random, structure, this%model)
     call prepare(this, .false., found)
-    call test%is_true(this%dynamics%articulated, 'two ladders are two')
+    call test%is_true(this%dynamics%articulated, 'two ladders are two clusters')
     call check_motion(this, 'two ladders')
   end subroutine one_cluster
 
@@ -137,15 +138,16 @@ contains
     call finished(random, structure, this%model)
     call prepare(this, .false., found)
     call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%has_error(err, exit_data, 'a four-bar without mass')
+    call test%has_error(err, exit_data, 'a four-bar without mass is refused')
     if (.not. allocated(err)) return
     call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%no_error(err, 'its coefficients')
+    call test%no_error(err, 'the coefficients of a four-bar without mass are found')
     call cholesky_factorize(size(this%plan%independent), this%work%coefficients, failed_at)
-    call test%is_true(failed_at > 0, 'they are singular')
+    call test%is_true(failed_at > 0, 'the coefficients of a four-bar without mass are singular')
     call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
     if (.not. allocated(err)) return
-    call test%is_true(all(err%failure%coordinates == this%plan%independent(failed_at)), 'the same coordinate')
+    call test%is_true(all(err%failure%coordinates == this%plan%independent(failed_at)), &
+                      'the error names the coordinate of the singular coefficients')
   end subroutine without_inertia
 
   !> Plan, and some rates.
@@ -182,12 +184,12 @@ contains
     integer :: i, n
 
     call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%no_error(err, why//': motion')
+    call test%no_error(err, why//': the motion is found')
     if (allocated(err)) return
     n = size(this%plan%independent)
     associate (ddq => this%work%accelerations)
       call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-      call test%no_error(err, why//': equations')
+      call test%no_error(err, why//': the equations are found')
       a = this%work%coefficients
       do i = 1, n
         a(i, i + 1:) = a(i + 1:, i)
@@ -196,7 +198,7 @@ contains
       terms = maxval(matmul(abs(a), abs(ddq)) + abs(this%work%forces) + abs(this%work%velocity_terms))
     end associate
     call test%is_true(terms > 1.0_wp, why//': there is something to compare')
-    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-13_wp/this%conditioning, why//': Lagrange''s equations')
+    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-13_wp/this%conditioning, why//': Lagrange''s equations hold')
     call complete_accelerations(this%plan, this%dynamics, this%work, this%state)
     do i = 1, size(this%plan%blocks)
       if (this%plan%blocks(i)%equations == 0) cycle
@@ -204,7 +206,7 @@ contains
       allocate (right(this%plan%blocks(i)%equations))
       call block_rates(this%plan, this%plan%blocks(i), 2, this%state, right)
       call test%near(maxval(abs(right))/(1.0_wp + maxval(abs(this%state%ddq))), 0.0_wp, 1.0e-12_wp/this%conditioning, &
-                     why//': closed chains')
+                     why//': the closed chains stay closed')
     end do
   end subroutine check_motion
 
@@ -224,7 +226,7 @@ contains
       left = matmul(literal%coefficients, ddq) - literal%forces + literal%velocity_terms
       terms = maxval(matmul(abs(literal%coefficients), abs(ddq)) + abs(literal%forces) + abs(literal%velocity_terms))
     end associate
-    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-8_wp, why//': (19) literally')
+    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-8_wp, why//': equation (19) taken literally holds')
   end subroutine check_literally
 
   subroutine check_memory(this)
@@ -238,6 +240,6 @@ contains
       if (allocated(err)) exit
     end do
     call test%is_true(calls == before, 'ten evaluations allocate nothing')
-    call test%no_error(err, 'evaluations')
+    call test%no_error(err, 'ten evaluations succeed')
   end subroutine check_memory
 end program test_clusters

@@ -53,14 +53,15 @@ contains
     call whole%problem%partition%with_independent(whole%mechanism%structure, independent, partition)
     call carry_over(model%mechanism, partition, plan, state, requested, other_plan, other_state, err)
     if (code == 0) then
-      call test%no_error(err, why)
+      call test%no_error(err, why//': the coordinates are accepted')
       if (allocated(err)) return
-      call test%is_true(all(other_plan%independent == pack([1, 2, 3, 4], independent)), why//': it is independent then')
+      call test%is_true(all(other_plan%independent == pack([1, 2, 3, 4], independent)), &
+                        why//': the chosen coordinates are the independent ones')
       ! both positions are closed to round-off over a conditioning of 0.1
       call test%near(maxval(abs(other_state%q - state%q)), 0.0_wp, 1.0e-13_wp, why//': the position stays')
       call test%is_true(all(abs([other_state%t - state%t, other_state%dq - state%dq]) <= 0.0_wp), why//': time and rates stay')
     else
-      call test%has_error(err, code, why)
+      call test%has_error(err, code, why//': the coordinates are refused')
     end if
   end subroutine choose
 

@@ -102,8 +102,8 @@ contains
     logical :: found
 
     call dense_output%find(system, t, y, found, err)
-    call test%no_error(err, why)
-    call test%is_true(found .eqv. expected, why//': whether it is found')
+    call test%no_error(err, why//': there is no error')
+    call test%is_true(found .eqv. expected, why//': the answer is right')
     ! the tolerance that is allowed for the worse of two polynomials
     if (found) call test%near(maxval(abs(y - [cos(t), -sin(t)])), 0.0_wp, &
                               system%model%request%solver%relative_tolerance + system%model%request%solver%absolute_tolerance, why)

@@ -54,7 +54,7 @@ contains
         h = 0.5_wp*h
       end do
       order = log(error(1)/error(2))/log(2.0_wp)
-      call test%near(order/m%order, 1.0_wp, 0.1_wp, 'order of '//m%name)
+      call test%near(order/m%order, 1.0_wp, 0.1_wp, 'the order is that of the method '//m%name)
     end associate
   end subroutine check_order
 
@@ -69,7 +69,7 @@ contains
     associate (m => integration_methods(method))
       call orbit_from(test, m%name, 0.0_wp, early, early_steps)
       call orbit_from(test, m%name, 2.0_wp**36, late, late_steps)
-      call test%is_true(maxval(abs(late - early)) <= 0.0_wp, trim(m%name)//': an orbit that begins late')
+      call test%is_true(maxval(abs(late - early)) <= 0.0_wp, trim(m%name)//': an orbit that begins late is the same')
       call test%is_true(late_steps == early_steps, trim(m%name)//': an orbit that begins late takes as many steps')
     end associate
   end subroutine check_late
@@ -126,7 +126,7 @@ contains
       end do
       slope = log10(first_error/last_error)/(least - 4)
       call test%is_true(slope > 0.75_wp .and. slope < 1.25_wp, m%name//': the error is proportional to the tolerance')
-      call test%is_true(last_error < 2.0e-8_wp, m%name//': error at the least tolerance')
+      call test%is_true(last_error < 2.0e-8_wp, m%name//': the error at the least tolerance is small')
     end associate
   end subroutine check_tolerances
 
@@ -141,7 +141,7 @@ contains
     call run(test, pendulum, [2.0_wp, 0.0_wp], pendulum_quarter_period(2.0_wp), method, 1.0e-10_wp, &
              [0.0_wp, -2.0_wp*sin(1.0_wp)], error, statistics)
     ! some ten to some hundred steps, each with an error of the tolerance, which grow little on the way
-    call test%is_true(error < 100.0e-10_wp, integration_methods(method)%name//': a pendulum''s quarter period')
+    call test%is_true(error < 100.0e-10_wp, integration_methods(method)%name//': a quarter period of a pendulum is right')
   end subroutine check_pendulum
 
   !> The error estimates of some methods see less than elsewhere where time alone acts; Fehlberg's sees
@@ -157,7 +157,7 @@ contains
     call run(test, push, [0.0_wp, 0.0_wp], 3.0_wp, method, 1.0e-8_wp, &
              [(1.0_wp - cos(60.0_wp))/400.0_wp, sin(60.0_wp)/20.0_wp], error, statistics)
     ! some hundred steps, each with an error of the tolerance
-    call test%is_true(error < 1.0e-6_wp, integration_methods(method)%name//': a force of time alone')
+    call test%is_true(error < 1.0e-6_wp, integration_methods(method)%name//': a force of time alone is integrated')
   end subroutine check_push
 
   !> Without a closed form: all methods come closer to each other as the tolerance falls.
@@ -174,7 +174,7 @@ contains
       do i = 1, size(integration_methods)
         y(:, i) = [1.0_wp, 0.0_wp]
         call integrate(swing, integration_methods(i)%name, 10.0_wp**(-k), 20.0_wp, y(:, i), statistics, err)
-        call test%no_error(err, 'a driven pendulum by '//integration_methods(i)%name)
+        call test%no_error(err, 'a driven pendulum is integrated by '//integration_methods(i)%name)
       end do
       spread = maxval(maxval(y, 2) - minval(y, 2))
       call test%is_true(spread < 0.01_wp*last_spread, 'the methods agree better at smaller tolerances')
@@ -198,7 +198,7 @@ contains
       stiff%has_jacobian = i == 2
       call run(test, stiff, [1.0_wp, 1.0_wp], 10.0_wp, bdf, 1.0e-8_wp, [cos(10.0_wp), cos(10.0_wp)], error, &
                statistics(i))
-      call test%is_true(error < 1.0e-7_wp, 'a stiff equation by backward differences')
+      call test%is_true(error < 1.0e-7_wp, 'a stiff equation is solved by backward differences')
       call test%is_true(statistics(i)%steps < 2000, 'a stiff equation does not hold backward differences up')
     end do
     call test%is_true(all(statistics%jacobian_evaluations > 0), 'Jacobians are counted, whether by differences or not')
@@ -223,7 +223,7 @@ contains
 
     y = start
     call integrate(system, integration_methods(method)%name, tolerance, t_end, y, statistics, err, equal_step)
-    call test%no_error(err, 'an integration by '//integration_methods(method)%name)
+    call test%no_error(err, 'an equation is integrated by '//integration_methods(method)%name)
     error = maxval(abs(y - expected))
   end subroutine run
 end program test_integrator

@@ -190,16 +190,17 @@ contains
 
     y = orbit_start(0.5_wp)
     call integrator%create(orbit, 'fehlbreg', 1.0e-6_wp, [1.0e-6_wp], 0.0_wp, y, err)
-    call test%has_error(err, exit_data, 'an unknown method')
-    call check_words(test, err, ['''fehlbreg''', '''fehlberg''', 'merson    '], 'an unknown method: which, and which there are')
+    call test%has_error(err, exit_data, 'an unknown method is refused')
+    call check_words(test, err, ['''fehlbreg''', '''fehlberg''', 'merson    '], &
+                     'the message about an unknown method names it and those there are')
     call integrator%create(orbit, '', 1.0e-6_wp, [1.0e-6_wp], 0.0_wp, y, err)
-    call test%has_error(err, exit_internal, 'one absolute tolerance for four variables')
+    call test%has_error(err, exit_internal, 'one absolute tolerance for four variables is refused')
     call integrator%create(orbit, '', 0.0_wp, spread(1.0e-6_wp, 1, 4), 0.0_wp, y, err)
-    call test%has_error(err, exit_data, 'a relative tolerance of zero')
+    call test%has_error(err, exit_data, 'a relative tolerance of zero is refused')
     call integrator%create(orbit, '', 1.0e-6_wp, spread(0.0_wp, 1, 4), 0.0_wp, y, err)
-    call test%has_error(err, exit_data, 'an absolute tolerance of zero')
+    call test%has_error(err, exit_data, 'an absolute tolerance of zero is refused')
     call integrator%create(orbit, '', 1.0e-6_wp, spread(1.0e-6_wp, 1, 4), 0.0_wp, y, err)
-    call test%no_error(err, 'no method named: the first one is taken')
+    call test%no_error(err, 'where no method is named the first one is taken')
     call integrator%destroy()
   end subroutine check_settings
 

@@ -199,7 +199,7 @@ contains
         y = [1.0_wp, 0.0_wp]
         call integrate(rotation, m%name, 10.0_wp**(-k), 20.0_wp, y, settled, err)
         settled_error = norm2(y - [cos(20.0_wp), sin(20.0_wp)])
-        call test%no_error(err, trim(m%name)//' with settling')
+        call test%no_error(err, trim(m%name)//' goes on with settling')
         call test%is_true(rotation%settled == settled%steps, trim(m%name)//' settles once per step')
         call test%near(norm2(y), 1.0_wp, 4.0_wp*epsilon(1.0_wp), trim(m%name)//' gives what was settled')
         call test%is_true(rotation%largest_correction < 1.0e2_wp*10.0_wp**(-k), &
@@ -239,7 +239,7 @@ contains
       end do
       corrected = integrator%statistics()
       error = norm2(y - [cos(20.0_wp), sin(20.0_wp)])
-      call test%no_error(err, trim(m%name)//' with corrections')
+      call test%no_error(err, trim(m%name)//' goes on with corrections')
       call test%is_true(error < 2.0_wp*free_error, trim(m%name)//' loses nothing by corrections')
       call test%is_true(corrected%steps <= 1.1_wp*free%steps + 2, trim(m%name)//' takes the same steps with corrections')
       call test%is_true(corrected%last_order >= free%last_order - 1, trim(m%name)//' keeps its order with corrections')
@@ -274,7 +274,7 @@ contains
       call integrator%step(7.0_wp, t, y, err)
     end do
     after = integrator%statistics()
-    call test%no_error(err, method//' after a restart')
+    call test%no_error(err, method//' goes on after a restart')
     ! a thousand steps at most, each with an error of 1e-9, of which the early ones grow some ten times
     call test%near(maxval(abs(y - orbit_at(0.5_wp, 2.0_wp))), 0.0_wp, 1.0e-5_wp, method//' goes on from a restart')
     call test%is_true(after%steps > before%steps .and. after%rate_evaluations > before%rate_evaluations .and. &
@@ -303,7 +303,7 @@ contains
       longest = max(longest, t - t_before)
       if (first < 0.0_wp) first = t
     end do
-    call test%no_error(err, method//' with limits')
+    call test%no_error(err, method//' goes on with limits')
     call test%near(first, 1.0e-5_wp, 1.0e-14_wp, method//' takes the first step it is told')
     call test%is_true(longest <= 0.02_wp*(1.0_wp + 1.0e-12_wp), method//' takes no step longer than it may')
     call integrator%destroy()

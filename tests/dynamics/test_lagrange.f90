@@ -53,29 +53,29 @@ contains
     integer :: i, n
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     call make_dynamics_plan(model%mechanism, plan, dynamics)
     work = new_lagrange_work(plan, dynamics)
     n = size(plan%independent)
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, n)]
     call find_equations(model%mechanism, plan, dynamics, state, work, err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': the equations are found')
     call literal_equations(model, plan, state, literal, err)
-    call test%no_error(err, why//': literally')
+    call test%no_error(err, why//': the literal equations are found')
     if (allocated(err)) return
     do i = 1, n
       call check_numbers(test, work%coefficients(i:, i), literal%coefficients(i:, i), &
-                         maxval(abs(literal%coefficients)), 1.0e-11_wp, why//': coefficients, (21)')
+                         maxval(abs(literal%coefficients)), 1.0e-11_wp, why//': the coefficients are those of (21)')
     end do
     call check_numbers(test, work%velocity_terms, literal%velocity_terms, maxval(abs(literal%velocity_terms)), &
-                       1.0e-9_wp, why//': velocity terms, (19)')
+                       1.0e-9_wp, why//': the velocity terms are those of (19)')
     call check_numbers(test, work%forces, literal%forces, maxval(abs(literal%forces)), 1.0e-11_wp, &
-                       why//': generalized forces, (25)')
+                       why//': the generalized forces are those of (25)')
     call test%near(kinetic_energy(dynamics, state), &
                    0.5_wp*dot_product(state%dq(plan%independent), &
                                       matmul(literal%coefficients, state%dq(plan%independent))), &
-                   1.0e-11_wp, why//': kinetic energy, (20)')
+                   1.0e-11_wp, why//': the kinetic energy is that of (20)')
   end subroutine compare
 
   !> Agreement against the largest number of its kind.

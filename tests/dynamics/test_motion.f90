@@ -117,7 +117,7 @@ contains
     integer :: i, k, side
 
     call begin(model, plan, dynamics, start, work, err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     allocate (q(plan%n_coordinates, -half_width:half_width))
     generic = work
@@ -130,7 +130,7 @@ contains
         end associate
         call close_chains(plan, state, err)
         if (.not. allocated(err)) call find_motion(model%mechanism, plan, dynamics, state, generic, err)
-        call test%no_error(err, why//': a position nearby')
+        call test%no_error(err, why//': a position nearby is found')
         if (allocated(err)) return
         q(:, i) = state%q
         energy(i) = kinetic_energy(dynamics, state)
@@ -141,8 +141,10 @@ contains
     do k = 1, plan%n_coordinates
       call derivatives_from_stencil(q(k, :), h, rate, acceleration, error)
       ! round-off 2/h and 8/h^2 times that of positions, some 1e-15
-      call test%near((start%dq(k) - rate)/scale, 0.0_wp, 1.0e-11_wp, why//': rates of all coordinates')
-      call test%near((start%ddq(k) - acceleration)/scale, 0.0_wp, 1.0e-9_wp, why//': accelerations of all coordinates')
+      call test%near((start%dq(k) - rate)/scale, 0.0_wp, 1.0e-11_wp, &
+                     why//': the rates of all coordinates are slopes of their positions')
+      call test%near((start%ddq(k) - acceleration)/scale, 0.0_wp, 1.0e-9_wp, &
+                     why//': the accelerations of all coordinates are slopes of their rates')
     end do
     call derivatives_from_stencil(energy, h, rate, acceleration, error)
     call test%near(rate/scale, dot_product(work%forces, start%dq(plan%independent))/scale, 1.0e-9_wp, &
@@ -164,7 +166,7 @@ contains
     integer :: i, p, side
 
     call begin(model, plan, dynamics, start, work, err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     generic = work
     do p = 1, size(plan%independent)
@@ -174,14 +176,14 @@ contains
           state%q(plan%independent(p)) = start%q(plan%independent(p)) + i*h
           call close_chains(plan, state, err)
           if (.not. allocated(err)) call find_motion(model%mechanism, plan, dynamics, state, generic, err)
-          call test%no_error(err, why//': a position nearby')
+          call test%no_error(err, why//': a position nearby is found')
           if (allocated(err)) return
           energy(i) = potential_energy(model%mechanism, plan, state, generic%view)
         end do
       end do
       call derivatives_from_stencil(energy, h, slope, unused, error)
       ! round-off 2/h of energies of some hundreds of J
-      call test%near(work%forces(p), -slope, 1.0e-9_wp, why//': forces from the potential energy')
+      call test%near(work%forces(p), -slope, 1.0e-9_wp, why//': the forces are slopes of the potential energy')
     end do
   end subroutine check_potential
 end program test_motion

@@ -61,7 +61,7 @@ contains
       call load_everything(random, tree%model)
       if (mod(trial, 2) == 0) call lighten(random, links, merge(1, 4, planar), tree%model)
       call prepare(tree, 'a tree')
-      call test%is_true(tree%plan%planar%used .or. .not. planar, 'a tree in the plane')
+      call test%is_true(tree%plan%planar%used .or. .not. planar, 'a tree in the plane takes planar arithmetic')
       call check_motion(tree, 'a tree')
       call check_memory(tree)
     end do
@@ -187,7 +187,7 @@ contains
 
     call make_plan(this%model%mechanism, this%model%problem%partition, this%model%problem%initial%position, this%plan, &
                    this%state, err)
-    call test%no_error(err, why//': plan')
+    call test%no_error(err, why//': there is a plan')
     call make_dynamics_plan(this%model%mechanism, this%plan, this%dynamics)
     this%work = new_lagrange_work(this%plan, this%dynamics)
     this%state%dq(this%plan%independent) = [(1.3_wp*cos(2.0_wp*i), i=1, size(this%plan%independent))]
@@ -203,17 +203,18 @@ contains
     real(wp) :: terms
     integer :: i, n
 
-    call test%is_true(this%dynamics%articulated, why//': articulated bodies')
+    call test%is_true(this%dynamics%articulated, why//': articulated bodies are taken')
     call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%no_error(err, why//': motion')
+    call test%no_error(err, why//': the motion is found')
     if (allocated(err)) return
     n = size(this%plan%independent)
-    call test%near(maxval(abs(this%work%coefficients)), 0.0_wp, 0.0_wp, why//': without the coefficients')
+    call test%near(maxval(abs(this%work%coefficients)), 0.0_wp, 0.0_wp, why//': the coefficients are not computed')
     ddq = this%work%accelerations
     call complete_accelerations(this%plan, this%dynamics, this%work, this%state)
-    call test%near(maxval(abs(this%state%ddq(this%plan%independent) - ddq)), 0.0_wp, 0.0_wp, why//': each to its coordinate')
+    call test%near(maxval(abs(this%state%ddq(this%plan%independent) - ddq)), 0.0_wp, 0.0_wp, &
+                   why//': each acceleration belongs to its coordinate')
     call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%no_error(err, why//': equations')
+    call test%no_error(err, why//': the equations are found')
     a = this%work%coefficients
     do i = 1, n
       a(i, i + 1:) = a(i + 1:, i)
@@ -221,7 +222,7 @@ contains
     left = matmul(a, ddq) - this%work%forces + this%work%velocity_terms
     terms = maxval(matmul(abs(a), abs(ddq)) + abs(this%work%forces) + abs(this%work%velocity_terms))
     call test%is_true(terms > 1.0_wp, why//': there is something to compare')
-    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-13_wp, why//': Lagrange''s equations')
+    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-13_wp, why//': Lagrange''s equations hold')
   end subroutine check_motion
 
   subroutine check_memory(this)
@@ -230,13 +231,13 @@ contains
     integer :: i, before
 
     before = calls
-    call test%is_true(before > 0, 'the counter counts')
+    call test%is_true(before > 0, 'the counter of allocations counts')
     do i = 1, 10
       call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
       if (allocated(err)) exit
     end do
     call test%is_true(calls == before, 'ten evaluations allocate nothing')
-    call test%no_error(err, 'evaluations')
+    call test%no_error(err, 'ten evaluations succeed')
   end subroutine check_memory
 
   !> Sixty links of 1 m in a row, turning about x and y by turns.
@@ -291,15 +292,16 @@ contains
     integer :: failed_at
 
     call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%has_error(err, exit_data, 'a coordinate without inertia')
+    call test%has_error(err, exit_data, 'a coordinate without inertia is refused')
     if (.not. allocated(err)) return
-    call test%is_true(index(message_of(err), 'coordinate 3 ') > 0, 'the last coordinate is named: '//message_of(err))
+    call test%is_true(index(message_of(err), 'coordinate 3 ') > 0, &
+                      'the last coordinate without inertia is named: '//message_of(err))
     call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, none)
-    call test%no_error(none, 'the coefficients')
+    call test%no_error(none, 'the coefficients of a coordinate without inertia are found')
     call cholesky_factorize(size(this%plan%independent), this%work%coefficients, failed_at)
-    call test%is_true(failed_at > 0, 'they are singular')
+    call test%is_true(failed_at > 0, 'the coefficients of a coordinate without inertia are singular')
     if (failed_at > 0) call test%is_true(all(err%failure%coordinates == this%plan%independent(failed_at)), &
-                                         'the same coordinate by the coefficients')
+                                         'the error names the coordinate of the singular coefficients')
   end subroutine check_refusal
 
   !> One closed cluster on link 1, in the plane or in space, needs its coefficients in any case.
@@ -308,10 +310,10 @@ contains
 
     call five_bar(closed%model)
     call prepare(closed, 'five-bar')
-    call test%is_true(.not. closed%dynamics%articulated, 'not in a five-bar')
+    call test%is_true(.not. closed%dynamics%articulated, 'articulated bodies are not taken for a five-bar')
     call general_loop(closed%model)
     call without_loads(closed%model)
     call prepare(closed, 'spatial loop')
-    call test%is_true(.not. closed%dynamics%articulated, 'not in a spatial loop')
+    call test%is_true(.not. closed%dynamics%articulated, 'articulated bodies are not taken for a spatial loop')
   end subroutine closed_chains
 end program test_open_chains

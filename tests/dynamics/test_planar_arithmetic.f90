@@ -132,20 +132,21 @@ contains
     model%mechanism%points(1) = point_type('P', model%mechanism%structure%n_links, [0.3_wp, -0.2_wp, 0.5_wp])
     call evaluate(model, .false., why, flat)
     call evaluate(model, .true., why, space)
-    call test%is_true((flat%planar .eqv. is_planar) .and. .not. space%planar, why//': is it planar')
-    call test%near(flat%conditioning, space%conditioning, 1.0e-12_wp, why//': conditioning')
+    call test%is_true((flat%planar .eqv. is_planar) .and. .not. space%planar, why//': planar mechanisms alone are found planar')
+    call test%near(flat%conditioning, space%conditioning, 1.0e-12_wp, why//': the conditioning is equal')
     tolerance = 1.0e-14_wp/space%conditioning
-    call test%is_true(tolerance < 1.0e-12_wp, why//': well conditioned')
-    call check(flat%q, space%q, tolerance, why//': positions')
-    call check(flat%dq, space%dq, tolerance, why//': rates')
+    call test%is_true(tolerance < 1.0e-12_wp, why//': the positions are well conditioned')
+    call check(flat%q, space%q, tolerance, why//': the positions are equal')
+    call check(flat%dq, space%dq, tolerance, why//': the rates are equal')
     tolerance = 10.0_wp*tolerance
-    call check(flat%ddq, space%ddq, tolerance, why//': accelerations')
-    call check(reshape(flat%points, [9]), reshape(space%points, [9]), tolerance, why//': a point')
+    call check(flat%ddq, space%ddq, tolerance, why//': the accelerations are equal')
+    call check(reshape(flat%points, [9]), reshape(space%points, [9]), tolerance, &
+               why//': the point has equal position, velocity and acceleration')
     call check(reshape(flat%coefficients, [size(flat%coefficients)]), &
-               reshape(space%coefficients, [size(space%coefficients)]), tolerance, why//': coefficients of motion')
-    call check(flat%velocity_terms, space%velocity_terms, tolerance, why//': velocity terms')
-    call check(flat%forces, space%forces, tolerance, why//': generalized forces')
-    call check(flat%energies, space%energies, tolerance, why//': energies')
+               reshape(space%coefficients, [size(space%coefficients)]), tolerance, why//': the coefficients of motion are equal')
+    call check(flat%velocity_terms, space%velocity_terms, tolerance, why//': the velocity terms are equal')
+    call check(flat%forces, space%forces, tolerance, why//': the generalized forces are equal')
+    call check(flat%energies, space%energies, tolerance, why//': the energies are equal')
   end subroutine compare
 
   !> The motion of a mechanism at its start, with some rates.
@@ -162,16 +163,16 @@ contains
     integer :: i
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space)
-    call test%no_error(err, why//': plan')
+    call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     call make_dynamics_plan(model%mechanism, plan, dynamics)
     work = new_lagrange_work(plan, dynamics)
     state%dq(plan%independent) = [(1.3_wp - 0.7_wp*i, i=1, size(plan%independent))]
     ! open chains have their accelerations without the equations
     call find_equations(model%mechanism, plan, dynamics, state, work, err)
-    call test%no_error(err, why//': equations')
+    call test%no_error(err, why//': the equations are found')
     call find_motion(model%mechanism, plan, dynamics, state, work, err)
-    call test%no_error(err, why//': motion')
+    call test%no_error(err, why//': the motion is found')
     if (allocated(err)) return
     call complete_accelerations(plan, dynamics, work, state)
     result%planar = plan%planar%used

@@ -19,16 +19,17 @@ program test_step_choice
       do j = 1, 3
         h_before = steps(j)
         chosen = next_step_length(h, h_before, law(constant, h, order), law(constant, h_before, order), order)
-        call test%near(chosen, 5.0_wp, 1.0e-13_wp, 'a step of another length before does not mislead')
+        call test%near(chosen, 5.0_wp, 1.0e-13_wp, 'a step of another length before it does not mislead the choice')
         ! the constant has doubled: half of that trend is to come, 2**(1/2) in the error
         chosen = next_step_length(h, h_before, law(2.0_wp*constant, h, order), law(constant, h_before, order), order)
-        call test%near(law(2.0_wp*sqrt(2.0_wp)*constant, chosen, order), 1.0_wp, 1.0e-12_wp, 'half of a trend goes on')
+        call test%near(law(2.0_wp*sqrt(2.0_wp)*constant, chosen, order), 1.0_wp, 1.0e-12_wp, &
+                       'half of the trend of the error goes on')
       end do
       chosen = next_step_length(-h, -h, law(constant, h, order), law(constant, h, order), order)
-      call test%near(chosen, -5.0_wp, 1.0e-13_wp, 'backward in time as forward')
+      call test%near(chosen, -5.0_wp, 1.0e-13_wp, 'a step backward in time is chosen as one forward')
     end do
     chosen = next_step_length(1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, order)
-    call test%is_true(chosen > 1.0_wp .and. chosen <= 1.0e11_wp, 'without any error the step grows, and stays finite')
+    call test%is_true(chosen > 1.0_wp .and. chosen <= 1.0e11_wp, 'a step without any error grows and stays finite')
   end do
   call test%finish()
 

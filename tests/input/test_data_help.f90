@@ -36,7 +36,7 @@ contains
     call read_source('data-file.md', expected, err)
     call tester%is_true(found%text == expected%text, 'the document says what the table of names says; else copy data-file.md '// &
                         'of the test''s folder over it')
-    call tester%is_true(len(found%text) == len(expected%text), 'to the last byte')
+    call tester%is_true(len(found%text) == len(expected%text), 'the document is as long as the table of names makes it')
   end subroutine the_document
 
   !> Help names every group, and help on a group every name, with its default and its words.
@@ -46,35 +46,40 @@ contains
     integer :: i
 
     call help_of('', text, err)
-    call tester%no_error(err, 'help on all groups')
+    call tester%no_error(err, 'help on all groups is given')
     do i = 1, size(group_table)
-      call tester%is_true(index(text, '&'//trim(group_table(i)%name)) > 0, 'it names '//trim(group_table(i)%name))
+      call tester%is_true(index(text, '&'//trim(group_table(i)%name)) > 0, 'help on all groups names '//trim(group_table(i)%name))
     end do
     do i = 1, size(item_table)
       call help_of(trim(item_table(i)%group), text, err)
-      call tester%no_error(err, 'help on '//trim(item_table(i)%group))
-      call tester%is_true(index(text, eol//'  '//trim(item_table(i)%name)//' = ') > 0, 'it names '//trim(item_table(i)%name))
-      call tester%is_true(index(text, trim(item_table(i)%help)) > 0, 'it explains '//trim(item_table(i)%name))
+      call tester%no_error(err, 'help is given on '//trim(item_table(i)%group))
+      call tester%is_true(index(text, eol//'  '//trim(item_table(i)%name)//' = ') > 0, &
+                          'help on its group names '//trim(item_table(i)%name))
+      call tester%is_true(index(text, trim(item_table(i)%help)) > 0, 'help on its group explains '//trim(item_table(i)%name))
     end do
     call help_of('&PAIR', text, err)
-    call tester%no_error(err, 'a group in capitals with its &')
+    call tester%no_error(err, 'a group may be written in capitals and with its &')
     call help_of('piar', text, err)
-    call tester%has_error(err, exit_usage, 'a group that is not there')
-    if (allocated(err)) call tester%is_true(index(err%message, 'pair') > 0, 'the nearest one is named')
+    call tester%has_error(err, exit_usage, 'help on a group that is not there is refused')
+    if (allocated(err)) call tester%is_true(index(err%message, 'pair') > 0, &
+                                            'the message about a group that is not there names the nearest one')
     call help_of('&', text, err)
-    call tester%has_error(err, exit_usage, 'no name at all')
+    call tester%has_error(err, exit_usage, 'help on an empty name is refused')
     call help_of('Load.Stiffness', text, err)
-    call tester%no_error(err, 'one name')
-    call tester%is_true(index(text, 'spring') > 0 .and. index(text, 'coordinate') > 0, 'both of its meanings')
-    call tester%is_true(index(text, 'free_length = ') == 0, 'and nothing of another name')
+    call tester%no_error(err, 'help on one name is given')
+    call tester%is_true(index(text, 'spring') > 0 .and. index(text, 'coordinate') > 0, &
+                        'help on one name tells both of its meanings')
+    call tester%is_true(index(text, 'free_length = ') == 0, 'help on one name tells nothing of another name')
     call help_of('load.stifness', text, err)
-    call tester%has_error(err, exit_usage, 'a name that is not there')
-    if (allocated(err)) call tester%is_true(index(err%message, 'stiffness') > 0, 'the nearest one is named')
+    call tester%has_error(err, exit_usage, 'help on a name that is not there is refused')
+    if (allocated(err)) call tester%is_true(index(err%message, 'stiffness') > 0, &
+                                            'the message about a name that is not there names the nearest one')
     call help_of('laod.stiffness', text, err)
-    call tester%has_error(err, exit_usage, 'a group that is not there')
-    if (allocated(err)) call tester%is_true(index(err%message, 'load') > 0, 'its nearest one is named')
+    call tester%has_error(err, exit_usage, 'help on a name of a group that is not there is refused')
+    if (allocated(err)) call tester%is_true(index(err%message, 'load') > 0, &
+                                            'the message about a name of a group that is not there names the nearest group')
     call help_of('load.', text, err)
-    call tester%no_error(err, 'a name still to be typed is the whole group')
+    call tester%no_error(err, 'help on a name that is not typed yet is that on the whole group')
   end subroutine the_help
 
   subroutine help_of(group, text, err)

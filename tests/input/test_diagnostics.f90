@@ -77,7 +77,7 @@ contains
     call tester%is_true(index(shown, 'f.nml:1:50001:') == 1, 'the column is that of the file')
     call tester%is_true(lines(2) - lines(1) < 120, 'a window of a long line is shown')
     call tester%is_true(index(shown(lines(1) + 1:), '...') == 1 .and. shown(lines(2) - 3:lines(2) - 1) == '...', &
-                        'the window is marked as one')
+                        'the window of a long line is marked as one')
     call tester%is_true(index(shown(lines(1) + 1:), 'X') == index(shown(lines(2) + 1:), '^'), &
                         'the caret stands under the place')
   end subroutine a_long_line
@@ -93,9 +93,9 @@ contains
       call g%add(span_type(number, 2*i - 1, 2*i - 1), 'message')
     end do
     text = printed(g)
-    call tester%is_true(index(text, 'f.nml:1:1:') == 1 .and. index(text, 'f.nml:2:1:') > 1, 'sorted by line')
+    call tester%is_true(index(text, 'f.nml:1:1:') == 1 .and. index(text, 'f.nml:2:1:') > 1, 'errors are sorted by line')
     call tester%is_true(count_of('f.nml:', text) == 20, 'twenty errors are shown')
-    call tester%is_true(index(text, 'and 11 more') > 0, 'and the rest is counted')
+    call tester%is_true(index(text, 'and 11 more') > 0, 'the errors that are not shown are counted')
     do i = 1, 5000
       call g%add(span_type(number, 1, 1), 'message')
     end do
@@ -105,13 +105,13 @@ contains
   subroutine exit_codes()
     type(diagnostics_type) :: g
 
-    call tester%is_true(g%code() == exit_done .and. .not. g%failed(), 'no errors, no code')
+    call tester%is_true(g%code() == exit_done .and. .not. g%failed(), 'where there are no errors the exit code is that of success')
     call g%add(span_type(), 'x', exit_structure)
-    call tester%is_true(g%code() == exit_structure .and. g%failed(), 'a wrong structure')
+    call tester%is_true(g%code() == exit_structure .and. g%failed(), 'a wrong structure has its exit code')
     call g%add(span_type(), 'x')
-    call tester%is_true(g%code() == exit_data, 'wrong data before a wrong structure')
+    call tester%is_true(g%code() == exit_data, 'wrong data come before a wrong structure')
     call g%add(span_type(), 'x', exit_file)
-    call tester%is_true(g%code() == exit_file, 'an unreadable file before all')
+    call tester%is_true(g%code() == exit_file, 'an unreadable file comes before all other errors')
   end subroutine exit_codes
 
   subroutine failures_from_elsewhere()
@@ -124,7 +124,7 @@ contains
     call g%add_error(err)
     call tester%is_true(rendered(g, 1) == 'f.nml:2:2: message'//eol//' &pair x=1 /'//eol//' ^^^^^', &
                         'a failure with a place in the model shows where it was written')
-    call tester%is_true(g%code() == exit_assembly, 'its code is kept')
+    call tester%is_true(g%code() == exit_assembly, 'a failure with a place in the model keeps its code')
     call raise(err, exit_assembly, 'nowhere', place_type(77, 2))
     call g%add_error(err)
     call tester%is_true(rendered(g, 2) == 'f.nml: nowhere', 'a place that is not there does no harm')

@@ -54,8 +54,8 @@ contains
       call damage(text)
       call try(text, i)
     end do
-    call tester%is_true(refused > runs/2, 'most of the damage is seen')
-    call tester%is_true(refused < runs, 'and some does no harm')
+    call tester%is_true(refused > runs/2, 'most of the damaged files are refused')
+    call tester%is_true(refused < runs, 'some of the damaged files are accepted')
   end subroutine damaged_files
 
   !> A whole number from 1 to n.
@@ -152,7 +152,7 @@ contains
     if (diagnostics%failed()) refused = refused + 1
     call judge(diagnostics, text)
     call judge(again, text)
-    if (.not. diagnostics%failed()) call tester%is_true(is_whole(model), 'what is read is whole:'//eol//text)
+    if (.not. diagnostics%failed()) call tester%is_true(is_whole(model), 'a file that is accepted is whole:'//eol//text)
   end subroutine try
 
   subroutine forget(diagnostics)
@@ -167,10 +167,11 @@ contains
 
     answer = printed(diagnostics)
     if (diagnostics%failed()) then
-      call tester%is_true(any(diagnostics%code() == [exit_data, exit_structure, exit_file]), 'its code:'//eol//text)
-      call tester%is_true(index(answer, ': ') > 0 .and. index(answer, achar(0)) == 0, 'its message:'//eol//text)
+      call tester%is_true(any(diagnostics%code() == [exit_data, exit_structure, exit_file]), &
+                          'a refused file has one of the codes of bad input:'//eol//text)
+      call tester%is_true(index(answer, ': ') > 0 .and. index(answer, achar(0)) == 0, 'a refused file has a message:'//eol//text)
     else
-      call tester%is_true(answer == '' .and. diagnostics%code() == 0, 'all is well:'//eol//text)
+      call tester%is_true(answer == '' .and. diagnostics%code() == 0, 'an accepted file has no message and no code:'//eol//text)
     end if
   end subroutine judge
 

@@ -20,7 +20,7 @@ program test_grammar
   do i = 1, size(item_table)
     call check_item_row(item_table(i))
     do j = 1, i - 1
-      call tester%is_true(apart(item_table(i), item_table(j)), label(item_table(i))//': one meaning for each kind')
+      call tester%is_true(apart(item_table(i), item_table(j)), label(item_table(i))//': the name has one meaning for each kind')
     end do
   end do
   call tester%finish()
@@ -31,12 +31,15 @@ contains
     integer, intent(in) :: row   !< number of the row among the groups
 
     associate (group => group_table(row))
-      call tester%is_true(find_group_row(group%name) == row, trim(group%name)//': is found under its name')
-      call tester%is_true(any(item_table%group == group%name), trim(group%name)//': has names')
-      call tester%is_true(any(group%program == ['both  ', 'mech9k', 'mech9d']), trim(group%name)//': is for a program there is')
-      call tester%is_true(group%help /= '' .and. len_trim(group%help) < len(group%help), trim(group%name)//': help fits')
+      call tester%is_true(find_group_row(group%name) == row, trim(group%name)//': the group is found under its name')
+      call tester%is_true(any(item_table%group == group%name), trim(group%name)//': the group has names')
+      call tester%is_true(any(group%program == ['both  ', 'mech9k', 'mech9d']), &
+                          trim(group%name)//': the group is for a program that exists')
+      call tester%is_true(group%help /= '' .and. len_trim(group%help) < len(group%help), &
+                          trim(group%name)//': the help fits its field')
       if (group%key /= '') &
-        call tester%is_true(group%repeats .and. size(find_item_rows(group%name, group%key)) == 1, trim(group%name)//': its key')
+        call tester%is_true(group%repeats .and. size(find_item_rows(group%name, group%key)) == 1, &
+                            trim(group%name)//': a group that repeats has one key')
     end associate
   end subroutine check_group_row
 
@@ -67,13 +70,13 @@ contains
     type(item_row_type), intent(in) :: row   !< of the grammar
     character(len=:), allocatable :: wrong
 
-    call tester%is_true(find_group_row(row%group) > 0, label(row)//': belongs to a group')
-    call tester%is_true(row%low >= 1 .and. row%high >= row%low, label(row)//': counts')
-    call tester%is_true(row%help /= '' .and. len_trim(row%help) < len(row%help), label(row)//': help fits')
+    call tester%is_true(find_group_row(row%group) > 0, label(row)//': the name belongs to a group')
+    call tester%is_true(row%low >= 1 .and. row%high >= row%low, label(row)//': the bounds of the number of values are right')
+    call tester%is_true(row%help /= '' .and. len_trim(row%help) < len(row%help), label(row)//': the help fits its field')
     call tester%is_true(len_trim(row%words) < len(row%words) .and. len_trim(row%kinds) < len(row%kinds), &
-                        label(row)//': words and kinds fit')
-    call tester%is_true(.not. (row%needed .and. row%default /= ''), label(row)//': what is needed has no default')
-    call tester%is_true(row%needed .or. row%default /= '', label(row)//': what is not needed has a default')
+                        label(row)//': words and kinds fit their fields')
+    call tester%is_true(.not. (row%needed .and. row%default /= ''), label(row)//': a name that is needed has no default')
+    call tester%is_true(row%needed .or. row%default /= '', label(row)//': a name that is not needed has a default')
     if (row%kinds /= '') call check_kinds(row)
     call check_words(row)
 
@@ -100,7 +103,7 @@ contains
 
     kinds = words_of(row%kinds)
     rows = find_item_rows(row%group, 'kind')
-    call tester%is_true(size(rows) == 1, label(row)//': its group has kinds')
+    call tester%is_true(size(rows) == 1, label(row)//': the group of the name has kinds')
     do k = 1, size(kinds)
       call tester%is_true(any(words_of(item_table(rows(1))%words) == kinds(k)), label(row)//': kind '//trim(kinds(k)))
     end do
@@ -112,7 +115,7 @@ contains
     integer :: k
 
     words = words_of(row%words)
-    call tester%is_true(size(words) > 0 .eqv. row%words /= '', label(row)//': words are told apart')
+    call tester%is_true(size(words) > 0 .eqv. row%words /= '', label(row)//': the words are told apart')
     do k = 1, size(words)
       call accepted(row, assignment_of(row, "'"//trim(words(k))//"'"), 'the word '//trim(words(k)))
     end do

@@ -50,7 +50,7 @@ contains
     call tester%is_true(diagnostics%failed() .eqv. len(answer) > 0, name//': something is printed where something is wrong')
     do while (at <= len(expected))
       call next_field(expected, at, fragment)
-      call tester%is_true(index(answer, fragment) > 0, name//': says '//fragment)
+      call tester%is_true(index(answer, fragment) > 0, name//': the message holds: '//fragment)
       if (index(answer, fragment) == 0) print '(a)', answer
     end do
   end subroutine check_file

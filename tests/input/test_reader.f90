@@ -50,9 +50,9 @@ contains
     type(error_type), allocatable :: err
 
     call model%mechanism%pairs(k)%pair%evaluate(q, motion, err)
-    call tester%no_error(err, why)
-    call tester%near(maxval(abs(motion%pose%r - r)), 0.0_wp, 4.0_wp*round_off, why//': rotation')
-    call tester%near(maxval(abs(motion%pose%p - p)), 0.0_wp, 4.0_wp*round_off, why//': translation')
+    call tester%no_error(err, why//': the pair has a motion')
+    call tester%near(maxval(abs(motion%pose%r - r)), 0.0_wp, 4.0_wp*round_off, why//': the rotation of the pair is right')
+    call tester%near(maxval(abs(motion%pose%p - p)), 0.0_wp, 4.0_wp*round_off, why//': the translation of the pair is right')
   end subroutine pose_is
 
   subroutine a_whole_mechanism()
@@ -60,25 +60,29 @@ contains
     real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
 
     call read_well(slider_crank, m, 'the slider-crank')
-    call tester%is_true(m%mechanism%title == 'Slider-crank', 'its title')
-    call tester%is_true(m%mechanism%structure%n_links == 4 .and. m%mechanism%structure%n_coordinates == 4, 'its counts')
+    call tester%is_true(m%mechanism%title == 'Slider-crank', 'the title is read')
+    call tester%is_true(m%mechanism%structure%n_links == 4 .and. m%mechanism%structure%n_coordinates == 4, &
+                        'the links and coordinates are counted')
     call tester%is_true(all(m%problem%partition%independent() .eqv. [.true., .false., .false., .false.]), &
-                        'its independent coordinate')
-    call tester%is_true(size(m%problem%partition%vectors%nrg) == 5, 'the second set is made; (9): 4 + 2 - 1')
+                        'the independent coordinate is read')
+    call tester%is_true(size(m%problem%partition%vectors%nrg) == 5, 'the structural vectors have the length of (9), 4 + 2 - 1')
     call tester%is_true(m%mechanism%pairs(1)%pair%coordinate == 1 .and. m%mechanism%pairs(4)%pair%coordinate == 4, &
-                        'pairs stand by coordinate')
-    call tester%is_true(m%mechanism%pairs(3)%pair%reference == 3 .and. m%mechanism%pairs(3)%pair%moving == 4, 'links of a pair')
-    call tester%is_true(m%mechanism%pairs(1)%pair%angular .and. .not. m%mechanism%pairs(4)%pair%angular, 'angles and lengths')
+                        'pairs stand in the order of their coordinates')
+    call tester%is_true(m%mechanism%pairs(3)%pair%reference == 3 .and. m%mechanism%pairs(3)%pair%moving == 4, &
+                        'the links of a pair are read')
+    call tester%is_true(m%mechanism%pairs(1)%pair%angular .and. .not. m%mechanism%pairs(4)%pair%angular, &
+                        'angles are told from lengths')
     call tester%is_true(m%mechanism%pairs(4)%pair%place%line == 6 .and. m%mechanism%points(1)%place%line == 8 &
-                        .and. m%problem%drives(1)%drive%place%line == 9, 'the mechanism knows the lines')
+                        .and. m%problem%drives(1)%drive%place%line == 9, 'pairs, points and drives know their lines in the file')
     call pose_is(m, 1, 0.3_wp, about_axis(z, 0.3_wp), [0.0_wp, 0.0_wp, 0.0_wp], 'a turn about z')
     call pose_is(m, 2, 0.3_wp, about_axis(z, 0.3_wp), 0.3_wp*x, 'a turn about an axis beside the origin')
     call pose_is(m, 4, 1.2_wp, identity, [1.2_wp, 0.1_wp, 0.0_wp], 'a slide along x')
-    call tester%near(m%problem%initial%position(4), 1.2_wp, 0.0_wp, 'a guess')
-    call tester%is_true(all(m%problem%initial%position_given .eqv. [.false., .false., .false., .true.]), 'which guesses are given')
-    call tester%is_true(m%mechanism%points(1)%name == 'B' .and. m%mechanism%points(1)%link == 4, 'a point')
-    call tester%is_true(all(abs(m%mechanism%points(1)%position) <= 0.0_wp), 'its position by default')
-    call tester%is_true(m%request%time%intervals == 10 .and. size(m%mechanism%parameters) == 0, 'time and parameters')
+    call tester%near(m%problem%initial%position(4), 1.2_wp, 0.0_wp, 'an initial position is read')
+    call tester%is_true(all(m%problem%initial%position_given .eqv. [.false., .false., .false., .true.]), &
+                        'initial positions that are given are told from others')
+    call tester%is_true(m%mechanism%points(1)%name == 'B' .and. m%mechanism%points(1)%link == 4, 'a point is read')
+    call tester%is_true(all(abs(m%mechanism%points(1)%position) <= 0.0_wp), 'a point stands in the origin by default')
+    call tester%is_true(m%request%time%intervals == 10 .and. size(m%mechanism%parameters) == 0, 'times and parameters are read')
   end subroutine a_whole_mechanism
 
   !> c, the second set, and the links of the pairs describe the same structure.
@@ -109,12 +113,13 @@ contains
     character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
     integer :: k
 
-    call tester%is_true(a%mechanism%structure%n_links == b%mechanism%structure%n_links, why//': as many links')
-    call tester%is_true(all(a%problem%partition%kind == b%problem%partition%kind), why//': the same independent ones')
+    call tester%is_true(a%mechanism%structure%n_links == b%mechanism%structure%n_links, why//': both have as many links')
+    call tester%is_true(all(a%problem%partition%kind == b%problem%partition%kind), &
+                        why//': both have the same independent coordinates')
     do k = 1, size(a%mechanism%structure%links, 2)
       call tester%is_true(minval(a%mechanism%structure%links(:, k)) == minval(b%mechanism%structure%links(:, k)) .and. &
                           maxval(a%mechanism%structure%links(:, k)) == maxval(b%mechanism%structure%links(:, k)), &
-                                              why//': the same links')
+                                              why//': the pairs join the same links')
     end do
   end subroutine same_structure
 
@@ -192,17 +197,18 @@ contains
                    "&drive coordinate=2, kind='harmonic', mean=2, amplitude=3, angular_frequency=90, phase=30 /"// &
                    "&initial coordinate=1, position=60, velocity=-30 / &initial coordinate=2, position=60, velocity=-30 /", &
                    m, 'a mechanism in degrees')
-    call tester%near(m%mechanism%angle_unit, pi/180.0_wp, round_off, 'the unit of angles')
-    call tester%near(m%problem%initial%position(1), pi/3.0_wp, round_off, 'an initial angle')
-    call tester%near(m%problem%initial%velocity(1), -pi/6.0_wp, round_off, 'an initial angular velocity')
-    call tester%near(m%problem%initial%position(2), 60.0_wp, 0.0_wp, 'an initial length is none')
+    call tester%near(m%mechanism%angle_unit, pi/180.0_wp, round_off, 'the unit of angles is read')
+    call tester%near(m%problem%initial%position(1), pi/3.0_wp, round_off, 'an initial angle in degrees is read')
+    call tester%near(m%problem%initial%velocity(1), -pi/6.0_wp, round_off, 'an initial angular velocity in degrees is read')
+    call tester%near(m%problem%initial%position(2), 60.0_wp, 0.0_wp, 'an initial length is not taken for an angle')
     call m%problem%drives(1)%drive%evaluate(2.0_wp, q, dq, ddq, err)
-    call tester%near(q, pi*(1.0_wp + 1.0_wp + 1.0_wp), 4.0_wp*round_off, 'a polynomial of an angle')
-    call tester%near(ddq, pi/2.0_wp, round_off, 'its second derivative')
+    call tester%near(q, pi*(1.0_wp + 1.0_wp + 1.0_wp), 4.0_wp*round_off, 'a polynomial of an angle in degrees has its value')
+    call tester%near(ddq, pi/2.0_wp, round_off, 'a polynomial of an angle in degrees has its second derivative')
     call m%problem%drives(2)%drive%evaluate(2.0_wp, q, dq, ddq, err)
     ! 2 + 3 sin(180 + 30 degrees) = 2 - 3/2
-    call tester%near(q, 0.5_wp, 4.0_wp*round_off, 'a harmonic length with its phase in degrees')
-    call tester%near(dq, -3.0_wp*(pi/2.0_wp)*sqrt(0.75_wp), 8.0_wp*round_off, 'its rate')
+    call tester%near(q, 0.5_wp, 4.0_wp*round_off, 'a harmonic length with its phase in degrees has its value')
+    call tester%near(dq, -3.0_wp*(pi/2.0_wp)*sqrt(0.75_wp), 8.0_wp*round_off, &
+                     'a harmonic length with its phase in degrees has its rate')
   end subroutine degrees
 
   subroutine bodies_and_settings()
@@ -212,19 +218,21 @@ contains
                    "&gravity acceleration=0,-9.81,0 / &solver method='Adams', relative_tolerance=1e-9, maximum_steps=77 /"// &
                    "&output table='a b.dat' hdf5='x.h5'/ &user parameters=3*0.5, 7 /"// &
                    "&load kind='coordinate', coordinate=2, stiffness=-2 / &load kind='user' /", m, 'everything else')
-    call tester%is_true(m%mechanism%bodies(1)%link == 3 .and. m%mechanism%bodies(1)%place%line == 11, 'a body')
+    call tester%is_true(m%mechanism%bodies(1)%link == 3 .and. m%mechanism%bodies(1)%place%line == 11, 'the link of a body is read')
     call tester%near(maxval(abs(m%mechanism%bodies(1)%inertia - transpose(m%mechanism%bodies(1)%inertia))), 0.0_wp, 0.0_wp, &
-                        'a symmetric tensor')
+                        'a tensor of inertia is symmetric')
     call tester%is_true(all(abs([m%mechanism%bodies(1)%inertia(1, 2), m%mechanism%bodies(1)%inertia(3, 1), &
                         m%mechanism%bodies(1)%inertia(2, 3)] &
-                                - [0.1_wp, 0.2_wp, 0.3_wp]) <= 0.0_wp), 'its products xy, xz, yz')
-    call tester%is_true(abs(m%mechanism%bodies(1)%inertia(3, 3) - 6.0_wp) <= 0.0_wp, 'its moment zz')
-    call tester%near(m%mechanism%gravity(2), -9.81_wp, 0.0_wp, 'gravity')
-    call tester%is_true(m%request%solver%method == 'adams' .and. m%request%solver%maximum_steps == 77, 'solver')
-    call tester%near(m%request%solver%relative_tolerance, 1.0e-9_wp, 0.0_wp, 'a tolerance')
-    call tester%near(m%request%solver%absolute_tolerance, 1.0e-10_wp, 0.0_wp, 'a tolerance by default')
-    call tester%is_true(m%request%output%table == 'a b.dat' .and. m%request%output%hdf5 == 'x.h5', 'names of files')
-    call tester%is_true(size(m%mechanism%parameters) == 4 .and. abs(m%mechanism%parameters(4) - 7.0_wp) <= 0.0_wp, 'parameters')
+                                - [0.1_wp, 0.2_wp, 0.3_wp]) <= 0.0_wp), 'the products of inertia stand in the order xy, xz, yz')
+    call tester%is_true(abs(m%mechanism%bodies(1)%inertia(3, 3) - 6.0_wp) <= 0.0_wp, 'the moment of inertia zz is read')
+    call tester%near(m%mechanism%gravity(2), -9.81_wp, 0.0_wp, 'gravity is read')
+    call tester%is_true(m%request%solver%method == 'adams' .and. m%request%solver%maximum_steps == 77, &
+                        'the method and the number of steps are read')
+    call tester%near(m%request%solver%relative_tolerance, 1.0e-9_wp, 0.0_wp, 'a tolerance is read')
+    call tester%near(m%request%solver%absolute_tolerance, 1.0e-10_wp, 0.0_wp, 'a tolerance that is not given has its default')
+    call tester%is_true(m%request%output%table == 'a b.dat' .and. m%request%output%hdf5 == 'x.h5', 'names of files are read')
+    call tester%is_true(size(m%mechanism%parameters) == 4 .and. abs(m%mechanism%parameters(4) - 7.0_wp) <= 0.0_wp, &
+                        'parameters are read')
   end subroutine bodies_and_settings
 
   !> A smooth curve through points of a cubic is that cubic.
@@ -247,18 +255,19 @@ contains
     call read_well(drive, m, 'a table')
     t = 0.9_wp
     call m%problem%drives(1)%drive%evaluate(t, q, dq, ddq, err)
-    call tester%no_error(err, 'a time within the table')
+    call tester%no_error(err, 'a table has a value within its range')
     ! second derivatives come from second differences over 0.25: 16 times round-off of the values, and more
-    call tester%near(q, 1.0_wp - 2.0_wp*t + 3.0_wp*t**3, 1.0e-14_wp, 'the cubic')
-    call tester%near(dq, -2.0_wp + 9.0_wp*t**2, 1.0e-13_wp, 'its first derivative')
-    call tester%near(ddq, 18.0_wp*t, 1.0e-12_wp, 'its second derivative')
+    call tester%near(q, 1.0_wp - 2.0_wp*t + 3.0_wp*t**3, 1.0e-14_wp, 'the table of a cubic has the value of the cubic')
+    call tester%near(dq, -2.0_wp + 9.0_wp*t**2, 1.0e-13_wp, 'the table of a cubic has its first derivative')
+    call tester%near(ddq, 18.0_wp*t, 1.0e-12_wp, 'the table of a cubic has its second derivative')
     call read_well("&mechanism angle_unit='deg' /"//drive, m, 'a table in degrees')
     call m%problem%drives(1)%drive%evaluate(t, q, dq, ddq, err)
-    call tester%near(q, (1.0_wp - 2.0_wp*t + 3.0_wp*t**3)*pi/180.0_wp, 1.0e-14_wp, 'the cubic in degrees')
+    call tester%near(q, (1.0_wp - 2.0_wp*t + 3.0_wp*t**3)*pi/180.0_wp, 1.0e-14_wp, &
+                     'the table of a cubic in degrees has the value of the cubic')
     open (newunit=unit, file='test_reader_table.dat', status='old')
     close (unit, status='delete')
     call mechanism_from_text(drive, m, g)
-    call tester%is_true(g%code() == 8, 'a table that is not there is a matter of files')
+    call tester%is_true(g%code() == 8, 'a table that is not there has the exit code of files')
   end subroutine tables
 
   subroutine single_position()
@@ -267,11 +276,11 @@ contains
 
     at = index(slider_crank, '&time')
     call read_well(slider_crank(:at - 1)//'&time start=0.2, intervals=0 /', m, 'a single position')
-    call tester%near(m%request%time%time(0), 0.2_wp, 0.0_wp, 'it is that at the start')
+    call tester%near(m%request%time%time(0), 0.2_wp, 0.0_wp, 'the first time is that of the start')
     call read_well(slider_crank(:at - 1)//'&time start=1, end=0, intervals=4 /', m, 'time running backwards')
-    call tester%near(m%request%time%time(1), 0.75_wp, 0.0_wp, 'its second time')
+    call tester%near(m%request%time%time(1), 0.75_wp, 0.0_wp, 'the second time is the start and one interval')
     call read_well(slider_crank(:at - 1), m, 'no &time')
-    call tester%near(m%request%time%time(1), 0.01_wp, round_off, 'times by default')
+    call tester%near(m%request%time%time(1), 0.01_wp, round_off, 'times have their default')
   end subroutine single_position
 
   !> The errors that the scanner, the grammar, the structure and the model find are told in one go, in the order of the lines.
@@ -288,8 +297,8 @@ contains
     answer = printed(g)
     places = [index(answer, 'test.nml:1:'), index(answer, 'test.nml:10:'), index(answer, 'test.nml:11:'), &
               index(answer, 'test.nml:12:'), index(answer, 'test.nml:13:')]
-    call tester%is_true(all(places > 0), 'all five are told')
-    call tester%is_true(all([(places(i) < places(i + 1), i=1, 4)]), 'in the order of the lines')
+    call tester%is_true(all(places > 0), 'all five mistakes are told')
+    call tester%is_true(all([(places(i) < places(i + 1), i=1, 4)]), 'mistakes are told in the order of the lines')
     call tester%is_true(g%code() == 3, 'wrong data come before a wrong structure')
   end subroutine all_errors_at_once
 end program test_reader

@@ -88,7 +88,8 @@ contains
 
     call read_numeral(text, numeral)
     call tester%is_true(allocated(numeral%problem), text//' is refused')
-    if (allocated(numeral%problem)) call tester%is_true(index(numeral%problem, reason) > 0, text//': '//numeral%problem)
+    if (allocated(numeral%problem)) call tester%is_true(index(numeral%problem, reason) > 0, &
+                                                        text//': the reason is told: '//numeral%problem)
   end subroutine is_no_number
 
   subroutine parse(text, document, errors)
@@ -112,14 +113,14 @@ contains
       call tester%is_true(all(v%kind == [value_integer, value_real, value_integer, value_logical, value_logical, &
                                          value_text, value_text, value_word]), 'kinds of values are told apart')
       call tester%is_true(v(1)%whole == 1 .and. v(3)%whole == -3, 'whole numbers have their value')
-      call tester%near(v(2)%number, 2.5_wp, 0.0_wp, 'a real with exponent letter d')
-      call tester%is_true(v(4)%truth .and. .not. v(5)%truth, 'logicals in both spellings')
+      call tester%near(v(2)%number, 2.5_wp, 0.0_wp, 'a real may have the exponent letter d')
+      call tester%is_true(v(4)%truth .and. .not. v(5)%truth, 'logicals are read in both spellings')
       call tester%is_true(v(6)%text == "it's", 'a doubled apostrophe stands for one')
       call tester%is_true(v(7)%text == 'say "no" / & !', 'marks of the language mean nothing within quotes')
     end associate
     call parse("&g a='' b="" "" /", d, errors)
-    call tester%is_true(d%groups(1)%items(1)%values(1)%text == '', 'an empty text')
-    call tester%is_true(len(d%groups(1)%items(2)%values(1)%text) == 1, 'a text of one blank')
+    call tester%is_true(d%groups(1)%items(1)%values(1)%text == '', 'an empty text is read as such')
+    call tester%is_true(len(d%groups(1)%items(2)%values(1)%text) == 1, 'a text of one blank keeps it')
   end subroutine values_of_every_kind
 
   subroutine repeats_and_nulls()
@@ -146,17 +147,18 @@ contains
     call parse("&g A(2)=1 b(1,:)=2 c( : , 3 )=4 d(2:4)=1 e(2:)=1 long_name_9 = 1 f"//eol//" ! note"//eol//" =3/", d, errors)
     call tester%is_true(errors == 0, 'subscripts of all forms are read')
     associate (i => d%groups(1)%items)
-      call tester%is_true(i(1)%name == 'a' .and. i(1)%subscripts(1)%first == 2 .and. .not. i(1)%subscripts(1)%section, 'a(2)')
+      call tester%is_true(i(1)%name == 'a' .and. i(1)%subscripts(1)%first == 2 .and. .not. i(1)%subscripts(1)%section, &
+                          'the subscript of a(2) is read')
       call tester%is_true(i(2)%subscripts(1)%first == 1 .and. i(2)%subscripts(2)%section &
-                          .and. i(2)%subscripts(2)%first == 0, 'b(1,:)')
-      call tester%is_true(i(3)%subscripts(1)%section .and. i(3)%subscripts(2)%first == 3, 'c(:,3)')
-      call tester%is_true(i(4)%subscripts(1)%first == 2 .and. i(4)%subscripts(1)%last == 4, 'd(2:4)')
-      call tester%is_true(i(5)%subscripts(1)%first == 2 .and. i(5)%subscripts(1)%last == 0, 'e(2:)')
-      call tester%is_true(i(6)%name == 'long_name_9', 'digits and underscores in names')
-      call tester%is_true(i(7)%name == 'f' .and. i(7)%values(1)%whole == 3, 'a comment between name and =')
+                          .and. i(2)%subscripts(2)%first == 0, 'the subscripts of b(1,:) are read')
+      call tester%is_true(i(3)%subscripts(1)%section .and. i(3)%subscripts(2)%first == 3, 'the subscripts of c(:,3) are read')
+      call tester%is_true(i(4)%subscripts(1)%first == 2 .and. i(4)%subscripts(1)%last == 4, 'the section d(2:4) is read')
+      call tester%is_true(i(5)%subscripts(1)%first == 2 .and. i(5)%subscripts(1)%last == 0, 'the section e(2:) is read')
+      call tester%is_true(i(6)%name == 'long_name_9', 'digits and underscores belong to names')
+      call tester%is_true(i(7)%name == 'f' .and. i(7)%values(1)%whole == 3, 'a comment may stand between a name and =')
     end associate
     call parse("&g a(1,2,3)=1 b(x)=1 c()=1 d(99999999999)=1 /", d, errors)
-    call tester%is_true(errors >= 4, 'subscripts that are none are refused')
+    call tester%is_true(errors >= 4, 'subscripts that are not numbers are refused')
   end subroutine names_and_subscripts
 
   subroutine groups()
@@ -181,8 +183,8 @@ contains
 
     call parse_document(source_from_text('t', "&a"//achar(13)//eol//"  x=1,"//achar(9)//"23"//achar(13)//"y='"// &
                                          char(195)//char(164)//"' z=7 /"), d, g)
-    call tester%is_true(at(g, d%groups(1)%items(1)%values(2), 2, 8), 'after CR LF, a blank and a tab')
-    call tester%is_true(at(g, d%groups(1)%items(2)%values(1), 3, 3), 'CR alone ends a line')
+    call tester%is_true(at(g, d%groups(1)%items(1)%values(2), 2, 8), 'the place after CR LF, a blank and a tab is right')
+    call tester%is_true(at(g, d%groups(1)%items(2)%values(1), 3, 3), 'a CR alone ends a line')
     call tester%is_true(at(g, d%groups(1)%items(3)%values(1), 3, 9), 'a character of two bytes is one column')
   end subroutine places
 

@@ -39,7 +39,7 @@ contains
     call set('time.intervals=7', m, answer)
     call tester%is_true(answer == '' .and. m%request%time%intervals == 7, 'a number is replaced')
     call set(' Time.END = 2.5d0 ', m, answer)
-    call tester%is_true(answer == '', 'case and blanks do not matter')
+    call tester%is_true(answer == '', 'case and blanks of a setting do not matter')
     call tester%near(m%request%time%end, 2.5_wp, 0.0_wp, 'a real is replaced')
     call set('mechanism.title=O''Brien''s engine, "the" second', m, answer)
     call tester%is_true(answer == '' .and. m%mechanism%title == 'O''Brien''s engine, "the" second', 'a text needs no quotes')
@@ -48,9 +48,9 @@ contains
     call set('output.table=/tmp/a b.dat', m, answer)
     call tester%is_true(answer == '' .and. m%request%output%table == '/tmp/a b.dat', 'a group that is not there is added')
     call set('user.parameters=1,2,3', m, answer)
-    call tester%is_true(answer == '' .and. size(m%mechanism%parameters) == 3, 'a list')
+    call tester%is_true(answer == '' .and. size(m%mechanism%parameters) == 3, 'a list is replaced')
     call set('pair(2).point=0.4,0,0', m, answer)
-    call tester%is_true(answer == '', 'the second &pair')
+    call tester%is_true(answer == '', 'the second &pair is chosen by its number')
     call set('pair(4).zero(2)=2', m, answer)
     call tester%is_true(answer == '', 'an element of a list is replaced')
     call set('drive.coefficients=0.1, 2*0.5', m, answer)
@@ -96,7 +96,7 @@ contains
     if (message == '') then
       call tester%is_true(answer == '', setting//': is accepted')
     else
-      call tester%is_true(index(answer, message) == 1, setting//': '//message)
+      call tester%is_true(index(answer, message) == 1, setting//': the message begins with: '//message)
       if (index(answer, message) /= 1) print '(a)', answer
     end if
   end subroutine refused

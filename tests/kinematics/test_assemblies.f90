@@ -50,22 +50,24 @@ contains
       ! coupler, rocker and diagonal must make a triangle; leave out the narrowest ones
       if (min(length(3) + length(4) - diagonal, diagonal - abs(length(3) - length(4))) > 1.0e-6_wp) then
         closed = closed + 1
-        call test%no_error(err, 'four-bar within its reach')
+        call test%no_error(err, 'a four-bar within its reach is assembled')
         if (allocated(err)) cycle
         call check_closed(test, plan, state, 'four-bar')
         rockers = rocker_angles(length, guess(1))
-        call test%near(minval(abs(cos(state%q(4) - rockers) - 1.0_wp)), 0.0_wp, 1.0e-14_wp, 'one of the two rockers')
+        call test%near(minval(abs(cos(state%q(4) - rockers) - 1.0_wp)), 0.0_wp, 1.0e-14_wp, &
+                       'an assembled four-bar has one of its two rocker angles')
         call find_assemblies(plan, state, 50, list)
         call test%is_true(size(list%found) == 2, 'a four-bar has two assemblies')
         if (size(list%found) == 2) call test%near(abs(cos(list%q(4, 1) - list%q(4, 2)) - cos(rockers(1) - rockers(2))), &
-          0.0_wp, 1.0e-13_wp, 'which are the two rockers')
+          0.0_wp, 1.0e-13_wp, 'the two assemblies of a four-bar are its two rocker angles')
       else if (min(length(3) + length(4) - diagonal, diagonal - abs(length(3) - length(4))) < -1.0e-3_wp) then
         open = open + 1
-        call test%has_error(err, exit_assembly, 'four-bar beyond its reach')
-        if (allocated(err)) call test%is_true(index(message_of(err), 'closed chain 1') > 0, 'and it names the chain')
+        call test%has_error(err, exit_assembly, 'a four-bar beyond its reach is refused')
+        if (allocated(err)) call test%is_true(index(message_of(err), 'closed chain 1') > 0, &
+                                              'the message about a four-bar beyond its reach names the chain')
       end if
     end do
-    call test%is_true(closed > 100 .and. open > 30, 'both happened often')
+    call test%is_true(closed > 100 .and. open > 30, 'four-bars within and beyond their reach both happened often')
   end subroutine four_bars_from_anywhere
 
   !> The two angles of the rocker for an angle of the crank, by the law of cosines.
@@ -93,17 +95,18 @@ contains
     do i = 0, 20
       call four_bar(3.0_wp, 1.0_wp, 1.2_wp, 0.8_wp, [0.0_wp, 0.3_wp*i/20, 0.2_wp, 2.8_wp], model)
       call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-      call test%no_error(err, 'a four-bar that just reaches')
+      call test%no_error(err, 'a four-bar that just reaches is assembled')
       if (.not. allocated(err)) call check_closed(test, plan, state, 'a four-bar that just reaches')
     end do
     call four_bar(3.0_wp + 1.0e-3_wp, 1.0_wp, 1.2_wp, 0.8_wp, [0.0_wp, 0.3_wp, 0.2_wp, 2.8_wp], model)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%has_error(err, exit_assembly, 'a four-bar that just does not reach')
+    call test%has_error(err, exit_assembly, 'a four-bar that just does not reach is refused')
     if (.not. allocated(err)) return
-    call test%is_true(index(message_of(err), 'stays open by ') > 0, 'it says by how much')
+    call test%is_true(index(message_of(err), 'stays open by ') > 0, &
+                      'the message about an open chain says by how much it stays open')
     gap = err%failure%gap
     ! the least of rotation and translation together, in units of the mechanism's length of 3
-    call test%is_true(gap > 1.0e-4_wp .and. gap <= 1.01e-3_wp, 'the gap is what is missing')
+    call test%is_true(gap > 1.0e-4_wp .and. gap <= 1.01e-3_wp, 'the gap is the length that is missing')
   end subroutine four_bar_near_its_reach
 
   !> Crank and rod: the slide is at r cos a -+ sqrt(l^2 - r^2 sin^2 a).
@@ -124,14 +127,14 @@ contains
     call add_prismatic(model, 4, 1, 4, frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]), frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]))
     model%problem%initial%position(1) = angle
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, 'slider-crank')
+    call test%no_error(err, 'a slider-crank is assembled')
     if (allocated(err)) return
     call find_assemblies(plan, state, 60, list)
     call test%is_true(size(list%found) == 2, 'a slider-crank has two assemblies')
     if (size(list%found) /= 2) return
     slides = crank*cos(angle) + [-1.0_wp, 1.0_wp]*sqrt(rod**2 - (crank*sin(angle))**2)
-    call test%near(minval(list%q(4, :)), slides(1), 1.0e-13_wp, 'the slide on one side')
-    call test%near(maxval(list%q(4, :)), slides(2), 1.0e-13_wp, 'and on the other')
+    call test%near(minval(list%q(4, :)), slides(1), 1.0e-13_wp, 'the slide has its closed form on one side')
+    call test%near(maxval(list%q(4, :)), slides(2), 1.0e-13_wp, 'the slide has its closed form on the other side')
   end subroutine slider_crank
 
   !> A triangle on three legs that are turned by nothing: the number of its positions against a count
@@ -173,10 +176,10 @@ contains
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     expected = positions_of(base, plate, legs)
     if (expected == 0) then
-      call test%has_error(err, exit_assembly, 'a platform without positions')
+      call test%has_error(err, exit_assembly, 'a platform without positions is refused')
       return
     end if
-    call test%no_error(err, 'platform')
+    call test%no_error(err, 'a platform is assembled')
     if (allocated(err)) return
     call find_assemblies(plan, state, 400, list)
     call test%is_true(size(list%found) == expected, 'the platform has as many assemblies as counted')
@@ -250,10 +253,10 @@ contains
       call add_revolute(model, k, links(1, k), links(2, k), frame(origin, z), in_moving)
     end do
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, 'six revolutes')
+    call test%no_error(err, 'six revolutes are assembled')
     if (allocated(err)) return
     call find_assemblies(plan, state, 1500, list)
-    call test%is_true(size(list%found) == 16, 'six revolutes in sixteen assemblies')
+    call test%is_true(size(list%found) == 16, 'six revolutes have sixteen assemblies')
   end subroutine six_revolutes
 
   !> The rotation nearest to one printed with six digits, by Newton's iteration for the polar factor.

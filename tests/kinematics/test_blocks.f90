@@ -47,7 +47,7 @@ program test_blocks
   call check('lazy tongs', [(3, k=1, 20)])
   call home_mechanism(2402, lazy_tongs(1200), planar_axes(3601, 0, random), [3601], model)
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  call test%has_error(err, exit_structure, 'too many coordinates that can only be solved for together')
+  call test%has_error(err, exit_structure, 'a structure with too many coordinates that can only be solved for together is refused')
   call stewart_platform(model)
   call check('Stewart platform', [30])
   call long_rows()
@@ -71,9 +71,10 @@ contains
         call cpu_time(before)
         call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
         call cpu_time(after)
-        call test%no_error(err, 'a long row')
+        call test%no_error(err, 'a long row has a plan')
         seconds(i) = after - before
-        call test%is_true(size(plan%blocks) == cells(i) .and. all(plan%blocks%equations == 3), 'a long row in its four-bars')
+        call test%is_true(size(plan%blocks) == cells(i) .and. all(plan%blocks%equations == 3), &
+                          'a long row is divided into its four-bars')
       end do
       print '(2(a,f7.4),a)', 'plans of rows: ', seconds(1), ' s, ten times as long: ', seconds(2), ' s'
       call test%is_true(seconds(2) < 40.0_wp*seconds(1) + 0.05_wp, 'plans of long rows take a time that grows linearly')
@@ -111,12 +112,12 @@ contains
     integer :: k
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, name)
+    call test%no_error(err, name//': there is a plan')
     if (allocated(err)) return
     if (size(block_sizes(plan)) == size(sizes)) then
-      call test%is_true(all(block_sizes(plan) == sizes), name//': unknowns of its blocks')
+      call test%is_true(all(block_sizes(plan) == sizes), name//': the blocks have the right numbers of unknowns')
     else
-      call test%is_true(.false., name//': number of its blocks')
+      call test%is_true(.false., name//': the number of blocks is right')
     end if
     call check_order(test, plan, name)
     call check_closed(test, plan, state, name)
@@ -126,7 +127,7 @@ contains
       if (.not. model%problem%partition%is_independent(k)) start(k) = start(k) + 0.1_wp*random%symmetric()
     end do
     call make_plan(model%mechanism, model%problem%partition, start, plan, state, err)
-    call test%no_error(err, name//' from another guess')
+    call test%no_error(err, name//' is assembled from another guess')
     call check_closed(test, plan, state, name//' from another guess')
   end subroutine check
 
@@ -151,6 +152,7 @@ contains
     call rates_from(equations, [(k /= driven, k=1, size(axes))], expected, residual_norm)
     call rates_of(plan, state, rates)
     ! both solve some ten equations; random dimensions make them worse by some thousands at most
-    call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-11_wp, name//': rates')
+    call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-11_wp, &
+                   name//': the rates are those of the whole system')
   end subroutine check_rates
 end program test_blocks

@@ -70,7 +70,7 @@ contains
         ! branch is apart by at least the least pivot, 1e-5
         call test%near(worst, 0.0_wp, 1.0e-9_wp, name//' stays on its branch')
         if (n == 1) last = driven%state%q(4)
-        call test%near(driven%state%q(4), last, 1.0e-9_wp, name//': as many turns of the rocker')
+        call test%near(driven%state%q(4), last, 1.0e-9_wp, name//': the rocker has made as many turns')
       end do
     end do
   end subroutine check_four_bar
@@ -175,9 +175,10 @@ contains
       end do
       call test%no_error(err, 'Fig. 1 swings on')
       if (n == 1) q = driven%state%q
-      call test%is_true(maxval(abs(driven%state%q - start)) > 0.05_wp, 'and has moved')
+      call test%is_true(maxval(abs(driven%state%q - start)) > 0.05_wp, 'Fig. 1 has moved')
       ! the drive's phase, 295 rad, has round-off of 6e-14, and the chain a conditioning of some hundredths
-      call test%near(maxval(abs(driven%state%q - q)), 0.0_wp, 1.0e-11_wp, 'to the same position')
+      call test%near(maxval(abs(driven%state%q - q)), 0.0_wp, 1.0e-11_wp, &
+                     'Fig. 1 comes to the same position with few and with many outputs')
       deallocate (model%problem%drives(1)%drive)
     end do
   end subroutine check_swinging_fig1

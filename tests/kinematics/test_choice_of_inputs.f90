@@ -25,7 +25,7 @@ program test_choice_of_inputs
     call try('spatial', n + 6, 1 + n/10, .false.)
   end do
   print '(2(i0,a))', refused, ' choices refused, ', accepted, ' accepted'
-  call test%is_true(refused > 200 .and. accepted > 20, 'both happened often')
+  call test%is_true(refused > 200 .and. accepted > 20, 'coordinates that can serve and that cannot serve both happened often')
   call test%finish()
 
 contains
@@ -103,20 +103,21 @@ contains
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     if (serves(equations, rank, dependent)) then
       accepted = accepted + 1
-      call test%no_error(err, name//': coordinates that can serve')
+      call test%no_error(err, name//': coordinates that can serve are accepted')
       return
     end if
     refused = refused + 1
-    call test%has_error(err, exit_structure, name//': coordinates that cannot serve')
+    call test%has_error(err, exit_structure, name//': coordinates that cannot serve are refused')
     if (.not. allocated(err)) return
     if (rank == size(dependent)) then
-      call test%is_true(index(message_of(err), 'cannot move') > 0, name//': no motion at all')
+      call test%is_true(index(message_of(err), 'cannot move') > 0, name//': the message says that the mechanism cannot move')
       return
     end if
     proposed = numbers_after(message_of(err), 'cq = ')
-    call test%is_true(size(proposed) == size(dependent) - rank, name//': as many proposed as the mobility')
+    call test%is_true(size(proposed) == size(dependent) - rank, &
+                      name//': as many coordinates are proposed as there are degrees of freedom')
     call test%is_true(serves(equations, rank, [(all(proposed /= k), k=1, size(dependent))]), &
-                      name//': what is proposed serves ('//message_of(err)//')')
+                      name//': the proposed coordinates serve ('//message_of(err)//')')
   end subroutine check
 
   !> The numbers separated by commas that follow a mark.

@@ -76,12 +76,12 @@ contains
       do i = 1, 3*per_turn
         t = real(i, wp)/per_turn
         call advance(model%problem%drives, plan, driven, t, err)
-        call test%no_error(err, 'four-bar goes on')
+        call test%no_error(err, 'a four-bar goes on')
         expected = rocker_angle(2.0_wp*pi*t)
         ! the closed form loses a few digits in its square root and arc functions
-        call test%near(driven%state%q(4), expected, 1.0e-13_wp, 'rocker angle from its closed form')
+        call test%near(driven%state%q(4), expected, 1.0e-13_wp, 'the rocker has the angle of its closed form')
       end do
-      call test%near(driven%state%q(2) + 6.0_wp*pi, coupler_angle(), 1.0e-13_wp, 'coupler after three turns')
+      call test%near(driven%state%q(2) + 6.0_wp*pi, coupler_angle(), 1.0e-13_wp, 'the coupler has its angle after three turns')
     end do
   end subroutine check_four_bar
 
@@ -125,9 +125,9 @@ contains
       call advance(model%problem%drives, plan, driven, 0.1_wp*i, err)
       if (allocated(err)) exit
     end do
-    call test%has_error(err, exit_singular, 'a dead point is exit code 6')
+    call test%has_error(err, exit_singular, 'a motion to a dead point ends with exit code 6')
     ! the motion goes on to 1e-9 of the time that was left when the limit was found
-    call test%near(driven%state%q(1), limit, 1.0e-9_wp, 'it stops at the dead point of the closed form')
-    call test%is_true(driven%state%q(1) <= limit, 'and not beyond it')
+    call test%near(driven%state%q(1), limit, 1.0e-9_wp, 'the motion stops at the dead point of the closed form')
+    call test%is_true(driven%state%q(1) <= limit, 'the motion does not go beyond the dead point')
   end subroutine check_dead_point
 end program test_driven_motion

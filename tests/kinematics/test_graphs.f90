@@ -49,7 +49,7 @@ contains
       allowed = allowed .and. count(owner == c) <= offers(c)
     end do
     call test%is_true(allowed, 'unknowns go to chains that pass through them, and to none too many')
-    call test%is_true(count(owner > 0) == most_matched(passes, offers), 'as many as can be')
+    call test%is_true(count(owner > 0) == most_matched(passes, offers), 'as many unknowns as possible are matched')
   end subroutine try_matching
 
   !> The largest flow is the least cut: over all sets of chains, what these offer and what others reach.
@@ -103,6 +103,6 @@ contains
         if (reaches(i, j)) right = right .and. component(j) <= component(i)
       end do
     end do
-    call test%is_true(right, 'components are those of mutual reach, each after those it leads to')
+    call test%is_true(right, 'components are those of mutual reach, each after those to which it leads')
   end subroutine try_components
 end program test_graphs

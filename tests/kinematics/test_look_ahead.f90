@@ -45,7 +45,7 @@ contains
     call test%no_error(err, 'a four-bar has a plan and is assembled')
     if (allocated(err)) call test%finish()
     call start_driven_motion(model%problem%drives, plan, assembled, 0.0_wp, driven, err)
-    call test%no_error(err, 'its motion starts')
+    call test%no_error(err, 'the motion of a four-bar starts')
     stepper = driven%branch_stepper_type
     do step = 1, 1000
       call step_towards(model%problem%drives, plan, stepper, t, stuck, refused_by, err)

@@ -44,17 +44,17 @@ contains
     model%mechanism%points(1) = point_type('P', 3, [0.1_wp, 0.2_wp, 0.0_wp])
     columns = kinematic_columns(model%mechanism, model%request%output)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, name//': plan')
+    call test%no_error(err, name//': there is a plan')
     call start_driven_motion(model%problem%drives, plan, state, 0.0_wp, driven, err)
-    call test%no_error(err, name//': start')
+    call test%no_error(err, name//': the motion starts')
     before = calls
-    call test%is_true(before > 0, 'the counter counts')
+    call test%is_true(before > 0, 'the counter of allocations counts')
     do i = 1, 100
       call advance(model%problem%drives, plan, driven, 0.002_wp*i, err)
       if (allocated(err)) exit
       call columns%fill(model%mechanism, plan, driven%state, row)
     end do
     call test%is_true(calls == before, name//': a hundred positions allocate nothing')
-    call test%no_error(err, name//': goes on')
+    call test%no_error(err, name//': the motion goes on')
   end subroutine count_calls
 end program test_no_allocation

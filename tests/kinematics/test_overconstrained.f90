@@ -137,15 +137,15 @@ contains
       if (i > 0) model%problem%initial%position = state%q
       model%problem%initial%position(driven) = 0.03_wp*i
       call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-      call test%no_error(err, name)
+      call test%no_error(err, name//': the mechanism is assembled')
       if (allocated(err)) return
       call check_order(test, plan, name)
       call check_closed(test, plan, state, name)
     end do
     if (.not. present(sizes)) return
     found = block_sizes(plan)
-    call test%is_true(size(found) == size(sizes), name//': number of blocks')
-    if (size(found) == size(sizes)) call test%is_true(all(found == sizes), name//': unknowns of the blocks')
+    call test%is_true(size(found) == size(sizes), name//': the number of blocks is right')
+    if (size(found) == size(sizes)) call test%is_true(all(found == sizes), name//': the blocks have the right numbers of unknowns')
   end subroutine check
 
   subroutine fails(name, n_links, links, axes, cq)
@@ -157,6 +157,6 @@ contains
     type(error_type), allocatable :: err
 
     call plan_at_home(n_links, links, axes, cq, err)
-    call test%has_error(err, exit_structure, name)
+    call test%has_error(err, exit_structure, name//': the mechanism is refused')
   end subroutine fails
 end program test_overconstrained

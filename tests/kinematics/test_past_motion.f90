@@ -94,18 +94,19 @@ contains
       call find_weights(past, t - times(last))
       q = 7.0_wp
       call predict_from_past(past, [2], q)
-      call test%near(q(1), 7.0_wp, 0.0_wp, why//': other coordinates are left')
+      call test%near(q(1), 7.0_wp, 0.0_wp, why//': the other coordinates stay')
       if (d <= degree) then
-        call test%near(q(2), -value(d, t), round_off, why//': exact')
+        call test%near(q(2), -value(d, t), round_off, why//': a motion of this degree is continued exactly')
       else
-        call test%is_true(abs(q(2) + value(d, t)) > 1.0e-9_wp, why//': of no higher degree')
+        call test%is_true(abs(q(2) + value(d, t)) > 1.0e-9_wp, why//': a motion of a higher degree is not continued exactly')
       end if
     end do
     ! rates at times that are not too close give the acceleration, too
     if (minval(abs(times(2:) - times(:last - 1))) < 0.01_wp .or. times(last) < times(last - 1)) return
     past = new_past_motion(2)
     call take(past, last, times)
-    call test%near(acceleration_from_past(past, 1), derivative(last, 2, times(last)), 1.0e-11_wp, why//': acceleration')
+    call test%near(acceleration_from_past(past, 1), derivative(last, 2, times(last)), 1.0e-11_wp, &
+                   why//': the acceleration is found')
   end subroutine check_degree
 
   !> Weights are shared by even steps, also where round-off makes them uneven; not by others.
@@ -121,7 +122,7 @@ contains
       if (i > 5) then
         call find_weights(past, h)
         call predict_from_past(past, [1, 2], q)
-        call test%near(q(1), value(5, t + h), 1.0e-14_wp, 'step after step')
+        call test%near(q(1), value(5, t + h), 1.0e-14_wp, 'a motion is continued exactly step after step')
       end if
       t = t + h
       call take(past, 5, [t])
@@ -129,7 +130,7 @@ contains
       h = h*(1.0_wp + 1.0e-13_wp)
     end do
     call clear_past(past)
-    call test%is_true(past%count == 0, 'all is forgotten')
+    call test%is_true(past%count == 0, 'a motion that is forgotten has no steps')
   end subroutine check_even_steps
 
   !> Positions are used from a long step on that rates did not predict, until steps are half as long.
@@ -138,12 +139,12 @@ contains
 
     past = new_past_motion(2)
     call choose_formula(past, 0.1_wp, 1.0e-12_wp)
-    call test%is_true(.not. past%with_positions, 'rates alone do')
+    call test%is_true(.not. past%with_positions, 'rates alone serve for steps of one length')
     call choose_formula(past, 0.1_wp, 1.0e-8_wp)
-    call test%is_true(past%with_positions, 'rates alone do not')
+    call test%is_true(past%with_positions, 'positions are taken with rates after a long step')
     call choose_formula(past, 0.06_wp, 1.0e-16_wp)
-    call test%is_true(past%with_positions, 'a step that is not much shorter')
+    call test%is_true(past%with_positions, 'positions are taken with rates after a step that is not much shorter')
     call choose_formula(past, 0.04_wp, 1.0e-16_wp)
-    call test%is_true(.not. past%with_positions, 'a step half as long')
+    call test%is_true(.not. past%with_positions, 'rates alone serve after a step half as long')
   end subroutine check_choice
 end program test_past_motion

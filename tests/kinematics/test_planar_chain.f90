@@ -71,7 +71,7 @@ contains
     real(wp) :: allowed
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, name)
+    call test%no_error(err, name//': there is a plan')
     if (allocated(err)) return
     do i = 1, size(plan%independent)
       state%dq(plan%independent(i)) = 1.0_wp + random%symmetric()
@@ -89,20 +89,22 @@ contains
         call solve_rates(plan, block, state, any_block)
         call solve_accelerations(plan, block, state, any_block)
         call factorize_block(plan, block, other, chain)
-        call test%is_true(maxval(abs(chain%jacobian - any_block%jacobian)) <= 4.0_wp*epsilon(1.0_wp), name//': Jacobian')
+        call test%is_true(maxval(abs(chain%jacobian - any_block%jacobian)) <= 4.0_wp*epsilon(1.0_wp), &
+                          name//': the Jacobians are equal')
         call solve_motion(plan, block, other, chain)
         ! round-off over the conditioning: once in rates, again in accelerations, and on in the next block
         allowed = allowed*4.0_wp/min(1.0_wp, any_block%equations%conditioning())**2
       end associate
     end do
-    call test%is_true(found == chains, name//': its chains of three')
-    call check_close(other%dq, state%dq, allowed, name//': rates')
-    call check_close(other%ddq, state%ddq, allowed, name//': accelerations')
+    call test%is_true(found == chains, name//': the chains of three equations are found')
+    call check_close(other%dq, state%dq, allowed, name//': the rates are equal')
+    call check_close(other%ddq, state%ddq, allowed, name//': the accelerations are equal')
     call check_close(reshape(other%planar%velocity, [size(state%planar%velocity)]), &
-                     reshape(state%planar%velocity, [size(state%planar%velocity)]), allowed, name//': velocities of frames')
+                     reshape(state%planar%velocity, [size(state%planar%velocity)]), allowed, &
+                     name//': the velocities of frames are equal')
     call check_close(reshape(other%planar%acceleration, [size(state%planar%acceleration)]), &
                      reshape(state%planar%acceleration, [size(state%planar%acceleration)]), allowed, &
-                     name//': accelerations of frames')
+                     name//': the accelerations of frames are equal')
   end subroutine check_same_motion
 
   subroutine check_close(values, expected, allowed, name)

@@ -21,7 +21,7 @@ program test_planning
 
   call fig1(5, model)
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  call test%no_error(err, 'Fig. 1 driven at q5')
+  call test%no_error(err, 'Fig. 1 driven at q5 has a plan')
   call test%is_true(size(plan%blocks) == 2, 'the two chains of Fig. 1 are solved one after the other')
   call test%is_true(all(plan%closures%rank == 3), 'planar chains have three independent equations')
 
@@ -30,14 +30,14 @@ program test_planning
     call fig1(k, model)
     model%problem%initial%position = assembled
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, 'Fig. 1 driven at any coordinate')
+    call test%no_error(err, 'Fig. 1 driven at any coordinate has a plan')
     if (any(k == [4, 5, 6, 7])) cycle
-    call test%is_true(size(plan%blocks) == 1, 'driven in the second chain, both are solved together')
+    call test%is_true(size(plan%blocks) == 1, 'the chains of Fig. 1 driven in the second one are solved together')
   end do
 
   call general_loop(model)
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  call test%no_error(err, 'general loop')
+  call test%no_error(err, 'a general loop has a plan')
   call test%is_true(all(plan%closures%rank == 6), 'a general loop has six independent equations')
 
   ! spherical four-bar: all axes through one point
@@ -47,7 +47,7 @@ program test_planning
   call add_revolute(model, 3, 3, 4, frame(origin, [1.0_wp, 0.6_wp, 0.2_wp]), frame(origin, [1.0_wp, 0.6_wp, 0.2_wp]))
   call add_revolute(model, 4, 4, 1, frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]), frame(origin, [1.0_wp, 0.0_wp, 0.0_wp]))
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  call test%no_error(err, 'spherical four-bar')
+  call test%no_error(err, 'a spherical four-bar has a plan')
   call test%is_true(all(plan%closures%rank == 3), 'a spherical chain has three independent equations')
 
   ! too few independent coordinates
@@ -58,19 +58,20 @@ program test_planning
                       frame([cos(1.3_wp*k), sin(1.3_wp*k), 0.0_wp], [0.0_wp, 0.0_wp, 1.0_wp]))
   end do
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  call test%has_error(err, exit_structure, 'a five-bar needs two independent coordinates')
-  call test%is_true(index(message_of(err), '1 more of the coordinates 2, 3, 4, 5') > 0, 'and is told which could be')
+  call test%has_error(err, exit_structure, 'a five-bar with one independent coordinate is refused')
+  call test%is_true(index(message_of(err), '1 more of the coordinates 2, 3, 4, 5') > 0, &
+                    'the message about the five-bar names the coordinates 2 to 5')
 
   ! too many independent coordinates
   call four_bar(1.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
   call new_partition(model%mechanism%structure, [.true., .true., .false., .false.], model%problem%partition)
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  call test%is_true(allocated(err), 'a four-bar has one independent coordinate')
+  call test%is_true(allocated(err), 'a four-bar with two independent coordinates is refused')
 
   ! impossible lengths
   call four_bar(5.0_wp, 1.0_wp, 1.3_wp, 0.9_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
   call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  call test%has_error(err, exit_assembly, 'links too short to meet')
+  call test%has_error(err, exit_assembly, 'links that are too short to meet are refused')
   ! memory that a main program holds is never given back by itself, and a leak to the sanitizer
   deallocate (assembled)
   if (allocated(err)) deallocate (err)

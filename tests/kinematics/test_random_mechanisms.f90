@@ -94,13 +94,13 @@ contains
       unit_of = merge(units(i), 1.0_wp, axes%slides)
       call home_mechanism(n_links, links, scaled, plan%independent, other)
       call make_plan(other%mechanism, other%problem%partition, start*unit_of, other_plan, other_state, err)
-      call test%no_error(err, name//' in other units')
+      call test%no_error(err, name//' has a plan in other units')
       if (allocated(err)) return
-      call test%is_true(size(plan%blocks) == size(other_plan%blocks), name//' in other units: as many blocks')
+      call test%is_true(size(plan%blocks) == size(other_plan%blocks), name//' has as many blocks in other units')
       if (size(plan%blocks) == size(other_plan%blocks)) &
-        call test%is_true(all(plan%blocks%last_step == other_plan%blocks%last_step), name//' in other units: the same blocks')
+        call test%is_true(all(plan%blocks%last_step == other_plan%blocks%last_step), name//' has the same blocks in other units')
       ! round-off of the closures, times the condition of the equations
-      call test%near(maxval(abs(other_state%q/unit_of - state%q)), 0.0_wp, 1.0e-9_wp, name//' in other units: the same position')
+      call test%near(maxval(abs(other_state%q/unit_of - state%q)), 0.0_wp, 1.0e-9_wp, name//' has the same position in other units')
     end do
   end subroutine check_units
 
@@ -116,30 +116,32 @@ contains
     integer :: k
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-    call test%no_error(err, name)
+    call test%no_error(err, name//': there is a plan')
     if (allocated(err)) return
     call check_order(test, plan, name)
     call check_closed(test, plan, state, name)
     call check_smallest(test, plan, name)
-    call test%near(maxval(abs(state%q)), 0.0_wp, 1.0e-12_wp, name//': closed at home already')
+    call test%near(maxval(abs(state%q)), 0.0_wp, 1.0e-12_wp, name//': the chains are closed at home')
     do k = 1, size(rates)
       expected(k) = random%symmetric()
     end do
     where (dependent) expected = 0.0_wp
     rates = expected
     call rates_from(equations, dependent, expected, residual_norm)
-    call test%near(residual_norm/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, name//': the oracle contradicts itself')
+    call test%near(residual_norm/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, &
+                   name//': the reference equations do not contradict themselves')
     call rates_of(plan, state, rates)
     ! the choice of coordinates is good, but some hundred at random have a condition of some thousands
-    call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, name//': rates')
+    call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, &
+                   name//': the rates are those of the reference equations')
     start = 1.0e-3_wp/maxval(abs(expected))*expected
     where (dependent) start = 0.0_wp
     call make_plan(model%mechanism, model%problem%partition, start, plan, state, err)
-    call test%no_error(err, name//' beside home')
+    call test%no_error(err, name//' is assembled beside home')
     if (allocated(err)) return
     call check_closed(test, plan, state, name//' beside home')
     ! the motion goes on with these rates but for what is of second order in 1e-3
     start = 1.0e-3_wp/maxval(abs(expected))*expected
-    call test%near(maxval(abs(state%q - start)), 0.0_wp, 5.0e-4_wp, name//': the way there')
+    call test%near(maxval(abs(state%q - start)), 0.0_wp, 5.0e-4_wp, name//': the position beside home is that of the rates')
   end subroutine check
 end program test_random_mechanisms

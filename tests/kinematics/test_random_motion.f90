@@ -28,7 +28,7 @@ program test_random_motion
     call try('spatial', 7 + modulo(3*i, 9), 1 + modulo(i, 2), 3)
   end do
   print '(i0,a,i0,a)', goes_on, ' motions to their end, ', ends, ' up to a singular position'
-  call test%is_true(ends > 10 .and. goes_on > 10, 'both kinds are among them')
+  call test%is_true(ends > 10 .and. goes_on > 10, 'motions that end and motions that go on are both among them')
   call test%finish()
 
 contains
@@ -69,7 +69,7 @@ contains
     integer :: i
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err)
-    call test%no_error(err, name//': plan')
+    call test%no_error(err, name//': there is a plan')
     if (allocated(err)) return
     deallocate (model%problem%drives)
     allocate (model%problem%drives(size(plan%independent)))
@@ -82,7 +82,7 @@ contains
     end do
     call follow(model, plan, start, 2, few, few_err)
     call follow(model, plan, start, 1500, many, many_err)
-    call test%is_true(allocated(few_err) .eqv. allocated(many_err), name//': both end, or none')
+    call test%is_true(allocated(few_err) .eqv. allocated(many_err), name//': both motions end or none')
     if (allocated(few_err) .neqv. allocated(many_err)) then
       if (allocated(few_err)) print '(2a)', '  few: ', message_of(few_err)
       if (allocated(many_err)) print '(2a)', '  many: ', message_of(many_err)
@@ -90,13 +90,13 @@ contains
     end if
     if (allocated(few_err)) then
       ends = ends + 1
-      call test%has_error(few_err, exit_singular, name//': a singular position')
-      call test%near(few%ahead%t, many%ahead%t, 1.0e-9_wp, name//': at the same time')
+      call test%has_error(few_err, exit_singular, name//': the motion ends at a singular position')
+      call test%near(few%ahead%t, many%ahead%t, 1.0e-9_wp, name//': both motions end at one time')
     else
       goes_on = goes_on + 1
       ! round-off of positions over the least singular value
       call test%near(maxval(abs(few%state%q - many%state%q)/plan%unit_of), 0.0_wp, &
-                     1.0e-13_wp/min(few%conditioning%least, many%conditioning%least), name//': to the same position')
+                     1.0e-13_wp/min(few%conditioning%least, many%conditioning%least), name//': both motions come to one position')
     end if
   end subroutine compare
 

@@ -42,7 +42,7 @@ contains
     type(error_type), allocatable :: err
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err)
-    call test%no_error(err, 'plan and assembly')
+    call test%no_error(err, 'the mechanism has a plan and is assembled')
     if (allocated(err)) call test%finish()
     call find_range(plan, start, coordinate, range)
   end subroutine range_of
@@ -53,10 +53,10 @@ contains
     real(wp), intent(in) :: upper                  !< the right upper end [rad, m]
     character(len=*), intent(in) :: name           !< of the mechanism, for the report of a failure
 
-    call test%is_true(range%lower%kind == ends_at_limit .and. range%upper%kind == ends_at_limit, name//': two limits')
-    call test%near(range%lower%value, lower, tolerance, name//': the lower one')
-    call test%near(range%upper%value, upper, tolerance, name//': the upper one')
-    call test%is_true(range%lower%block == 1 .and. range%upper%block == 1, name//': its only chain limits it')
+    call test%is_true(range%lower%kind == ends_at_limit .and. range%upper%kind == ends_at_limit, name//': the range has two limits')
+    call test%near(range%lower%value, lower, tolerance, name//': the lower limit is that of the closed form')
+    call test%near(range%upper%value, upper, tolerance, name//': the upper limit is that of the closed form')
+    call test%is_true(range%lower%block == 1 .and. range%upper%block == 1, name//': the only chain limits the range')
   end subroutine check_limits
 
   !> A crank between two positions in which coupler and rocker are stretched out: it swings through zero.
@@ -105,8 +105,9 @@ contains
     bar = random_crank(random, 0.1_wp*abs(random%symmetric()))
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.4_wp, branch), model)
     call range_of(model, 1, range)
-    call test%is_true(range%upper%kind == ends_round .and. range%lower%kind == ends_round, 'a crank that turns')
-    call test%is_true(range%upper%turns == 1, 'and is round after one turn')
+    call test%is_true(range%upper%kind == ends_round .and. range%lower%kind == ends_round, &
+                      'a crank that turns fully comes round both ways')
+    call test%is_true(range%upper%turns == 1, 'a crank that turns fully comes round after one turn')
   end subroutine full_turn
 
   !> A slider-crank driven at its slider: between crank and coupler stretched out and folded.
@@ -148,9 +149,10 @@ contains
     call add_revolute(model, 1, 1, 2, frame(0.0_wp*z, z), frame(0.0_wp*z, z))
     call add_prismatic(model, 2, 2, 3, frame(x, x), frame(0.0_wp*x, x))
     call range_of(model, 1, range)
-    call test%is_true(range%upper%kind == ends_round, 'an arm turns round')
+    call test%is_true(range%upper%kind == ends_round, 'an arm that carries nothing turns round')
     call range_of(model, 2, range)
-    call test%is_true(range%upper%kind == ends_never .and. range%lower%kind == ends_never, 'a slide has no end')
-    call test%is_true(range%upper%value > 10.0_wp .and. range%lower%value < -10.0_wp, 'as far as was looked')
+    call test%is_true(range%upper%kind == ends_never .and. range%lower%kind == ends_never, &
+                      'a slide that carries nothing has no end')
+    call test%is_true(range%upper%value > 10.0_wp .and. range%lower%value < -10.0_wp, 'the range of a slide is followed far')
   end subroutine open_chain
 end program test_range

@@ -43,7 +43,7 @@ contains
     g = random_pose(random)
     pair = helical_pair(f, g, pitch)
     call pair%evaluate(q, motion, err)
-    call test%no_error(err, 'a helical pair')
+    call test%no_error(err, 'a helical pair is evaluated')
     back = reversed_motion(motion)
     call poses_around(test, pair, q, h, poses)
     do i = -half_width, half_width
@@ -54,12 +54,12 @@ contains
     ! (F motion(q) G^-1)^-1 = G motion(-q) F^-1: the same pair with its frames exchanged, run backwards
     exchanged = helical_pair(g, f, pitch)
     call exchanged%evaluate(-q, expected, err)
-    call test%no_error(err, 'the exchanged pair')
+    call test%no_error(err, 'a helical pair with its links exchanged is evaluated')
     expected%w = -expected%w
     expected%v = -expected%v
     call check_same_motion(test, back, expected, [1.0e-14_wp, 1.0e-14_wp, 1.0e-14_wp], 'a screw with its frames exchanged')
     call test%near(largest_difference(compose(motion%pose, back%pose), identity_pose), 0.0_wp, 1.0e-14_wp, &
-                   'there and back')
+                   'a pose followed by that of the exchanged pair is no displacement')
     call check_same_motion(test, reversed_motion(back), motion, [1.0e-14_wp, 1.0e-14_wp, 1.0e-14_wp], 'twice reversed')
   end subroutine reversed_screw
 

@@ -88,7 +88,7 @@ contains
     type(error_type), allocatable :: err
 
     call plan_at_home(n_links, links, axes, cq, err)
-    call test%no_error(err, name)
+    call test%no_error(err, name//': the mechanism has a plan')
   end subroutine serves
 
   subroutine fails(name, n_links, links, axes, cq)
@@ -100,6 +100,6 @@ contains
     type(error_type), allocatable :: err
 
     call plan_at_home(n_links, links, axes, cq, err)
-    call test%has_error(err, exit_structure, name)
+    call test%has_error(err, exit_structure, name//': the mechanism is refused')
   end subroutine fails
 end program test_singular_home

@@ -95,18 +95,18 @@ contains
       do j = 1, n
         call advance(model%problem%drives, plan, driven, 4.0_wp*j/n, err)
         if (allocated(err)) exit
-        call test%is_true((limit - driven%state%q(1))*direction > 0.0_wp, name//': no output beyond the dead point')
+        call test%is_true((limit - driven%state%q(1))*direction > 0.0_wp, name//': no output lies beyond the dead point')
       end do
-      call test%has_error(err, exit_singular, name//': a dead point is exit code 6')
+      call test%has_error(err, exit_singular, name//': the motion to a dead point ends with exit code 6')
       if (.not. allocated(err)) cycle
       ! the closed form itself loses no digits; the square-root law that the limit is taken from is exact
       ! to the square of the last distance, about 1e-9
-      call test%near(driven%limit(1), limit, 1.0e-10_wp, name//': the limit by its closed form')
+      call test%near(driven%limit(1), limit, 1.0e-10_wp, name//': the limit is that of the closed form')
       ! and the motion goes on to 1e-9 of the time that was left when the limit was found
-      call test%near(driven%state%q(1), limit, 1.0e-9_wp, name//': it stops at the dead point')
-      call test%is_true((limit - driven%state%q(1))*direction > 0.0_wp, name//': and just short of it')
+      call test%near(driven%state%q(1), limit, 1.0e-9_wp, name//': the motion stops at the dead point')
+      call test%is_true((limit - driven%state%q(1))*direction > 0.0_wp, name//': the motion stops just short of the dead point')
       call test%is_true(index(message_of(err), 'dead point') > 0 .and. index(message_of(err), 'q1') > 0, &
-                        name//': the message says so')
+                        name//': the message names the dead point and the coordinate')
     end do
   end subroutine find_end
 
@@ -131,10 +131,11 @@ contains
       if (allocated(err)) exit
       associate (state => driven%state)
         call test%near(maxval(angle_between(state%q(2:), expected + factors*state%q(1))), 0.0_wp, at_crossing(0), &
-                       name//': positions')
-        call test%near(maxval(abs(state%dq(2:) - factors*state%dq(1))), 0.0_wp, at_crossing(1)*abs(state%dq(1)), name//': rates')
+                       name//': the positions are proportional')
+        call test%near(maxval(abs(state%dq(2:) - factors*state%dq(1))), 0.0_wp, at_crossing(1)*abs(state%dq(1)), &
+                       name//': the rates are proportional')
         call test%near(maxval(abs(state%ddq(2:) - factors*state%ddq(1))), 0.0_wp, at_crossing(2)*state%dq(1)**2, &
-                       name//': accelerations')
+                       name//': the accelerations are proportional')
       end associate
     end do
     call test%no_error(err, name//' goes on')
@@ -169,16 +170,17 @@ contains
     call four_bar(ground, crank, ground, crank, four_bar_guess(bar, start, -1), model)
     call drive(model, 1, [start, 3.0_wp*pi])
     call begin_motion(test, model, 0.0_wp, plan, driven)
-    call test%is_true(angle_between(driven%state%q(4), start) > 1.0_wp, 'it is not the parallelogram')
+    call test%is_true(angle_between(driven%state%q(4), start) > 1.0_wp, 'the antiparallelogram is not the parallelogram')
     do j = 1, n
       call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       associate (a => driven%state%q(1), b => driven%state%q(4))
         ! the pins are apart by the coupler's length, and the rocker turns against the crank
         gap = hypot(ground + crank*(cos(b) - cos(a)), crank*(sin(b) - sin(a))) - ground
-        call test%near(gap, 0.0_wp, at_crossing(0), 'an antiparallelogram: positions')
+        call test%near(gap, 0.0_wp, at_crossing(0), 'an antiparallelogram: the positions are those of the closed form')
         rate = -(ground**2 - crank**2)/(ground**2 + crank**2 - 2.0_wp*ground*crank*cos(a))*driven%state%dq(1)
-        call test%near((driven%state%dq(4) - rate)/driven%state%dq(1), 0.0_wp, at_crossing(1), 'an antiparallelogram: rates')
+        call test%near((driven%state%dq(4) - rate)/driven%state%dq(1), 0.0_wp, at_crossing(1), &
+                       'an antiparallelogram: the rates are those of the closed form')
       end associate
     end do
     call test%no_error(err, 'an antiparallelogram goes on')
@@ -208,8 +210,10 @@ contains
       half = 0.5_wp*driven%state%q(1)
       expected = half + 0.5_wp*pi - acos(short*sin(half)/long)
       rate = (0.5_wp + 0.5_wp*short*cos(half)/sqrt(long**2 - (short*sin(half))**2))*driven%state%dq(1)
-      call test%near(angle_between(driven%state%q(4), expected), 0.0_wp, at_crossing(0), 'a kite: rocker')
-      call test%near((driven%state%dq(4) - rate)/driven%state%dq(1), 0.0_wp, at_crossing(1), 'a kite: rate of the rocker')
+      call test%near(angle_between(driven%state%q(4), expected), 0.0_wp, at_crossing(0), &
+                     'a kite: the rocker has the angle of the closed form')
+      call test%near((driven%state%dq(4) - rate)/driven%state%dq(1), 0.0_wp, at_crossing(1), &
+                     'a kite: the rocker has the rate of the closed form')
     end do
     call test%no_error(err, 'a kite goes on')
   end subroutine check_kite
@@ -232,11 +236,12 @@ contains
       call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
       associate (state => driven%state)
-        call test%near(state%q(4) - 2.0_wp*arm*cos(state%q(1)), 0.0_wp, at_crossing(0), 'equal arms: slider')
+        call test%near(state%q(4) - 2.0_wp*arm*cos(state%q(1)), 0.0_wp, at_crossing(0), &
+                       'equal arms: the slider has the position of the closed form')
         call test%near(state%dq(4)/state%dq(1) + 2.0_wp*arm*sin(state%q(1)), 0.0_wp, at_crossing(1), &
-                       'equal arms: rate of the slider')
+                       'equal arms: the slider has the rate of the closed form')
         call test%near(state%ddq(4)/state%dq(1)**2 + 2.0_wp*arm*cos(state%q(1)), 0.0_wp, at_crossing(2), &
-                       'equal arms: acceleration')
+                       'equal arms: the slider has the acceleration of the closed form')
       end associate
     end do
     call test%no_error(err, 'equal arms go on')
@@ -274,7 +279,8 @@ contains
     ! half a period later the crank is back, and the rocker on the other side
     guess = four_bar_guess(bar, 0.7_wp*limit, -1)
     ! far from the dead point again: round-off over a pivot of 0.1 and more
-    call test%near(maxval(angle_between(driven%state%q, guess)), 0.0_wp, 1.0e-13_wp, 'a touched dead point: the other side')
+    call test%near(maxval(angle_between(driven%state%q, guess)), 0.0_wp, 1.0e-13_wp, &
+                   'a dead point that is only touched leads to the other side')
   end subroutine check_touched_dead_point
 
   !> A parallelogram, and a second one on its coupler: both are flat at once.
@@ -301,8 +307,10 @@ contains
     do j = 1, n
       call advance(model%problem%drives, plan, driven, real(j, wp)/n, err)
       if (allocated(err)) exit
-      call test%near(angle_between(driven%state%q(7), driven%state%q(1)), 0.0_wp, at_crossing(0), 'two parallelograms')
-      call test%near(driven%state%dq(7)/driven%state%dq(1), 1.0_wp, at_crossing(1), 'two parallelograms: rates')
+      call test%near(angle_between(driven%state%q(7), driven%state%q(1)), 0.0_wp, at_crossing(0), &
+                     'two parallelograms: the second rocker has the angle of the crank')
+      call test%near(driven%state%dq(7)/driven%state%dq(1), 1.0_wp, at_crossing(1), &
+                     'two parallelograms: the second rocker has the rate of the crank')
     end do
     call test%no_error(err, 'two parallelograms go on')
   end subroutine check_two_at_once

@@ -48,9 +48,11 @@ contains
       position = half + 0.5_wp*pi - acos(short*sin(half)/long)
       rate = (0.5_wp + 0.5_wp*short*cos(half)/root)*speed
       acceleration = 0.25_wp*short*sin(half)*(short**2*cos(half)**2/root**3 - 1.0_wp/root)*speed**2
-      call test%near(driven%state%q(4) - position, 0.0_wp, at_crossing(0), 'a kite: position')
-      call test%near((driven%state%dq(4) - rate)/speed, 0.0_wp, at_crossing(1), 'a kite: rate')
-      call test%near((driven%state%ddq(4) - acceleration)/speed**2, 0.0_wp, at_crossing(2), 'a kite: acceleration')
+      call test%near(driven%state%q(4) - position, 0.0_wp, at_crossing(0), 'a kite: the rocker has the position of the closed form')
+      call test%near((driven%state%dq(4) - rate)/speed, 0.0_wp, at_crossing(1), &
+                     'a kite: the rocker has the rate of the closed form')
+      call test%near((driven%state%ddq(4) - acceleration)/speed**2, 0.0_wp, at_crossing(2), &
+                     'a kite: the rocker has the acceleration of the closed form')
       if (j < n) call advance(model%problem%drives, plan, driven, (j + 1)*1.5_wp/(abs(speed)*n), err)
     end do
     call test%no_error(err, 'a kite goes on')
@@ -83,14 +85,14 @@ contains
     character(len=:), allocatable :: text
     integer :: i
 
-    call test%has_error(err, exit_singular, 'two ways lead on: exit code 6')
+    call test%has_error(err, exit_singular, 'a start from which two ways lead on ends with exit code 6')
     if (.not. allocated(err)) return
     text = message_of(err)
     do i = 1, len(text)
       if (text(i:i) == ',' .or. text(i:i) == ';') text(i:i) = ' '
     end do
-    call test%is_true(index(text, first) > 0, 'one way: '//first)
-    call test%is_true(index(text, second) > 0, 'the other way: '//second)
+    call test%is_true(index(text, first) > 0, 'the message tells one way: '//first)
+    call test%is_true(index(text, second) > 0, 'the message tells the other way: '//second)
     if (index(text, first) == 0 .or. index(text, second) == 0) print '(a)', text
   end subroutine refused
 
@@ -107,7 +109,8 @@ contains
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit, 1), model)
     call drive(model, 1, [limit, -1.0_wp])
     call begin_motion(test, model, 0.0_wp, plan, driven, err)
-    call test%has_error(err, exit_singular, 'a start at a dead point: exit code 6')
-    if (allocated(err)) call test%is_true(index(message_of(err), 'dead point') > 0, 'the message says so')
+    call test%has_error(err, exit_singular, 'a start at a dead point ends with exit code 6')
+    if (allocated(err)) call test%is_true(index(message_of(err), 'dead point') > 0, &
+                                          'the message about a start at a dead point says so')
   end subroutine dead_start
 end program test_special_start

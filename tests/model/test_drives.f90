@@ -54,7 +54,7 @@ contains
     end do
     call derivatives_from_stencil(values, h, first, second, error)
     call drive%evaluate(t, q, dq, ddq, err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': the drive has a value')
     call test%near(q, values(0), 0.0_wp, why//': the value is the same in each call')
     call test%near(dq, first, 1.0e-12_wp, why//': the first derivative is the slope of the values')
     call test%near(ddq, second, 5.0e-11_wp, why//': the second derivative is the curvature of the values')

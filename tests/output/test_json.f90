@@ -38,13 +38,13 @@ contains
     call json%add('pair', [1.5_wp, -2.0_wp])
     call json%end_object()
     call json%save('document.json', err)
-    call tester%no_error(err, 'save')
+    call tester%no_error(err, 'a document is saved')
     call tester%is_true(file_text('document.json') == '{'//nl// &
       '  "a \"b\"\\": "tab\t\n\u0001\ufffd'//char(195)//char(169)//'",'//nl// &
       '  "count": 3000000000,'//nl// &
       '  "list": ['//nl//'    1,'//nl//'    false,'//nl//'    "x",'//nl//'    0.25,'//nl//'    {}'//nl//'  ],'//nl// &
       '  "ok": true,'//nl// &
-      '  "pair": ['//nl//'    1.5,'//nl//'    -2'//nl//'  ]'//nl//'}'//nl, 'the document, letter by letter')
+      '  "pair": ['//nl//'    1.5,'//nl//'    -2'//nl//'  ]'//nl//'}'//nl, 'a document is right letter by letter')
   end subroutine test_document
 
   !> Every number comes back bit for bit, in the shortest form that does so among 15 to 17 digits.
@@ -64,19 +64,19 @@ contains
     end do
     call json%end_array()
     call json%save('numbers.json', err)
-    call tester%no_error(err, 'save')
+    call tester%no_error(err, 'numbers are saved')
     open (newunit=unit, file='numbers.json', action='read', status='old')
     read (unit, '(a)') line
     do i = 1, 6
       read (unit, '(a)') line
       read (line(:len_trim(line) - 1), *) read_back
-      call tester%is_true(transfer(read_back, 0_long) == transfer(numbers(i), 0_long), 'bit for bit: '//line)
-      if (i == 1) call tester%is_true(line == '  0.1,', 'a tenth is 0.1')
+      call tester%is_true(transfer(read_back, 0_long) == transfer(numbers(i), 0_long), 'a number comes back bit for bit: '//line)
+      if (i == 1) call tester%is_true(line == '  0.1,', 'a tenth is written as 0.1')
     end do
     read (unit, '(a)') line
-    call tester%is_true(line == '  null,', 'infinity is null')
+    call tester%is_true(line == '  null,', 'infinity is written as null')
     read (unit, '(a)') line
-    call tester%is_true(line == '  null', 'not a number is null')
+    call tester%is_true(line == '  null', 'a number that is none is written as null')
     close (unit)
   end subroutine test_numbers
 
@@ -89,22 +89,22 @@ contains
 
     call open_end%begin_object()
     call open_end%save('bad.json', err)
-    call tester%has_error(err, exit_internal, 'an object that does not end')
+    call tester%has_error(err, exit_internal, 'an object that does not end is refused')
     call no_name%begin_object()
     call no_name%add(1)
     call no_name%end_object()
     call no_name%save('bad.json', err)
-    call tester%has_error(err, exit_internal, 'an item without a name in an object')
+    call tester%has_error(err, exit_internal, 'an item without a name in an object is refused')
     call crossed%begin_array()
     call crossed%end_object()
     call crossed%save('bad.json', err)
-    call tester%has_error(err, exit_internal, 'an array that ends as an object')
+    call tester%has_error(err, exit_internal, 'an array that ends as an object is refused')
     call two%add(1)
     call two%add(2)
     call two%save('bad.json', err)
-    call tester%has_error(err, exit_internal, 'two values at the top')
+    call tester%has_error(err, exit_internal, 'two values at the top are refused')
     call nothing%save('bad.json', err)
-    call tester%has_error(err, exit_internal, 'nothing at all')
+    call tester%has_error(err, exit_internal, 'an empty document is refused')
     do i = 1, 100
       call deep%begin_array()
     end do
@@ -112,7 +112,7 @@ contains
       call deep%end_array()
     end do
     call deep%save('bad.json', err)
-    call tester%has_error(err, exit_internal, 'deeper than there is room for')
+    call tester%has_error(err, exit_internal, 'a document deeper than there is room for is refused')
     call test_full_disk(tester)
   end subroutine test_misuse
 
@@ -123,7 +123,7 @@ contains
 
     call json%add(1)
     call json%save('/dev/full', err)
-    call tester%has_error(err, exit_file, 'a full disk')
+    call tester%has_error(err, exit_file, 'a full disk is told')
   end subroutine test_full_disk
 
   !> The whole text of a small file.

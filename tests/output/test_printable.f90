@@ -32,11 +32,11 @@ contains
     call is(column_name(' '), '_', 'a name of nothing')
     call test%is_true(utf8_length(e_acute, 1) == 2 .and. utf8_length(e_acute, 2) == 0, 'a letter begins at its first byte')
     ! the first numbers that need two, three and four bytes, written in one more than they need, are no text
-    call test%is_true(utf8_length(char(192)//char(128), 1) == 0, 'an overlong form of two bytes')
-    call test%is_true(utf8_length(char(224)//char(130)//char(128), 1) == 0, 'an overlong form of three')
-    call test%is_true(utf8_length(char(237)//char(160)//char(128), 1) == 0, 'a surrogate')
-    call test%is_true(utf8_length(char(244)//char(143)//char(191)//char(191), 1) == 4, 'the last number there is')
-    call test%is_true(utf8_length(char(244)//char(144)//char(128)//char(128), 1) == 0, 'the number after it')
+    call test%is_true(utf8_length(char(192)//char(128), 1) == 0, 'an overlong form of two bytes is no letter')
+    call test%is_true(utf8_length(char(224)//char(130)//char(128), 1) == 0, 'an overlong form of three bytes is no letter')
+    call test%is_true(utf8_length(char(237)//char(160)//char(128), 1) == 0, 'a surrogate is no letter')
+    call test%is_true(utf8_length(char(244)//char(143)//char(191)//char(191), 1) == 4, 'the last number of a letter is accepted')
+    call test%is_true(utf8_length(char(244)//char(144)//char(128)//char(128), 1) == 0, 'the number after the last one is no letter')
   end subroutine test_clean_texts
 
   subroutine is(text, expected, why)

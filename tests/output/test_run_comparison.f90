@@ -54,13 +54,13 @@ contains
 
     kept = new_run(10, 2.0_wp)
     call tester%is_true(kept%count == 11 .and. kept%stride == 1, 'all rows are kept')
-    call tester%near(kept%rows(2, 11), 2.0_wp, 0.0_wp, 'the last one is the last one')
+    call tester%near(kept%rows(2, 11), 2.0_wp, 0.0_wp, 'the last row that is kept is the last one of the run')
     call kept%column('P.x', number, meant)
-    call tester%is_true(number == 3, 'a column by its name')
+    call tester%is_true(number == 3, 'a column is found by its name')
     call kept%column('P.y', number, meant)
-    call tester%is_true(number == 0 .and. meant == 'P.x', 'or what was probably meant')
+    call tester%is_true(number == 0 .and. meant == 'P.x', 'a name that is nearly that of a column tells which was meant')
     call kept%column('velocity', number, meant)
-    call tester%is_true(number == 0 .and. meant == '', 'or nothing')
+    call tester%is_true(number == 0 .and. meant == '', 'a name that is like no column tells nothing')
   end subroutine test_kept
 
   !> A run that is too long for the memory is kept in part: the first row, and then every n-th one.
@@ -80,9 +80,10 @@ contains
       call kept%take(rows)
     end do
     call tester%is_true(kept%stride > 1, 'not all of forty million numbers are kept')
-    call tester%is_true(size(kept%rows, kind=8) <= 2_8**24 + 1, 'but as many as there is memory for')
-    call tester%is_true(kept%count == (100000 - 1)/kept%stride + 1, 'as many as the stride leaves')
-    call tester%near(kept%rows(1, kept%count), real((kept%count - 1)*kept%stride, wp), 0.0_wp, 'each of its number')
+    call tester%is_true(size(kept%rows, kind=8) <= 2_8**24 + 1, 'as many numbers are kept as there is memory for')
+    call tester%is_true(kept%count == (100000 - 1)/kept%stride + 1, 'as many rows are kept as the stride leaves')
+    call tester%near(kept%rows(1, kept%count), real((kept%count - 1)*kept%stride, wp), 0.0_wp, &
+                     'each row that is kept has its number')
   end subroutine test_thinned
 
   subroutine test_text(tester)
@@ -92,7 +93,7 @@ contains
     text = rows_text(new_run(4, 2.0_wp), [1, 3], 2)
     call tester%is_true(text == '            t          P.x'//eol//'            s            m'//eol// &
                         '         0.75        2.125'//eol//'            1            3'//eol// &
-                        '(the last 2 of 5 rows; 2 of 4 columns)'//eol, 'the last two rows of two columns: '//eol//text)
+                        '(the last 2 of 5 rows; 2 of 4 columns)'//eol, 'the last two rows of two columns are printed: '//eol//text)
   end subroutine test_text
 
   !> q1 differs by |a - b| at t = 1 s; P.x as well, a smaller share; P.z by no more than round-off.
@@ -102,28 +103,31 @@ contains
     character(len=:), allocatable :: text
 
     call compare_runs(new_run(10, 2.0_wp), new_run(10, 2.5_wp), comparison)
-    call tester%is_true(comparison%times == 11, 'at all times')
+    call tester%is_true(comparison%times == 11, 'runs are compared at all their times')
     call tester%is_true(size(comparison%columns) == 2 .and. comparison%alike == 1 .and. comparison%same == 0, &
-                        'two columns differ, one but by round-off')
+                        'two columns differ, and one of the others by round-off')
     associate (first => comparison%columns(1), second => comparison%columns(2))
-      call tester%is_true(first%column == 2 .and. second%column == 3, 'the greatest share first')
-      call tester%near(first%difference, 0.5_wp, 1.0e-15_wp, 'of q1')
-      call tester%near(first%share, 0.5_wp/2.5_wp, 1.0e-15_wp, 'of the largest value of its unit')
-      call tester%near(second%difference, 0.5_wp, 1.0e-15_wp, 'of P.x')
-      call tester%near(second%share, 0.5_wp/3.5_wp, 1.0e-15_wp, 'a share of P.x and P.z together')
-      call tester%near(second%time, 1.0_wp, 0.0_wp, 'at the end')
-      call tester%near(second%before, 3.0_wp, 1.0e-15_wp, 'from')
-      call tester%near(second%after, 3.5_wp, 1.0e-15_wp, 'to')
+      call tester%is_true(first%column == 2 .and. second%column == 3, 'the column that differs by the greatest share comes first')
+      call tester%near(first%difference, 0.5_wp, 1.0e-15_wp, 'the difference of q1 is right')
+      call tester%near(first%share, 0.5_wp/2.5_wp, 1.0e-15_wp, 'the difference of q1 is a part of the largest value of its unit')
+      call tester%near(second%difference, 0.5_wp, 1.0e-15_wp, 'the difference of P.x is right')
+      call tester%near(second%share, 0.5_wp/3.5_wp, 1.0e-15_wp, &
+                       'the difference of P.x is a part of the largest value of P.x and P.z')
+      call tester%near(second%time, 1.0_wp, 0.0_wp, 'the greatest difference of P.x is found at the end')
+      call tester%near(second%before, 3.0_wp, 1.0e-15_wp, 'the value of P.x in the first run is told')
+      call tester%near(second%after, 3.5_wp, 1.0e-15_wp, 'the value of P.x in the second run is told')
     end associate
     call compare_runs(new_run(10, 2.5_wp), new_run(10, 2.0_wp), comparison)
-    call tester%near(comparison%columns(1)%share, 0.5_wp/2.5_wp, 1.0e-15_wp, 'whichever of the two runs has the larger values')
+    call tester%near(comparison%columns(1)%share, 0.5_wp/2.5_wp, 1.0e-15_wp, &
+                     'the share does not depend on which run has the larger values')
     call compare_runs(new_run(10, 2.0_wp), new_run(10, 2.5_wp), comparison)
     text = comparison_text(comparison, new_run(10, 2.5_wp))
     call tester%is_true(index(text, '2 columns differ, 1 do not') > 0 .and. index(text, 'q1') < index(text, 'P.x'), &
-                        'in words: '//text)
+                        'the comparison is told in words: '//text)
     call compare_runs(new_run(10, 2.0_wp), new_run(10, 2.0_wp), comparison)
     text = comparison_text(comparison, new_run(10, 2.0_wp))
-    call tester%is_true(comparison%same == 3 .and. index(text, 'to the last bit') > 0, 'a run against itself')
+    call tester%is_true(comparison%same == 3 .and. index(text, 'to the last bit') > 0, &
+                        'a run is the same as itself to the last bit')
   end subroutine test_comparison
 
   subroutine test_common_times(tester)
@@ -133,11 +137,12 @@ contains
 
     call compare_runs(new_run(10, 2.0_wp), new_run(15, 2.0_wp), comparison)
     call tester%is_true(comparison%times == 6, 'tenths and fifteenths of a second have fifths in common')
-    call tester%is_true(size(comparison%columns) == 0, 'where the runs are the same')
+    call tester%is_true(size(comparison%columns) == 0, 'runs that are the same have no columns that differ')
     later = new_run(10, 2.0_wp)
     later%rows(1, :) = later%rows(1, :) + 5.0_wp
     call compare_runs(new_run(10, 2.0_wp), later, comparison)
     call tester%is_true(comparison%times == 0 .and. &
-                        index(comparison_text(comparison, later), 'no time in common') > 0, 'no time in common')
+                        index(comparison_text(comparison, later), 'no time in common') > 0, &
+                        'runs without a time in common are told as such')
   end subroutine test_common_times
 end program test_run_comparison

@@ -40,26 +40,26 @@ contains
     integer :: count
 
     call open_two_columns(table, 'contents.dat', err)
-    call tester%no_error(err, 'open')
+    call tester%no_error(err, 'a table is opened')
     call table%write_row([0.0_wp, -1.0_wp/3.0_wp], err)
     call table%write_row([0.1_wp, 1.0e-300_wp], err)
-    call tester%no_error(err, 'write_row')
+    call tester%no_error(err, 'a row is written')
     call table%close(err)
-    call tester%no_error(err, 'close')
+    call tester%no_error(err, 'a table is closed')
     call table%close(err)
-    call tester%no_error(err, 'closing again does nothing')
+    call tester%no_error(err, 'closing a table again does nothing')
     call read_lines('contents.dat', lines, count)
-    call tester%is_true(count == 6, 'three comments, names, two rows')
-    call tester%is_true(lines(1) == '# Two columns', 'the title')
-    call tester%is_true(lines(2) == '# mech9k 0.0', 'the program')
+    call tester%is_true(count == 6, 'a table has three comments, the names and two rows')
+    call tester%is_true(lines(1) == '# Two columns', 'the title stands in the first line')
+    call tester%is_true(lines(2) == '# mech9k 0.0', 'the program stands in the second line')
     call tester%is_true(lines(3)(:8) == '# units:' .and. adjustl(lines(3)(9:25)) == 's' &
-                        .and. adjustl(lines(3)(26:)) == 'rad', 'the units above their columns')
-    call tester%is_true(adjustl(lines(4)(:25)) == 't' .and. adjustl(lines(4)(26:)) == 'q1', 'the names')
+                        .and. adjustl(lines(3)(26:)) == 'rad', 'the units stand above their columns')
+    call tester%is_true(adjustl(lines(4)(:25)) == 't' .and. adjustl(lines(4)(26:)) == 'q1', 'the names stand above their columns')
     read (lines(5), *) row
-    call tester%is_true(all(abs(row - [0.0_wp, -1.0_wp/3.0_wp]) <= 0.0_wp), 'the first row, bit for bit')
+    call tester%is_true(all(abs(row - [0.0_wp, -1.0_wp/3.0_wp]) <= 0.0_wp), 'the first row comes back bit for bit')
     read (lines(6), *) row
-    call tester%is_true(all(abs(row - [0.1_wp, 1.0e-300_wp]) <= 0.0_wp), 'the second row, bit for bit')
-    call tester%is_true(len_trim(lines(5)) == 50 .and. len_trim(lines(6)) == 50, 'columns of one width')
+    call tester%is_true(all(abs(row - [0.1_wp, 1.0e-300_wp]) <= 0.0_wp), 'the second row comes back bit for bit')
+    call tester%is_true(len_trim(lines(5)) == 50 .and. len_trim(lines(6)) == 50, 'columns have one width')
   end subroutine test_contents
 
   !> Titles and names of any bytes leave a table that can be read.
@@ -74,13 +74,13 @@ contains
     call table%open('odd.dat', 'one'//achar(10)//'two'//achar(13)//achar(10)//achar(0)//'a'//achar(27) &
                     //char(255)//e_acute//char(195), 'p', &
                     words('t|a b#"c|'//repeat('n', 30)), words('|m/s|N m'), err)
-    call tester%no_error(err, 'open')
+    call tester%no_error(err, 'a table with a title of several lines is opened')
     call table%write_row([1.0_wp, 2.0_wp, 3.0_wp], err)
     call table%close(err)
     call read_lines('odd.dat', lines, count)
     call tester%is_true(count == 7, 'a comment for each line of the title and no other lines')
-    call tester%is_true(lines(1) == '# one' .and. lines(2) == '# two', 'the title in lines')
-    call tester%is_true(lines(3) == '#  a ?'//e_acute//'?', 'control characters and broken UTF-8 are gone')
+    call tester%is_true(lines(1) == '# one' .and. lines(2) == '# two', 'each line of the title is a comment')
+    call tester%is_true(lines(3) == '#  a ?'//e_acute//'?', 'control characters and broken UTF-8 are replaced')
     call tester%is_true(lines(5)(25:25) == '1' .and. lines(5)(48:50) == 'm/s' &
                         .and. adjustl(lines(5)(51:)) == 'N_m', 'a plain number has the unit 1')
     call tester%is_true(lines(6)(45:50) == 'a_b__c', 'a name is one word and no comment')
@@ -97,19 +97,22 @@ contains
     integer :: count
 
     call table%open('commas.CSV', 'title', 'p', words('t|a, b|say "x"'), words('s|m|m'), err)
-    call tester%no_error(err, 'open')
+    call tester%no_error(err, 'a table with commas is opened')
     call table%write_row([0.1_wp, -1.0_wp/3.0_wp, 1.0e-300_wp], err)
     call table%write_row([0.0_wp, 1.0_wp, -huge(1.0_wp)], err)
     call table%close(err)
-    call tester%no_error(err, 'close')
+    call tester%no_error(err, 'a table with commas is closed')
     call read_lines('commas.CSV', lines, count)
-    call tester%is_true(count == 3, 'names and two rows')
-    call tester%is_true(lines(1) == 't,"a, b","say ""x"""', 'the names, each in quotes for a reason of its own')
-    call tester%is_true(scan(trim(lines(2)), ' ') == 0 .and. scan(trim(lines(3)), ' ') == 0, 'no blanks')
+    call tester%is_true(count == 3, 'a table with commas has the names and two rows')
+    call tester%is_true(lines(1) == 't,"a, b","say ""x"""', 'names with commas and quotes are written in quotes')
+    call tester%is_true(scan(trim(lines(2)), ' ') == 0 .and. scan(trim(lines(3)), ' ') == 0, &
+                        'a table with commas has no blanks in its rows')
     read (lines(2), *) row
-    call tester%is_true(all(abs(row - [0.1_wp, -1.0_wp/3.0_wp, 1.0e-300_wp]) <= 0.0_wp), 'the first row, bit for bit')
+    call tester%is_true(all(abs(row - [0.1_wp, -1.0_wp/3.0_wp, 1.0e-300_wp]) <= 0.0_wp), &
+                        'the first row with commas comes back bit for bit')
     read (lines(3), *) row
-    call tester%is_true(all(abs(row - [0.0_wp, 1.0_wp, -huge(1.0_wp)]) <= 0.0_wp), 'the second row, bit for bit')
+    call tester%is_true(all(abs(row - [0.0_wp, 1.0_wp, -huge(1.0_wp)]) <= 0.0_wp), &
+                        'the second row with commas comes back bit for bit')
   end subroutine test_commas
 
   !> Several buffers full of rows: nothing is lost or torn where one ends.
@@ -127,7 +130,7 @@ contains
       call table%write_row([real(i, wp), 1.0_wp/real(i, wp)], err)
       if (allocated(err)) exit
     end do
-    call tester%no_error(err, 'write_row')
+    call tester%no_error(err, 'the rows of a long table are written')
     call table%close(err)
     open (newunit=unit, file='many.dat', action='read', status='old')
     do i = 1, 4
@@ -176,23 +179,23 @@ contains
     integer :: i
 
     call open_two_columns(table, 'no/such/folder.dat', err)
-    call tester%has_error(err, exit_file, 'a folder that is not there')
-    call tester%is_true(index(err%message, 'no/such/folder.dat') > 0, 'the message names the file')
+    call tester%has_error(err, exit_file, 'a table in a folder that is not there is refused')
+    call tester%is_true(index(err%message, 'no/such/folder.dat') > 0, 'the message about a folder that is not there names the file')
     call open_two_columns(table, '.', err)
-    call tester%has_error(err, exit_file, 'a folder instead of a file')
+    call tester%has_error(err, exit_file, 'a folder instead of a file is refused')
     call open_two_columns(table, '', err)
-    call tester%has_error(err, exit_file, 'no name')
+    call tester%has_error(err, exit_file, 'an empty name of a file is refused')
     call table%write_row([1.0_wp, 1.0_wp], err)
-    call tester%has_error(err, exit_internal, 'a row for a table that is not open')
+    call tester%has_error(err, exit_internal, 'a row for a table that is not open is refused')
     call table%open('short.dat', '', '', words('t'), words('s|m'), err)
-    call tester%has_error(err, exit_internal, 'more units than names')
+    call tester%has_error(err, exit_internal, 'more units than names are refused')
     call open_two_columns(table, 'short.dat', err)
     call table%write_row([1.0_wp], err)
-    call tester%has_error(err, exit_internal, 'a row too short')
+    call tester%has_error(err, exit_internal, 'a row that is too short is refused')
     call table%close(err)
     ! a disk that is full: the few bytes of the head are enough to notice
     call open_two_columns(table, '/dev/full', err)
-    call tester%has_error(err, exit_file, 'a full disk')
+    call tester%has_error(err, exit_file, 'a full disk is told')
     do i = 1, 2
       call table%write_row([1.0_wp, 1.0_wp], err)
     end do

@@ -46,18 +46,20 @@ contains
 
     call run_shell('exit 3', '', '', outcome, err)
     call tester%no_error(err, 'a program that fails is no error')
-    call tester%is_true(outcome%found .and. outcome%code == 3, 'its exit code')
+    call tester%is_true(outcome%found .and. outcome%code == 3, 'the exit code of a program is told')
     call run_shell('kill -9 $$', '', '', outcome, err)
-    call tester%is_true(outcome%found .and. outcome%code == 128 + 9, 'the signal that ended it')
+    call tester%is_true(outcome%found .and. outcome%code == 128 + 9, &
+                        'a program that a signal ended has the code 128 and its number')
     call run_shell('pwd >&2', '', '', outcome, err, folder='/')
-    call tester%is_true(outcome%error_output(1:1) == '/' .and. outcome%code == 0, 'the folder it works in')
+    call tester%is_true(outcome%error_output(1:1) == '/' .and. outcome%code == 0, 'a program works in the folder that is asked for')
     words(1)%text = 'true'
     call run_child(words, '', outcome, err)
-    call tester%is_true(outcome%found .and. outcome%code == 0 .and. outcome%error_output == '', 'true is true')
+    call tester%is_true(outcome%found .and. outcome%code == 0 .and. outcome%error_output == '', &
+                        'a program that succeeds has the code 0 and says nothing')
     words(1)%text = 'no such program; true'
     call run_child(words, '', outcome, err)
     call tester%no_error(err, 'a program that is not there is no error')
-    call tester%is_true(.not. outcome%found, 'it is not found, and no shell reads its name')
+    call tester%is_true(.not. outcome%found, 'a program that is not there is not found, and no shell reads its name')
   end subroutine test_codes
 
   !> A file that is there and cannot be started is an error with its name and why; a program that ends with 127 itself,
@@ -70,15 +72,15 @@ contains
     integer :: unit
 
     call run_shell('echo no library >&2; exit 127', '', '', outcome, err)
-    call tester%no_error(err, 'a program that ends with 127')
-    call tester%is_true(outcome%found .and. outcome%code == 127, 'it was found')
+    call tester%no_error(err, 'a program that ends with 127 is no error')
+    call tester%is_true(outcome%found .and. outcome%code == 127, 'a program that ends with 127 was found')
     words(1)%text = './not_executable'
     open (newunit=unit, file=words(1)%text, status='replace')
     call run_child(words, '', outcome, err)
     close (unit, status='delete')
-    call tester%is_true(allocated(err), 'a file that may not be executed')
+    call tester%is_true(allocated(err), 'a file that may not be executed is an error')
     if (allocated(err)) call tester%is_true(index(err%message, 'cannot start ./not_executable: Permission denied') > 0, &
-                                            'why it cannot be started: '//err%message)
+                                            'the message tells why a file cannot be started: '//err%message)
   end subroutine test_no_start
 
   !> A word arrives as it is, whatever a shell would make of it.
@@ -91,7 +93,7 @@ contains
     call run_shell('printf %s "$1" >&2', hostile, '', outcome, err)
     call tester%is_true(outcome%error_output == hostile, 'a word full of signs arrives as it is')
     call run_shell('printf "<%s>" "$1" >&2', '', '', outcome, err)
-    call tester%is_true(outcome%error_output == '<>', 'an empty word too')
+    call tester%is_true(outcome%error_output == '<>', 'an empty word arrives, too')
   end subroutine test_words
 
   !> More than a pipe holds goes in, and more than a pipe holds is said: nothing blocks.
@@ -101,11 +103,11 @@ contains
     type(error_type), allocatable :: err
 
     call run_shell('cat >&2; cat | wc -c >&2', '', repeat('0123456789', 100000), outcome, err)
-    call tester%no_error(err, 'a million bytes')
-    call tester%is_true(outcome%error_output == repeat('0123456789', 409)//'012345', 'the beginning of what it said')
+    call tester%no_error(err, 'a program that reads a million bytes is no error')
+    call tester%is_true(outcome%error_output == repeat('0123456789', 409)//'012345', 'the beginning of a long error output is kept')
     call run_shell('wc -c >&2', '', repeat('0123456789', 100000), outcome, err)
     call tester%is_true(verify(outcome%error_output, ' 1000000'//achar(10)) == 0 .and. index(outcome%error_output, '1000000') > 0, &
-                        'all of the input arrives')
+                        'all of the input arrives at the program')
   end subroutine test_much_input
 
   !> Standard output that is dropped goes to another file than that of this program, and blocks nothing.
@@ -117,9 +119,9 @@ contains
       'if [ /proc/self/fd/1 -ef /proc/$PPID/fd/1 ]; then echo same >&2; else cat; echo other >&2; fi'
 
     call run_shell(script, '', repeat('0123456789', 100000), outcome, err, drop_output=.true.)
-    call tester%no_error(err, 'dropped output')
+    call tester%no_error(err, 'a program whose output is dropped is no error')
     call tester%is_true(index(outcome%error_output, 'other') > 0, 'dropped output is not that of this program')
     call run_shell(script, '', '', outcome, err)
-    call tester%is_true(index(outcome%error_output, 'same') > 0, 'output that is not dropped is')
+    call tester%is_true(index(outcome%error_output, 'same') > 0, 'output that is not dropped is that of this program')
   end subroutine test_dropped_output
 end program test_child_process

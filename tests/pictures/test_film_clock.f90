@@ -21,7 +21,7 @@ contains
     call check_film(tester, 0.0_wp, 1.0e-9_wp, 11, -1, 't = 0 s', 't = 1e-8 s')
     call check_film(tester, 0.0_wp, 1.0e6_wp, 11, -1, 't = 0 s', 't = 1e7 s')
     call tester%is_true(clock_text(-1.0e-9_wp, 2) == 't = 0.00 s', 'a zero has no sign')
-    call tester%is_true(clock_text(-0.2_wp, 1) == 't = -0.2 s', 'other numbers keep theirs')
+    call tester%is_true(clock_text(-0.2_wp, 1) == 't = -0.2 s', 'a number that is not zero keeps its sign')
     call tester%finish()
   end subroutine run_tests
 
@@ -40,9 +40,9 @@ contains
 
     film%n_frames = frames
     film%times = [(start + step*i, i=0, frames - 1)]
-    call tester%is_true(clock_decimals(film) == decimals, 'decimals of the film that ends with '//last)
-    call tester%is_true(clock_text(film%times(1), decimals) == first, 'its first frame is '//first)
-    call tester%is_true(clock_text(film%times(frames), decimals) == last, 'its last frame is '//last)
+    call tester%is_true(clock_decimals(film) == decimals, 'the number of decimals is right in the film that ends with '//last)
+    call tester%is_true(clock_text(film%times(1), decimals) == first, 'the first frame shows '//first)
+    call tester%is_true(clock_text(film%times(frames), decimals) == last, 'the last frame shows '//last)
     equal = 0
     before = ''
     do i = 1, frames

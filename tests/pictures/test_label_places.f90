@@ -35,13 +35,13 @@ contains
       call add_bar(obstacles, degrees)
       labels(1) = named(at)
       call place_labels(obstacles, page, labels)
-      call test%is_true(.not. any_covered(obstacles, labels(1)), 'beside a bar at '//to_text(degrees)//' degrees')
-      call test%is_true(distance(labels(1)) < 25.0_wp .and. .not. leads(labels(1)), 'and near its joint')
+      call test%is_true(.not. any_covered(obstacles, labels(1)), 'a name covers no bar at '//to_text(degrees)//' degrees')
+      call test%is_true(distance(labels(1)) < 25.0_wp .and. .not. leads(labels(1)), 'a name beside a bar stands near its joint')
     end do
     obstacles%n_lines = 0
     labels(1) = named(at)
     call place_labels(obstacles, page, labels)
-    call test%is_true(labels(1)%chosen == 1, 'where nothing is in the way, the spot that it likes best')
+    call test%is_true(labels(1)%chosen == 1, 'where nothing is in the way, the name stands at the spot that it likes best')
   end subroutine one_bar
 
   !> Two bars in any directions.
@@ -63,7 +63,7 @@ contains
         free = free .and. .not. any_covered(obstacles, labels(1)) .and. distance(labels(1)) < 25.0_wp
       end do
     end do
-    call test%is_true(free, 'beside two bars')
+    call test%is_true(free, 'a name beside two bars covers neither')
   end subroutine two_bars
 
   !> Near each corner of the page, the whole name is on it.
@@ -77,7 +77,7 @@ contains
       labels(1) = named([merge(8.0_wp, 592.0_wp, i < 2), merge(8.0_wp, 392.0_wp, mod(i, 2) == 0)])
       call place_labels(obstacles, page, labels)
       associate (spot => labels(1)%spots(labels(1)%chosen))
-        call test%is_true(all(spot%low >= 0.0_wp) .and. all(spot%high <= page), 'on the page')
+        call test%is_true(all(spot%low >= 0.0_wp) .and. all(spot%high <= page), 'a name stands on the page')
       end associate
     end do
   end subroutine at_the_edge
@@ -118,8 +118,8 @@ contains
     end do
     labels(1) = named(at)
     call place_labels(obstacles, page, labels)
-    call test%is_true(leads(labels(1)), 'a line leads out of the cage')
-    call test%is_true(.not. any_covered(obstacles, labels(1)), 'to a name that covers nothing')
+    call test%is_true(leads(labels(1)), 'a line leads out of a cage of bars')
+    call test%is_true(.not. any_covered(obstacles, labels(1)), 'a name outside the cage covers nothing')
   end subroutine surrounded
 
   !> The number of a link may stand on its own bar, that of another one not.
@@ -134,7 +134,7 @@ contains
       labels(1) = named(at)
       labels(1)%owner = owner
       call place_labels(obstacles, page, labels)
-      call test%is_true(any_covered(obstacles, labels(1)) .eqv. owner == 3, 'on the own bar, beside that of another link')
+      call test%is_true(any_covered(obstacles, labels(1)) .eqv. owner == 3, 'a name may cover the bar of its own link alone')
     end do
   end subroutine own_link
 
@@ -155,7 +155,7 @@ contains
           middle = 0.5_wp*(spot%low + spot%high)
         end associate
         call test%is_true(norm2(middle - labels(i)%at) < norm2(middle - labels(3 - i)%at), &
-                          'each at its own joint, the other one at '//to_text(degrees)//' degrees')
+                          'each of two names stands at its own joint, with the other joint at '//to_text(degrees)//' degrees')
       end do
     end do
   end subroutine neighbours

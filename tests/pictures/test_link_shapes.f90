@@ -30,15 +30,16 @@ contains
     integer :: i
 
     call find_shape(points(:, :0), tolerance, no_rails, order, closed)
-    call test%is_true(size(order) == 0 .and. .not. closed, 'nothing for no points')
+    call test%is_true(size(order) == 0 .and. .not. closed, 'a link without points has no shape')
     from = random_vector(random)
     along = random_vector(random)
     points = reshape([(from + real(mod(3*i, 5), wp)*along, i=1, 5)], [3, 5])   ! places 3 1 4 2 0
     call find_shape(points(:, :1), tolerance, no_rails, order, closed)
-    call test%is_true(size(order) == 0, 'nothing for one')
+    call test%is_true(size(order) == 0, 'a link with one point has no shape')
     call find_shape(points, tolerance, no_rails, order, closed)
-    call test%is_true(.not. closed .and. size(order) == 2, 'a bar for points of a line')
-    if (size(order) == 2) call test%is_true(minval(order) == 3 .and. maxval(order) == 5, 'between the outermost')
+    call test%is_true(.not. closed .and. size(order) == 2, 'points of a line are joined by a bar')
+    if (size(order) == 2) call test%is_true(minval(order) == 3 .and. maxval(order) == 5, &
+                                            'the bar of points of a line joins the outermost')
   end subroutine few_points
 
   !> Corners of a polygon and points within, turned anyhow: around it by turns, all others inside.
@@ -59,7 +60,7 @@ contains
         points(:, i) = matmul(r, points(:, i))
       end do
       call find_shape(points(:, :n), tolerance, no_rails, order, closed)
-      call test%is_true(closed .and. size(order) >= 3, 'a plate around points of a plane')
+      call test%is_true(closed .and. size(order) >= 3, 'points of a plane are surrounded by a plate')
       if (size(order) < 3) cycle
       normal = cross(points(:, order(2)) - points(:, order(1)), points(:, order(3)) - points(:, order(2)))
       convex = .true.
@@ -69,7 +70,7 @@ contains
           convex = convex .and. dot_product(normal, cross(side, points(:, j) - points(:, order(i)))) > -tolerance
         end do
       end do
-      call test%is_true(convex, 'no point lies outside')
+      call test%is_true(convex, 'no point lies outside the plate')
     end do
   end subroutine plates
 
@@ -86,12 +87,12 @@ contains
       points(:, i) = random_vector(random)
     end do
     call find_shape(points, tolerance, no_rails, order, closed)
-    call test%is_true(.not. closed .and. size(order) == 22, 'eleven bars for twelve points in space')
+    call test%is_true(.not. closed .and. size(order) == 22, 'twelve points in space are joined by eleven bars')
     group = [(i, i=1, 12)]
     do i = 1, size(order) - 1, 2
       where (group == group(order(i))) group = group(order(i + 1))
     end do
-    call test%is_true(all(group == group(1)), 'which hold together')
+    call test%is_true(all(group == group(1)), 'the eleven bars hold together')
   end subroutine points_in_space
 
   !> A long rail and a pin between its ends: the rail stays in one piece, the pin hangs on one of them. Two pins
@@ -105,17 +106,17 @@ contains
 
     points = reshape([0.0_wp, 0.0_wp, 0.0_wp, 5.0_wp, 1.0_wp, 0.0_wp, 5.0_wp, 2.0_wp, 0.0_wp, 9.0_wp, 0.0_wp, 0.0_wp], [3, 4])
     call find_shape(points, tolerance, rail, order, closed)
-    call test%is_true(closed .and. size(order) == 3, 'a plate')
+    call test%is_true(closed .and. size(order) == 3, 'two pins on one side of a rail make a plate')
     points(:, 3) = [7.0_wp, 0.0_wp, 0.0_wp]
     call find_shape(points, tolerance, rail, order, closed)
-    call test%is_true(.not. closed .and. size(order) == 6, 'three bars for a rail, a pin on it, a pin beside it')
+    call test%is_true(.not. closed .and. size(order) == 6, 'a rail, a pin on it and a pin beside it are joined by three bars')
     points(:, 3) = [5.0_wp, 1.0_wp, 1.0_wp]
     call find_shape(points, tolerance, rail, order, closed)
-    call test%is_true(.not. closed .and. size(order) == 6, 'three bars for a rail and two pins in space')
+    call test%is_true(.not. closed .and. size(order) == 6, 'a rail and two pins in space are joined by three bars')
     if (size(order) == 6) then
-      call test%is_true(all(order(:2) == [1, 4]), 'the rail')
-      call test%is_true(all(order(3:4) == [4, 2]), 'the pin at its nearer end')
-      call test%is_true(all(order(5:6) == [2, 3]), 'and the other one at that')
+      call test%is_true(all(order(:2) == [1, 4]), 'the first bar is the rail')
+      call test%is_true(all(order(3:4) == [4, 2]), 'the second bar leads from the nearer end of the rail to a pin')
+      call test%is_true(all(order(5:6) == [2, 3]), 'the third bar leads from this pin to the other one')
     end if
   end subroutine rails
 
@@ -125,6 +126,6 @@ contains
 
     points = 0.0_wp
     points(1, :) = [0.0_wp, 1.0_wp, 1.0e-9_wp, 1.0_wp, 2.0_wp, 0.0_wp]
-    call test%is_true(all([distinct_points(points, tolerance), 0, 0, 0] == [1, 2, 5, 0, 0, 0]), 'each place once')
+    call test%is_true(all([distinct_points(points, tolerance), 0, 0, 0] == [1, 2, 5, 0, 0, 0]), 'each place is taken once')
   end subroutine same_points
 end program test_link_shapes

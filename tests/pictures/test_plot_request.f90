@@ -54,11 +54,11 @@ contains
     type(error_type), allocatable :: err
 
     call read_text(text, request, err)
-    call tester%no_error(err, text)
+    call tester%no_error(err, text//': the request is accepted')
     if (allocated(err)) return
-    call tester%is_true(size(request%curves) == size(x), text//': so many curves')
+    call tester%is_true(size(request%curves) == size(x), text//': the number of curves is right')
     if (size(request%curves) /= size(x)) return
-    call tester%is_true(all(request%curves%x == x) .and. all(request%curves%y == y), text//': the columns')
+    call tester%is_true(all(request%curves%x == x) .and. all(request%curves%y == y), text//': the columns of the curves are right')
   end subroutine check_curves
 
   subroutine test_curves(tester)
@@ -87,13 +87,13 @@ contains
     call check_curves(tester, 'some where/a:b.PNG:P.x', [1], [5])
     call check_curves(tester, 'a.svg', [1, 1], [2, 3])
     call read_text('a:b.svg:q1', request, err)
-    call tester%is_true(request%target == 'a:b.svg' .and. .not. request%in_terminal, 'a colon in a file name')
+    call tester%is_true(request%target == 'a:b.svg' .and. .not. request%in_terminal, 'a name of a file may hold a colon')
     call read_text('x.pdf', request, err)
-    call tester%is_true(request%target == 'x.pdf', 'a picture without names')
+    call tester%is_true(request%target == 'x.pdf', 'a picture may be asked for without names of columns')
     call read_text('term:q1', request, err)
-    call tester%is_true(request%in_terminal .and. request%target == '', 'the terminal')
+    call tester%is_true(request%in_terminal .and. request%target == '', 'the terminal may be asked for')
     call read_text('q1', request, err)
-    call tester%is_true(.not. request%in_terminal .and. request%target == '', 'nothing said')
+    call tester%is_true(.not. request%in_terminal .and. request%target == '', 'a request without a target names none')
   end subroutine test_targets
 
   subroutine test_refusals(tester)
@@ -120,8 +120,8 @@ contains
     type(error_type), allocatable :: err
 
     call read_text(text, request, err)
-    call tester%has_error(err, exit_usage, text)
-    if (allocated(err)) call tester%is_true(index(err%message, words) > 0, text//': '//err%message)
+    call tester%has_error(err, exit_usage, text//': the request is refused')
+    if (allocated(err)) call tester%is_true(index(err%message, words) > 0, text//': the message is: '//err%message)
   end subroutine check_refusal
 
   subroutine test_panels(tester)
@@ -134,10 +134,11 @@ contains
     call read_plot_request('q1,q2,P.x,dq1,P.x:P.y,a:q12.x,closure', names, request, err)
     call tester%is_true(all(panels_of(request%curves, names, units) == [1, 2, 2, 3, 4, 4, 5]), &
                         'equal units share a panel, over time and over a column; the closure stands alone')
-    call tester%is_true(axis_label([2], names, units) == 'q1 [rad]', 'the label of one column')
-    call tester%is_true(axis_label([3, 5], names, units) == 'position [m]', 'the label of several')
+    call tester%is_true(axis_label([2], names, units) == 'q1 [rad]', 'the label of one column is its name and unit')
+    call tester%is_true(axis_label([3, 5], names, units) == 'position [m]', 'the label of several columns tells their quantity')
     units(4)%text = 'deg/s^2'
-    call tester%is_true(axis_label([4], names, units) == 'dq1 [deg/s'//char(194)//char(178)//']', 'a raised two')
+    call tester%is_true(axis_label([4], names, units) == 'dq1 [deg/s'//char(194)//char(178)//']', &
+                        'a unit with a square has a raised two')
     units(4)%text = '1'
     call tester%is_true(axis_label([4], names, units) == 'dq1', 'a plain number has no unit')
   end subroutine test_panels

@@ -36,8 +36,8 @@ contains
     call expect(test, repeat('nado', 5), 8, 3, ['nadonado', 'nadonado', 'nado    '])
     call expect(test, 'aaaaa bbb ccc dddd', 6, 2, [character(len=8) :: 'aaaaa', 'bbb c'//more])
     lines = title_lines(repeat('x', 2000), 60, 3)
-    call test%is_true(size(lines) == 3, 'two thousand letters in three lines')
-    call test%is_true(all([(letters_of(lines(i)%text) <= 61, i=1, 3)]), 'none of them is longer than its room')
+    call test%is_true(size(lines) == 3, 'two thousand letters are put into three lines')
+    call test%is_true(all([(letters_of(lines(i)%text) <= 61, i=1, 3)]), 'none of the three lines is longer than its room')
   end subroutine long_titles
 
   !> Characters stay whole, and wide ones count twice.
@@ -60,10 +60,10 @@ contains
     integer :: i
 
     lines = title_lines(title, room, most)
-    call test%is_true(size(lines) == size(expected), 'number of lines of '//title)
+    call test%is_true(size(lines) == size(expected), 'the number of lines is right for the title '//title)
     if (size(lines) /= size(expected)) return
     do i = 1, size(lines)
-      call test%is_true(lines(i)%text == trim(expected(i)), 'line of '//title//': '//lines(i)%text)
+      call test%is_true(lines(i)%text == trim(expected(i)), 'each line is right of the title '//title//': '//lines(i)%text)
     end do
   end subroutine expect
 end program test_title_lines

@@ -35,10 +35,11 @@ contains
       if (mod(i, 20) == 0) toward = identity(:, 2)
       if (mod(i, 20) == 0) upward = identity(:, 2)
       view = view_from(3.0_wp*toward, 0.2_wp*upward)
-      call test%near(maxval(abs(view%toward - toward)), 0.0_wp, round_off, 'seen from this direction')
-      call test%near(maxval(abs(cross(view%right, view%up) - view%toward)), 0.0_wp, 4.0_wp*round_off, 'right x up = toward')
-      call test%near(norm2(view%up), 1.0_wp, 4.0_wp*round_off, 'of length one')
-      if (mod(i, 10) > 0) call test%is_true(dot_product(view%up, upward) > 0.0_wp, 'up points up')
+      call test%near(maxval(abs(view%toward - toward)), 0.0_wp, round_off, 'the view is seen from the direction that is given')
+      call test%near(maxval(abs(cross(view%right, view%up) - view%toward)), 0.0_wp, 4.0_wp*round_off, &
+                     'the axes of the view are right-handed')
+      call test%near(norm2(view%up), 1.0_wp, 4.0_wp*round_off, 'the upward axis of the view has length one')
+      if (mod(i, 10) > 0) call test%is_true(dot_product(view%up, upward) > 0.0_wp, 'the upward axis of the view points up')
       call test%near(norm2(view%seen(upward)), 1.0_wp, 4.0_wp*round_off, 'a picture neither stretches nor shrinks')
     end do
   end subroutine directions
@@ -56,9 +57,9 @@ contains
         if (i == j) cycle
         call read_view(axes(i)//axes(j), exit_usage, view, err)
         call test%no_error(err, axes(i)//axes(j)//' is a view')
-        call test%near(maxval(abs(view%right - identity(:, i))), 0.0_wp, 0.0_wp, 'the first axis to the right')
-        call test%near(maxval(abs(view%up - identity(:, j))), 0.0_wp, 0.0_wp, 'the second upwards')
-        call test%near(maxval(abs(view%toward - cross(view%right, view%up))), 0.0_wp, 0.0_wp, 'and no mirror between')
+        call test%near(maxval(abs(view%right - identity(:, i))), 0.0_wp, 0.0_wp, 'the first axis points to the right')
+        call test%near(maxval(abs(view%up - identity(:, j))), 0.0_wp, 0.0_wp, 'the second axis points upwards')
+        call test%near(maxval(abs(view%toward - cross(view%right, view%up))), 0.0_wp, 0.0_wp, 'the view is no mirror image')
       end do
     end do
   end subroutine words_for_axes
@@ -70,12 +71,13 @@ contains
 
     call read_view(' 3, -4,0 ', exit_usage, view, err)
     call test%no_error(err, 'three numbers are a view')
-    call test%near(maxval(abs(view%toward - [0.6_wp, -0.8_wp, 0.0_wp])), 0.0_wp, round_off, 'the direction to the viewer')
-    call test%near(maxval(abs(view%up - identity(:, 3))), 0.0_wp, round_off, 'z up')
+    call test%near(maxval(abs(view%toward - [0.6_wp, -0.8_wp, 0.0_wp])), 0.0_wp, round_off, &
+                   'the direction to the viewer is the one that is given')
+    call test%near(maxval(abs(view%up - identity(:, 3))), 0.0_wp, round_off, 'the z axis points upwards')
     call read_view('ISO', exit_usage, view, err)
     call test%no_error(err, 'iso is a view')
     call test%is_true(view%toward(1) > 0.0_wp .and. view%toward(2) < 0.0_wp .and. view%toward(3) > 0.0_wp, &
-                      'from the right, from before, from above')
+                      'iso is seen from the right, from before and from above')
   end subroutine words_for_directions
 
   subroutine no_views(test)
@@ -88,7 +90,7 @@ contains
 
     do i = 1, size(wrong)
       call read_view(trim(wrong(i)), exit_usage, view, err)
-      call test%has_error(err, exit_usage, "'"//trim(wrong(i))//"' is none")
+      call test%has_error(err, exit_usage, "'"//trim(wrong(i))//"' is refused")
     end do
   end subroutine no_views
 end program test_view

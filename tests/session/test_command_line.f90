@@ -51,35 +51,36 @@ contains
     type(error_type), allocatable :: err
 
     call parse('a.nml', options, err)
-    call tester%no_error(err, 'a file alone')
+    call tester%no_error(err, 'a file alone is accepted')
     call tester%is_true(options%file == 'a.nml' .and. .not. options%has('check') .and. options%argument('table') == '' &
-                        .and. .not. options%has('set'), 'nothing else is asked for')
+                        .and. .not. options%has('set'), 'a file alone asks for nothing else')
     call parse('--table=x y.dat|--check|a b.nml|--report|r=1.json', options, err)
-    call tester%no_error(err, 'options before and after the file, blanks in names')
+    call tester%no_error(err, 'options before and after the file and blanks in names are accepted')
     call tester%is_true(options%argument('table') == 'x y.dat' .and. options%argument('report') == 'r=1.json' &
-                        .and. options%has('check') .and. options%file == 'a b.nml', 'both forms of an argument')
+                        .and. options%has('check') .and. options%file == 'a b.nml', 'both forms of an argument are read')
     call parse('a.nml|--table|-', options, err)
     call tester%is_true(options%argument('table') == '-', 'a dash is standard output')
     call parse('--quiet|--|--check', options, err)
     call tester%is_true(options%file == '--check' .and. options%has('quiet') .and. .not. options%has('check'), &
                         'after two dashes everything is a file')
     call parse('a.nml|--set|time.end=2|--set=drive.coefficients=1,2|--set|mechanism.title=a=b', options, err)
-    call tester%no_error(err, 'settings')
+    call tester%no_error(err, 'settings are accepted')
     call options%arguments('set', settings)
-    call tester%is_true(size(settings) == 3, 'settings gather')
+    call tester%is_true(size(settings) == 3, 'settings are gathered')
     call tester%is_true(settings(1)%text == 'time.end=2' .and. settings(2)%text == 'drive.coefficients=1,2' &
-                        .and. settings(3)%text == 'mechanism.title=a=b', 'settings, word by word')
+                        .and. settings(3)%text == 'mechanism.title=a=b', 'settings are read word by word')
     call parse('a.nml|--starts|12', options, err)
-    call tester%is_true(options%number('starts', 5) == 12, 'a whole number')
+    call tester%is_true(options%number('starts', 5) == 12, 'a whole number is read')
     call parse('a.nml', options, err)
-    call tester%is_true(options%number('starts', 5) == 5, 'a whole number that is not given')
+    call tester%is_true(options%number('starts', 5) == 5, 'a whole number that is not given has its default')
     call parse('--help-data', options, err)
     call tester%is_true(options%has('help-data') .and. options%argument('help-data') == '' .and. .not. allocated(err), &
-                        'an optional argument left out, no file needed')
+                        'an optional argument may be left out, and no file is needed')
     call parse('--help-data|pair', options, err)
-    call tester%is_true(options%has('help-data') .and. options%argument('help-data') == 'pair', 'an optional argument')
+    call tester%is_true(options%has('help-data') .and. options%argument('help-data') == 'pair', 'an optional argument is read')
     call parse('--help-data|--quiet', options, err)
-    call tester%is_true(options%argument('help-data') == '' .and. options%has('quiet'), 'an option is no optional argument')
+    call tester%is_true(options%argument('help-data') == '' .and. options%has('quiet'), &
+                        'an option is not taken as an optional argument')
   end subroutine test_good_lines
 
   !> Each row of the table is understood and changes what is asked for.
@@ -166,7 +167,8 @@ contains
 
     call parse(line, options, err, program_name)
     call tester%has_error(err, exit_usage, line)
-    if (allocated(err)) call tester%is_true(index(err%message, words) > 0, line//' said: '//err%message)
+    if (allocated(err)) call tester%is_true(index(err%message, words) > 0, &
+                                            line//' is refused with the right part in the message: '//err%message)
   end subroutine refuse
 
   !> The help fits a terminal of 100 columns, and its lines end without blanks.
@@ -178,12 +180,14 @@ contains
     integer, parameter :: many = 3000000
 
     call parse("it's.nml|--set|pair(2).point=1,2|--table=a b|--quiet", options, err)
-    call tester%is_true(options%line == "'it'\''s.nml' --set 'pair(2).point=1,2' '--table=a b' --quiet", 'words in quotes')
+    call tester%is_true(options%line == "'it'\''s.nml' --set 'pair(2).point=1,2' '--table=a b' --quiet", &
+                        'words with blanks and quotes are written in quotes')
     call parse('', options, err)
-    call tester%is_true(options%line == '', 'no word')
+    call tester%is_true(options%line == '', 'an empty command line has no words')
     ! work that grew with the square of its length would take an hour
     call parse("a.nml|--set|user.parameters='"//repeat('1,', many), options, err)
-    call tester%is_true(options%line == "a.nml --set 'user.parameters='\''"//repeat('1,', many)//"'", 'a long word')
+    call tester%is_true(options%line == "a.nml --set 'user.parameters='\''"//repeat('1,', many)//"'", &
+                        'a long word is written whole')
   end subroutine test_line_for_shell
 
   subroutine test_help(tester)
@@ -196,8 +200,8 @@ contains
     first = 1
     do while (first <= len(text))
       next = index(text(first:), achar(10)) + first - 1
-      call tester%is_true(next - first <= 100, 'not too long: '//text(first:next - 1))
-      if (next > first) call tester%is_true(text(next - 1:next - 1) /= ' ', 'no blank at its end')
+      call tester%is_true(next - first <= 100, 'no line of the help is too long: '//text(first:next - 1))
+      if (next > first) call tester%is_true(text(next - 1:next - 1) /= ' ', 'no line of the help ends with a blank')
       first = next + 1
     end do
   end subroutine test_help

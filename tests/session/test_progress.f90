@@ -14,7 +14,7 @@ contains
 
     call test_line(tester)
     call test_slow_pacer(tester)
-    call tester%is_true(index(version_text('mech9k'), 'mech9k '//version) == 1, 'program and version')
+    call tester%is_true(index(version_text('mech9k'), 'mech9k '//version) == 1, 'the version tells program and version')
     call tester%finish()
   end subroutine run_tests
 
@@ -26,16 +26,16 @@ contains
     call tester%is_true(line == 'run  25 % [######..................]  3:00 left', &
                         'a quarter took a minute, three are left: '//line)
     line = progress_line('run', 0.5_wp, 12.5_wp)
-    call tester%is_true(index(line, '12 s left') > 0, 'seconds')
+    call tester%is_true(index(line, '12 s left') > 0, 'a time below a minute is shown in seconds')
     line = progress_line('run', 1.0_wp/3.0_wp, 3631.0_wp)
-    call tester%is_true(index(line, '2:01:02 left') > 0, 'hours')
+    call tester%is_true(index(line, '2:01:02 left') > 0, 'a time above an hour is shown in hours')
     line = progress_line('run', 0.0_wp, 5.0_wp)
     call tester%is_true(index(line, '  0 % [......') > 0 .and. index(line, 'left') == 0, &
-                        'nothing done yet tells nothing')
+                        'a run of which nothing is done has no time left to tell')
     line = progress_line(repeat('long name ', 20), 1.0e-5_wp, 1.0e300_wp)
     call tester%is_true(index(line, '2400:00:00 left') > 0, 'the longest line fits')
     line = progress_line('run', 2.0_wp, 5.0_wp)
-    call tester%is_true(index(line, '100 %') > 0 .and. index(line, '0 s left') > 0, 'no more than all')
+    call tester%is_true(index(line, '100 %') > 0 .and. index(line, '0 s left') > 0, 'a run shows no more than 100 per cent')
   end subroutine test_line
 
   !> After a fast stretch, a loop that slows down is noticed at the next look, 64 calls away at most.
@@ -58,7 +58,7 @@ contains
         if (pacer%due()) first = i
       end if
     end do
-    call tester%is_true(first > 0, 'noticed within 64 calls and one')
+    call tester%is_true(first > 0, 'an interruption is noticed within 64 calls and one')
   end subroutine test_slow_pacer
 
 end program test_progress

@@ -59,7 +59,7 @@ contains
       call test%no_error(err, why//': the first steps succeed')
     end do
     before = calls
-    call test%is_true(before > 0, 'the counter counts')
+    call test%is_true(before > 0, 'the counter of allocations counts')
     do i = 1, 10
       call step_on(system, 1.0e-3_wp*i, y, ydot, err)
       if (allocated(err)) exit

@@ -161,7 +161,7 @@ contains
     call new_simulation(text, is_driven, interrupted)
     left = 1 + question
     call interrupted%start(err, countdown_type(left))
-    call test%no_error(err, 'the start goes well')
+    call test%no_error(err, 'the motion starts')
     call interrupted%advance(1.0_wp, err)
     call test%has_error(err, exit_interrupted, 'an interruption stops a motion')
     call explain(err)
@@ -265,13 +265,13 @@ contains
     call read(loaded//'&solver accuracy=1e-7 / ', .false., model)
     call assemble_free(model, plan, assembled, err)
     call find_accuracy(model, plan, assembled, errors, err)
-    call test%no_error(err, 'an accuracy')
-    call test%is_true(size(errors%at) == 101 .and. maxval(errors%at) <= 1e-7_wp, 'no output is worse')
-    call test%is_true(minval(errors%at) > 0.0_wp, 'and none is exact')
-    call test%is_true(errors%runs >= 2 .and. errors%evaluations > 100, 'the work is counted')
+    call test%no_error(err, 'an accuracy that is asked for is reached')
+    call test%is_true(size(errors%at) == 101 .and. maxval(errors%at) <= 1e-7_wp, 'no output is worse than the accuracy')
+    call test%is_true(minval(errors%at) > 0.0_wp, 'no output is told to be exact')
+    call test%is_true(errors%runs >= 2 .and. errors%evaluations > 100, 'the work for the accuracy is counted')
     call test%is_true(model%request%solver%relative_tolerance < 1e-7_wp .and. &
                       abs(model%request%solver%relative_tolerance - model%request%solver%absolute_tolerance) <= 0.0_wp, &
-                      'both tolerances are found')
+                      'the accuracy gives both tolerances')
     call new_free_simulation(model, plan, assembled, simulation, err)
     simulation%errors = errors
     simulation%errors%at = errors%at(:3)
@@ -281,10 +281,10 @@ contains
     do i = 1, 2
       if (.not. allocated(err)) call simulation%advance(model%request%time%time(i), err)
     end do
-    call test%no_error(err, 'positions with known errors')
+    call test%no_error(err, 'positions with known errors are found')
     call test%near(simulation%largest_error, maxval(errors%at(:3)), 0.0_wp, 'the largest error is kept')
     call simulation%advance(model%request%time%time(3), err)
-    call test%has_error(err, exit_singular, 'an error that is not known')
+    call test%has_error(err, exit_singular, 'a time at which no error is known is refused')
     call simulation%close()
   end subroutine check_accuracy
 
@@ -303,7 +303,7 @@ contains
     left = 150
     countdown%left => left
     call find_accuracy(model, plan, assembled, errors, err, interruption=countdown)
-    call test%has_error(err, exit_interrupted, 'runs for an accuracy')
-    call test%is_true(errors%runs == 1, 'the first one stops, and no other begins')
+    call test%has_error(err, exit_interrupted, 'runs for an accuracy can be interrupted')
+    call test%is_true(errors%runs == 1, 'the first run for an accuracy stops, and no other begins')
   end subroutine check_interrupted_accuracy
 end program test_simulation

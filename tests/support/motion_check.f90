@@ -66,7 +66,7 @@ contains
     type(error_type), allocatable :: err
 
     call pair%evaluate(q, motion, err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': the pair has a motion')
     call poses_around(test, pair, q, h, poses)
     call motion_from_poses(poses, h, expected)
     call check_same_motion(test, motion, expected, [0.0_wp, 1.0e-13_wp, 1.0e-11_wp], why)
@@ -81,12 +81,13 @@ contains
     real(wp), intent(in) :: tolerances(3)            !< of the pose, of the screw, of its rate
     character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
 
-    call check_numbers(test, reshape(motion%pose%r, [9]), reshape(expected%pose%r, [9]), tolerances(1), why//': rotation')
-    call check_numbers(test, motion%pose%p, expected%pose%p, tolerances(1), why//': translation')
-    call check_numbers(test, motion%w, expected%w, tolerances(2), why//': w')
-    call check_numbers(test, motion%v, expected%v, tolerances(2), why//': v')
-    call check_numbers(test, motion%w_rate, expected%w_rate, tolerances(3), why//': rate of w')
-    call check_numbers(test, motion%v_rate, expected%v_rate, tolerances(3), why//': rate of v')
+    call check_numbers(test, reshape(motion%pose%r, [9]), reshape(expected%pose%r, [9]), tolerances(1), &
+                       why//': the rotations are equal')
+    call check_numbers(test, motion%pose%p, expected%pose%p, tolerances(1), why//': the translations are equal')
+    call check_numbers(test, motion%w, expected%w, tolerances(2), why//': the angular velocities are equal')
+    call check_numbers(test, motion%v, expected%v, tolerances(2), why//': the velocities are equal')
+    call check_numbers(test, motion%w_rate, expected%w_rate, tolerances(3), why//': the rates of the angular velocities are equal')
+    call check_numbers(test, motion%v_rate, expected%v_rate, tolerances(3), why//': the rates of the velocities are equal')
   end subroutine check_same_motion
 
   subroutine check_numbers(test, numbers, expected, tolerance, why)

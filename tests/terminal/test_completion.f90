@@ -19,12 +19,12 @@ contains
   subroutine test_beginning(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
 
-    call tester%is_true(beginning_of_word('') == '', 'nothing typed, nothing begun')
-    call tester%is_true(beginning_of_word('rev') == 'rev', 'the first word')
-    call tester%is_true(beginning_of_word('a bc') == 'bc', 'a second one')
-    call tester%is_true(len(beginning_of_word('a ')) == 0, 'behind a blank none is begun')
-    call tester%is_true(beginning_of_word('kind=''re') == 're', 'behind a quote')
-    call tester%is_true(beginning_of_word('q1,q2') == 'q2', 'behind a comma')
+    call tester%is_true(beginning_of_word('') == '', 'no word begins where nothing is typed')
+    call tester%is_true(beginning_of_word('rev') == 'rev', 'the first word is begun')
+    call tester%is_true(beginning_of_word('a bc') == 'bc', 'a second word is begun')
+    call tester%is_true(len(beginning_of_word('a ')) == 0, 'no word begins behind a blank')
+    call tester%is_true(beginning_of_word('kind=''re') == 're', 'a word begins behind a quote')
+    call tester%is_true(beginning_of_word('q1,q2') == 'q2', 'a word begins behind a comma')
   end subroutine test_beginning
 
   subroutine test_completions(tester)
@@ -38,15 +38,15 @@ contains
     words(4)%text = 'point'
     call completions(words, 'p', found)
     call tester%is_true(size(found) == 3, 'three words begin with p')
-    call tester%is_true(common_beginning(found) == 'p', 'and have no more in common')
+    call tester%is_true(common_beginning(found) == 'p', 'the three words have one letter in common')
     call completions(words, 'pr', found)
-    call tester%is_true(common_beginning(found) == 'prism', 'two have five letters in common')
+    call tester%is_true(common_beginning(found) == 'prism', 'two words have five letters in common')
     call completions(words, 'r', found)
-    call tester%is_true(common_beginning(found) == 'revolute', 'one is meant')
+    call tester%is_true(common_beginning(found) == 'revolute', 'the one word that is left is meant')
     call completions(words, 'revolutes', found)
-    call tester%is_true(size(found) == 0 .and. len(common_beginning(found)) == 0, 'more than the word is another word')
+    call tester%is_true(size(found) == 0 .and. len(common_beginning(found)) == 0, 'no word begins with more than itself')
     call completions(words, '', found)
-    call tester%is_true(size(found) == 4 .and. len(common_beginning(found)) == 0, 'all begin with nothing')
+    call tester%is_true(size(found) == 4 .and. len(common_beginning(found)) == 0, 'all words begin with nothing')
   end subroutine test_completions
 
   subroutine test_columns(tester)
@@ -57,8 +57,8 @@ contains
     words(1)%text = 'a'
     words(2)%text = 'bcd'
     words(3)%text = 'ef'
-    call tester%is_true(in_columns(words, 79) == 'a    bcd  ef'//eol, 'all in one line')
-    call tester%is_true(in_columns(words, 12) == 'a    bcd'//eol//'ef'//eol, 'two in a line')
+    call tester%is_true(in_columns(words, 79) == 'a    bcd  ef'//eol, 'short words stand in one line')
+    call tester%is_true(in_columns(words, 12) == 'a    bcd'//eol//'ef'//eol, 'two words stand in a line with room for two')
     call tester%is_true(in_columns(words, 3) == 'a'//eol//'bcd'//eol//'ef'//eol, 'a word wider than the line stands alone')
   end subroutine test_columns
 end program test_completion

@@ -42,8 +42,8 @@ contains
     do i = 1, size(bytes)
       text(i:i) = char(bytes(i))
     end do
-    call tester%is_true(code_point(text) == point, why//': its code point')
-    call tester%is_true(to_bytes([point]) == text, why//': its bytes')
+    call tester%is_true(code_point(text) == point, why//': the number of the character is right')
+    call tester%is_true(to_bytes([point]) == text, why//': the bytes of the character are right')
   end subroutine one
 
   !> Every code point, but for the halves of pairs, which are no characters.
@@ -56,7 +56,7 @@ contains
       if (point >= int(z'D800') .and. point <= int(z'DFFF')) cycle
       if (code_point(to_bytes([point])) /= point) wrong = wrong + 1
     end do
-    call tester%is_true(wrong == 0, 'every character there and back')
+    call tester%is_true(wrong == 0, 'every character comes back from its bytes')
   end subroutine test_round_trip
 
   subroutine test_no_text(tester)
@@ -66,8 +66,8 @@ contains
     points = to_wide('a'//char(255)//'b'//char(195))
     call tester%is_true(size(points) == 5 .and. all(points(:4) == [97, unknown_character, 98, unknown_character]), &
                         'each byte that is no text becomes one unknown character')
-    call tester%is_true(points(5) == 0, 'and a zero ends it, as C wants it')
-    call tester%is_true(size(to_wide('')) == 1, 'nothing is a zero alone')
-    call tester%is_true(code_point('') == unknown_character, 'no bytes are no character')
+    call tester%is_true(points(5) == 0, 'a zero ends the text, as C wants it')
+    call tester%is_true(size(to_wide('')) == 1, 'an empty text is a zero alone')
+    call tester%is_true(code_point('') == unknown_character, 'an empty text holds no character')
   end subroutine test_no_text
 end program test_wide_text

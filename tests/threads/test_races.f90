@@ -30,7 +30,7 @@ contains
     call tester%is_true(.not. failed, 'the threads ran')
     do i = 1, size(shares)
       do k = 1, size(alone)
-        call tester%is_true(same(shares(i)%runs(k), alone(k)), 'the numbers of a run alone: '//alone(k)%file)
+        call tester%is_true(same(shares(i)%runs(k), alone(k)), 'a run beside others has the numbers of one alone: '//alone(k)%file)
       end do
     end do
     deallocate (shares, alone)

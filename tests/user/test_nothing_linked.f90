@@ -26,14 +26,15 @@ contains
     type(error_type), allocatable :: err
 
     call make_procedure_pair(3, [1.0_wp, 2.0_wp], pair, err)
-    call test%has_error(err, exit_data, 'a pair without its procedure')
+    call test%has_error(err, exit_data, 'a pair without its procedure is refused')
     call test%is_true(index(err%message, 'pair 3') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
-                      index(err%message, 'user_pair') > 0, 'which pair, what is missing, and its name')
+                      index(err%message, 'user_pair') > 0, 'the message names the pair, its procedure and that none is linked')
 
     call make_procedure_drive(5, 0.0_wp, [real(wp) ::], drive, err)
-    call test%has_error(err, exit_data, 'a drive without its procedure')
+    call test%has_error(err, exit_data, 'a drive without its procedure is refused')
     call test%is_true(index(err%message, 'coordinate 5') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
-                      index(err%message, 'user_drive') > 0, 'which coordinate, what is missing, and its name')
+                      index(err%message, 'user_drive') > 0, &
+                      'the message names the coordinate, its procedure and that none is linked')
 
     load%parameters = [real(wp) ::]
     forces = new_force_sum(2, 1)
@@ -41,8 +42,8 @@ contains
     state%q = 0.0_wp
     state%dq = 0.0_wp
     call load%apply(state, forces, err)
-    call test%has_error(err, exit_data, 'a load without its procedure')
+    call test%has_error(err, exit_data, 'a load without its procedure is refused')
     call test%is_true(index(err%message, 'none is linked') > 0 .and. index(err%message, 'user_force') > 0, &
-                      'what is missing, and its name')
+                      'the message names the procedure of the load and that none is linked')
   end subroutine ask_for_procedures
 end program test_nothing_linked

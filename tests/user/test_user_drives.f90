@@ -23,7 +23,7 @@ contains
     type(error_type), allocatable :: err
 
     call make_procedure_drive(coordinate, 0.0_wp, parameters, drives(1), err)
-    call test%no_error(err, 'a drive whose procedure is linked')
+    call test%no_error(err, 'a drive whose procedure is linked is accepted')
     call test%is_true(.not. drives(1)%plain_values, 'where both forms are linked Taylor arithmetic is taken')
     drives(2) = drives(1)
     drives(2)%plain_values = .true.
@@ -40,11 +40,11 @@ contains
     real(wp) :: q(3), finer
 
     call drive%evaluate(t, q(1), q(2), q(3), err)
-    call test%no_error(err, why)
+    call test%no_error(err, why//': the drive has a value')
     finer = merge(1.0_wp, 1.0e-3_wp, drive%plain_values)
-    call test%near(q(1), expected(1), 1.0e-12_wp*finer, why//': value')
-    call test%near(q(2), expected(2), 1.0e-11_wp*finer, why//': rate')
-    call test%near(q(3), expected(3), 1.0e-10_wp*finer, why//': second derivative')
+    call test%near(q(1), expected(1), 1.0e-12_wp*finer, why//': the value is right')
+    call test%near(q(2), expected(2), 1.0e-11_wp*finer, why//': the rate is right')
+    call test%near(q(3), expected(3), 1.0e-10_wp*finer, why//': the second derivative is right')
   end subroutine check_drive
 
   subroutine closed_form(test)
@@ -76,7 +76,7 @@ contains
     do i = 1, 30
       t = 2.0_wp*random%symmetric()
       call drives(1)%evaluate(t, expected(1), expected(2), expected(3), err)
-      call test%no_error(err, 'a drive in Taylor arithmetic')
+      call test%no_error(err, 'a drive in Taylor arithmetic is accepted')
       call check_drive(test, drives(2), t, expected, 'a drive in both forms')
     end do
   end subroutine forms_agree
@@ -95,10 +95,11 @@ contains
       call check_drive(test, drives(i), t, [s, -0.5_wp/s, -0.25_wp/s**3], 'close to the end of the domain')
       drives(i)%place = place_type(6, 1)
       call drives(i)%evaluate(1.25_wp, q, dq, ddq, err)
-      call test%has_error(err, exit_data, 'beyond the end of the domain')
+      call test%has_error(err, exit_data, 'a time beyond the end of the domain is refused')
       call test%is_true(index(err%message, 'coordinate 2') > 0 .and. index(err%message, '1.25') > 0, &
-                        'the coordinate and the time')
-      call test%is_true(index(err%message, 'not finite') > 0 .and. err%place%line == 6, 'the reason and the place')
+                        'the message about the domain names the coordinate and the time')
+      call test%is_true(index(err%message, 'not finite') > 0 .and. err%place%line == 6, &
+                        'the message about the domain tells the reason and its place')
     end do
   end subroutine end_of_domain
 end program test_user_drives

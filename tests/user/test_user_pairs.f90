@@ -40,7 +40,7 @@ contains
     type(error_type), allocatable :: err
 
     call make_procedure_pair(coordinate, parameters, exact_pair, err)
-    call test%no_error(err, 'a pair whose procedure is linked')
+    call test%no_error(err, 'a pair whose procedure is linked is accepted')
     call test%is_true(.not. exact_pair%plain_values, 'where both forms are linked Taylor arithmetic is taken')
     plain_pair = exact_pair
     plain_pair%plain_values = .true.
@@ -66,10 +66,10 @@ contains
       call built_in%evaluate(q, expected, err)
       call make_both(test, 1, [reshape(frame%r, [9]), frame%p, advance], exact_pair, plain_pair)
       call exact_pair%evaluate(q, motion, err)
-      call test%no_error(err, 'a screw in Taylor arithmetic')
+      call test%no_error(err, 'a screw in Taylor arithmetic has a motion')
       call check_same_motion(test, motion, expected, exact, 'a screw in Taylor arithmetic')
       call plain_pair%evaluate(q, motion, err)
-      call test%no_error(err, 'a screw in plain values')
+      call test%no_error(err, 'a screw in plain values has a motion')
       call check_same_motion(test, motion, expected, promised, 'a screw in plain values')
     end do
   end subroutine as_built_in
@@ -88,9 +88,9 @@ contains
       do i = 1, 20
         q = 2.0_wp*random%symmetric()
         call exact_pair%evaluate(q, expected, err)
-        call test%no_error(err, 'a curve in Taylor arithmetic')
+        call test%no_error(err, 'a curve in Taylor arithmetic has a motion')
         call plain_pair%evaluate(q, motion, err)
-        call test%no_error(err, 'a curve in plain values')
+        call test%no_error(err, 'a curve in plain values has a motion')
         call check_same_motion(test, motion, expected, promised, 'a curve in both forms')
         if (kind == 2) call check_derivatives(test, exact_pair, q, 'a curve in Taylor arithmetic')
       end do
@@ -110,11 +110,11 @@ contains
     do i = 0, 8
       q = -1.0_wp + 0.2_wp*i
       call exact_pair%evaluate(q, expected, err)
-      call test%no_error(err, 'within the domain, Taylor arithmetic')
-      call test%near(expected%v(1), -0.5_wp/sqrt(1.0_wp - q), 1.0e-15_wp, 'derivative of the root')
-      call test%near(expected%v_rate(1), -0.25_wp/sqrt(1.0_wp - q)**3, 4.0e-15_wp, 'its second derivative')
+      call test%no_error(err, 'a root within its domain has a motion by Taylor arithmetic')
+      call test%near(expected%v(1), -0.5_wp/sqrt(1.0_wp - q), 1.0e-15_wp, 'a root has its first derivative')
+      call test%near(expected%v_rate(1), -0.25_wp/sqrt(1.0_wp - q)**3, 4.0e-15_wp, 'a root has its second derivative')
       call plain_pair%evaluate(q, motion, err)
-      call test%no_error(err, 'within the domain, plain values')
+      call test%no_error(err, 'a root within its domain has a motion by plain values')
       call check_same_motion(test, motion, expected, promised, 'close to the end of the domain')
     end do
   end subroutine end_of_domain
@@ -130,13 +130,13 @@ contains
     do k = 0, 6
       call make_both(test, 6, [10.0_wp**(-k)], exact_pair, plain_pair)
       call exact_pair%evaluate(0.4_wp, motion, err)
-      call test%no_error(err, 'points close to a line')
+      call test%no_error(err, 'points close to a line give a motion')
       call test%near(maxval(abs(matmul(transpose(motion%pose%r), motion%pose%r) - identity)), 0.0_wp, 2.0e-15_wp, &
-                     'R^T R = 1 close to a line')
+                     'the rotation of points close to a line satisfies R^T R = 1')
       call plain_pair%evaluate(0.4_wp, motion, err)
-      call test%no_error(err, 'points close to a line, plain values')
+      call test%no_error(err, 'points close to a line give a motion by plain values')
       call test%near(maxval(abs(matmul(transpose(motion%pose%r), motion%pose%r) - identity)), 0.0_wp, 2.0e-15_wp, &
-                     'R^T R = 1 close to a line, plain values')
+                     'the rotation of points close to a line by plain values satisfies R^T R = 1')
     end do
   end subroutine close_to_a_line
 
@@ -152,16 +152,19 @@ contains
     do i = 1, 2
       pairs(i)%place = place_type(8, 1)
       call pairs(i)%evaluate(0.625_wp, motion, err)
-      call test%has_error(err, exit_data, 'points in one line')
-      call test%is_true(index(err%message, 'pair 3') > 0 .and. index(err%message, '0.625') > 0, 'the pair and the value')
-      call test%is_true(index(err%message, 'line') > 0 .and. err%place%line == 8, 'the reason and the place')
+      call test%has_error(err, exit_data, 'points in one line are refused')
+      call test%is_true(index(err%message, 'pair 3') > 0 .and. index(err%message, '0.625') > 0, &
+                        'the message about points in one line names the pair and the value')
+      call test%is_true(index(err%message, 'line') > 0 .and. err%place%line == 8, &
+                        'the message about points in one line tells the reason and its place')
     end do
     call make_both(test, 4, [real(wp) ::], pairs(1), pairs(2))
     do i = 1, 2
       call pairs(i)%evaluate(1.5_wp, motion, err)
-      call test%has_error(err, exit_data, 'numbers that are none')
-      call test%is_true(index(err%message, 'pair 4') > 0 .and. index(err%message, '1.5') > 0, 'the pair and the value')
-      call test%is_true(index(err%message, 'not finite') > 0, 'the reason')
+      call test%has_error(err, exit_data, 'numbers that are not finite are refused')
+      call test%is_true(index(err%message, 'pair 4') > 0 .and. index(err%message, '1.5') > 0, &
+                        'the message about numbers that are not finite names the pair and the value')
+      call test%is_true(index(err%message, 'not finite') > 0, 'the message about numbers that are not finite tells the reason')
     end do
   end subroutine refused
 
@@ -174,7 +177,7 @@ contains
     call make_both(test, 2, [1.0_wp], exact_pair, plain_pair)
     call exact_pair%as_screw(factors, is_screw)
     call test%is_true(.not. is_screw, 'a user''s pair has no fixed axis')
-    call test%is_true(exact_pair%kind_name() == 'user', 'its kind')
+    call test%is_true(exact_pair%kind_name() == 'user', 'a user''s pair has the kind of users')
     call test%is_true(exact_pair%user_calls() == 1, 'Taylor arithmetic takes one call')
     call test%is_true(plain_pair%user_calls() == stencil_size, 'plain values take a stencil of calls')
     call test%is_true(.not. exact_pair%angular, 'a user''s coordinate is not turned into degrees')

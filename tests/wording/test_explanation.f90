@@ -207,7 +207,8 @@ contains
     call raise(err, exit_data, failure_unknown_method)
     err%failure%name = 'euler'
     call test%is_true(index(message_of(err), 'unknown method of integration ''euler''. There are: '// &
-                            trim(integration_methods(1)%name)//', ') == 1, 'the methods are named: '//message_of(err))
+                            trim(integration_methods(1)%name)//', ') == 1, &
+                            'the message about an unknown method names the methods: '//message_of(err))
     call raise(err, exit_data, failure_relative_tolerance)
     err%failure%tolerance = 1.5_wp
     call says(err, 'the relative tolerance must be between 0 and 1; it is 1.5')
@@ -263,12 +264,12 @@ contains
 
     call raise(err, exit_structure, 'no axis', place_type(4, 5))
     call explain(err)
-    call test%is_true(err%message == 'no axis' .and. err%place%line == 4, 'an error with a message')
+    call test%is_true(err%message == 'no axis' .and. err%place%line == 4, 'an error with a message keeps it')
     call raise(err, exit_structure, failure_no_inertia)
     err%failure%coordinates = [2]
     call add_place(err, place=place_type(7, 1))
     call explain(err)
-    call test%is_true(err%place%line == 7, 'a place that was added to a failure in numbers')
+    call test%is_true(err%place%line == 7, 'a place that was added to a failure in numbers is kept')
   end subroutine kept_message
 
   !> Check the sentence about a failure, which stays in numbers.
@@ -276,6 +277,6 @@ contains
     type(error_type), intent(in) :: err             !< the failure
     character(len=*), intent(in) :: sentence        !< expected
 
-    call test%is_true(message_of(err) == sentence, sentence//' /= '//message_of(err))
+    call test%is_true(message_of(err) == sentence, sentence//' is the sentence, not: '//message_of(err))
   end subroutine says
 end program test_explanation

@@ -1,11 +1,12 @@
 !> The equations of a block: residuals, Jacobian and rates of its constraints, one below the other.
 module mech9_block_equations
   use mech9_kinds, only: wp
+  use mech9_front_plan, only: front_plan_type, new_front_plan
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   implicit none
   private
-  public :: block_residual, block_jacobian, block_rates, largest_gap
+  public :: block_residual, block_jacobian, block_rates, block_fronts, largest_gap
 
 contains
 
@@ -69,6 +70,30 @@ contains
       end associate
     end do
   end subroutine block_rates
+
+  !> The fronts by which the block's Jacobian can be factorized: its rows come in groups, one for each constraint, and only the
+  !> unknowns of a constraint's loop occur in its group.
+  pure function block_fronts(plan, block, column_of) result(fronts)
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    type(block_type), intent(in) :: block       !< the block
+    integer, intent(in) :: column_of(:)         !< (steps of the block) column of each step's coordinate; 0: not an unknown
+    type(front_plan_type) :: fronts
+    integer, allocatable :: members(:), columns(:)
+    integer :: sizes(block%last_closure - block%first_closure + 1), lists(size(sizes) + 1), c, i
+
+    allocate (members(0))
+    lists(1) = 1
+    do i = 1, size(sizes)
+      c = block%first_closure + i - 1
+      sizes(i) = plan%constraints(c)%item%equations
+      columns = plan%closures(c)%part%steps
+      if (block%whole_loops) columns = plan%closures(c)%loop%steps
+      columns = column_of(pack(columns, columns >= block%first_step) - block%first_step + 1)
+      members = [members, pack(columns, columns > 0)]
+      lists(i + 1) = size(members) + 1
+    end do
+    fronts = new_front_plan(size(block%unknowns), sizes, lists, members)
+  end function block_fronts
 
   !> The largest gap of any constraint that the plan's blocks solve: a length [m]; rotations are multiplied by the
   !> mechanism's size.

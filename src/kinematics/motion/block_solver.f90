@@ -8,7 +8,7 @@ module mech9_block_solver
   use mech9_state, only: state_type
   use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
   use mech9_frame_motion, only: place_frames, place_frames_after_change, spread_velocities, spread_accelerations
-  use mech9_block_equations, only: block_jacobian, block_rates, block_residual
+  use mech9_block_equations, only: block_jacobian, block_rates, block_residual, block_fronts
   implicit none
   private
   public :: block_work_type, new_block_work, close_block, factorize_block, solve_rates, solve_accelerations, solve_motion
@@ -48,20 +48,25 @@ module mech9_block_solver
 
 contains
 
-  !> Scratch for a block. If the complete plan is given, a planar chain of three unknowns gets an arithmetic of its own.
+  !> Scratch for a block. If the complete plan is given, a planar chain of three unknowns gets an arithmetic of its own, and the
+  !> sparsity of the Jacobian of several chains is used.
   pure function new_block_work(block, plan) result(work)
     type(block_type), intent(in) :: block           !< the block
     type(plan_type), intent(in), optional :: plan   !< the complete plan; without it no arithmetic of its own is chosen
     type(block_work_type) :: work
     integer :: i
 
-    call work%equations%create(block%equations, size(block%unknowns))
     allocate (work%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
     allocate (work%column_of(block%last_step - block%first_step + 1), source=0)
     do i = 1, size(block%unknowns)
       work%column_of(block%unknowns(i) - block%first_step + 1) = i
     end do
-    if (present(plan)) work%chain = new_planar_chain(plan, block)
+    if (present(plan)) then
+      call work%equations%create(block%equations, size(block%unknowns), block_fronts(plan, block, work%column_of))
+      work%chain = new_planar_chain(plan, block)
+    else
+      call work%equations%create(block%equations, size(block%unknowns))
+    end if
     allocate (work%right(block%equations), work%change(size(block%unknowns)), source=0.0_wp)
   end function new_block_work
 

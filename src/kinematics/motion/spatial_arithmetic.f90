@@ -90,17 +90,38 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
     integer :: s
 
-    do s = first, last
-      if (plan%steps(s)%is_screw) then
-        call place_screw(plan%steps(s), state%q(plan%steps(s)%coordinate), state%turn(1, s), state%turn(2, s), &
-                         state%r(:, :, plan%steps(s)%parent), state%p(:, plan%steps(s)%parent), &
-                         state%r(:, :, s), state%p(:, s), state%axis_w(:, s), state%axis_v(:, s))
-      else
-        call place_user(plan, s, state, err)
-        if (allocated(err)) return
-      end if
+    s = first
+    do
+      call place_screws(size(plan%steps), plan%steps, s, last, state%q, state%turn, state%r, state%p, state%axis_w, state%axis_v)
+      if (s > last) return
+      call place_user(plan, s, state, err)
+      if (allocated(err)) return
+      s = s + 1
     end do
   end subroutine compose_frames
+
+  !> Frames of steps along fixed axes from plain arrays, up to the first step that has none.
+  pure subroutine place_screws(m, steps, s, last, q, turn, r, p, axis_w, axis_v)
+    integer, intent(in) :: m                    !< number of steps
+    type(step_type), intent(in) :: steps(m)     !< steps of the plan
+    integer, intent(inout) :: s                 !< first step; then the first one that was not placed
+    integer, intent(in) :: last                 !< last step
+    real(wp), intent(in) :: q(m)                !< coordinates [rad, m]
+    real(wp), intent(in) :: turn(2, m)          !< cosine and sine of the angle of each step
+    real(wp), intent(inout) :: r(3, 3, 0:m)     !< rotations of the frames
+    real(wp), intent(inout) :: p(3, 0:m)        !< origins of the frames [m]
+    real(wp), intent(inout) :: axis_w(3, m)     !< angular velocity per unit rate
+    real(wp), intent(inout) :: axis_v(3, m)     !< velocity of the origin per unit rate
+    integer :: i
+
+    do while (s <= last)
+      if (.not. steps(s)%is_screw) return
+      i = steps(s)%parent
+      call place_screw(steps(s), q(steps(s)%coordinate), turn(1, s), turn(2, s), r(:, :, i), p(:, i), &
+                       r(:, :, s), p(:, s), axis_w(:, s), axis_v(:, s))
+      s = s + 1
+    end do
+  end subroutine place_screws
 
   !> The frame of one step along a fixed axis: a constant pose, then a turn about z and a slide along z.
   pure subroutine place_screw(step, q, c, s, r_parent, p_parent, r, p, axis_w, axis_v)

@@ -7,7 +7,7 @@
 module mech9_spatial_closure
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back, combine, cross, rotation_vector
-  use mech9_plan, only: plan_type, closure_type, loop_type, constraint_type
+  use mech9_plan, only: plan_type, step_type, closure_type, loop_type, constraint_type
   use mech9_state, only: state_type
   implicit none
   private
@@ -50,6 +50,12 @@ contains
     real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of the block; gets the rows of this closure
     integer :: i, s
 
+    if (self%equations == 6) then
+      call fill_columns(size(plan%steps), plan%steps, plan%unit_of, plan%closures(self%closure)%closing, 1.0_wp/plan%length, &
+                        size(loop%steps), loop%steps, loop%signs, first, size(column_of), column_of, state%p, state%axis_w, &
+                        state%axis_v, size(matrix, 1), size(matrix, 2), row, matrix)
+      return
+    end if
     do i = 1, size(loop%steps)
       s = loop%steps(i)
       if (s < first) cycle
@@ -57,6 +63,57 @@ contains
       call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + self%equations, column_of(s - first + 1)))
     end do
   end subroutine jacobian
+
+  !> Derivatives of the six equations of a closure with respect to the coordinates of steps of a loop, from plain arrays.
+  pure subroutine fill_columns(k, steps, unit_of, closing, per_length, n_steps, loop, signs, first, n_columns, column_of, p, &
+                               axis_w, axis_v, m, n, row, matrix)
+    integer, intent(in) :: k                      !< number of steps of the plan
+    type(step_type), intent(in) :: steps(k)       !< steps of the plan
+    real(wp), intent(in) :: unit_of(k)            !< units of the coordinates
+    integer, intent(in) :: closing                !< the closing frame
+    real(wp), intent(in) :: per_length            !< one over the mechanism's size [1/m]
+    integer, intent(in) :: n_steps                !< number of steps of the loop
+    integer, intent(in) :: loop(n_steps)          !< steps of the loop
+    real(wp), intent(in) :: signs(n_steps)        !< of the steps in the loop: 1 or -1
+    integer, intent(in) :: first                  !< earlier steps are left out
+    integer, intent(in) :: n_columns              !< number of steps from `first` on
+    integer, intent(in) :: column_of(n_columns)   !< column of each of these; 0: none
+    real(wp), intent(in) :: p(3, 0:k)             !< origins of the frames [m]
+    real(wp), intent(in) :: axis_w(3, k)          !< angular velocity per unit rate
+    real(wp), intent(in) :: axis_v(3, k)          !< velocity of the origin per unit rate
+    integer, intent(in) :: m                      !< number of rows of the matrix
+    integer, intent(in) :: n                      !< number of columns of the matrix
+    integer, intent(in) :: row                    !< number of rows before those of this closure
+    real(wp), intent(inout) :: matrix(m, n)       !< gets six rows
+    real(wp) :: w(3), v(3)
+    integer :: i, j, s
+
+    do i = 1, n_steps
+      s = loop(i)
+      if (s < first) cycle
+      j = column_of(s - first + 1)
+      if (j == 0) cycle
+      call carry_screw(signs(i)*unit_of(steps(s)%coordinate), axis_w(:, s), axis_v(:, s), p(:, s), p(:, closing), w, v)
+      matrix(row + 1:row + 3, j) = w
+      matrix(row + 4:row + 6, j) = v*per_length
+    end do
+  end subroutine fill_columns
+
+  !> The screw of a step, with a weight, at another place.
+  pure subroutine carry_screw(weight, axis_w, axis_v, from, place, w, v)
+    real(wp), intent(in) :: weight      !< factor of the screw
+    real(wp), intent(in) :: axis_w(3)   !< angular velocity per unit rate
+    real(wp), intent(in) :: axis_v(3)   !< velocity of the step's frame per unit rate
+    real(wp), intent(in) :: from(3)     !< origin of the step's frame [m]
+    real(wp), intent(in) :: place(3)    !< the place [m]
+    real(wp), intent(out) :: w(3)       !< angular velocity
+    real(wp), intent(out) :: v(3)       !< velocity at the place
+    real(wp) :: arm(3)
+
+    w = weight*axis_w
+    arm = place - from
+    v = weight*axis_v + cross(w, arm)
+  end subroutine carry_screw
 
   !> Derivatives with respect to the coordinate of one step, in its unit.
   pure subroutine column(self, plan, s, sign, state, values)
@@ -66,13 +123,11 @@ contains
     real(wp), intent(in) :: sign                      !< of the step in the loop: 1 or -1
     type(state_type), intent(in) :: state             !< with the poses of the frames and the screws of the steps
     real(wp), intent(out), contiguous :: values(:)    !< (equations) [rad, lengths of the mechanism] per unit of the coordinate
-    real(wp) :: arm(3), w(3), v(3), unit
+    real(wp) :: w(3), v(3)
 
     associate (place => state%p(:, plan%closures(self%closure)%closing))
-      unit = sign*plan%unit_of(plan%steps(s)%coordinate)
-      w = unit*state%axis_w(:, s)
-      arm = place - state%p(:, s)
-      v = unit*state%axis_v(:, s) + cross(w, arm)
+      call carry_screw(sign*plan%unit_of(plan%steps(s)%coordinate), state%axis_w(:, s), state%axis_v(:, s), state%p(:, s), &
+                       place, w, v)
       call reduced_screw(plan, plan%closures(self%closure), state, w, v, place, values)
     end associate
   end subroutine column
@@ -117,21 +172,39 @@ contains
     type(state_type), intent(in) :: state       !< with the rates, and the velocities of the frames of earlier blocks
     real(wp), intent(out) :: w(3)               !< relative angular velocity, in the axes of frame 0 [rad/s]
     real(wp), intent(out) :: v(3)               !< relative velocity at the closing frame's origin, in the axes of frame 0 [m/s]
-    real(wp) :: place(3), arm(3), spin(3), rate
-    integer :: i, s
+    real(wp) :: place(3)
 
     place = state%p(:, closure%closing)
     call stem_difference(closure, place, state%p, state%omega, state%v, w, v)
-    do i = 1, size(closure%part%steps)
-      s = closure%part%steps(i)
-      rate = closure%part%signs(i)*state%dq(plan%steps(s)%coordinate)
-      if (.not. abs(rate) > 0.0_wp) cycle
-      spin = rate*state%axis_w(:, s)
-      arm = place - state%p(:, s)
-      w = w + spin
-      v = v + rate*state%axis_v(:, s) + cross(spin, arm)
-    end do
+    call add_velocities(size(plan%steps), plan%steps, size(closure%part%steps), closure%part%steps, closure%part%signs, place, &
+                        state%dq, state%p, state%axis_w, state%axis_v, w, v)
   end subroutine opening_velocity
+
+  !> Add the velocities that the rates of steps give to the relative velocity of a closure's frames, from plain arrays.
+  pure subroutine add_velocities(m, steps, n, part, signs, place, dq, p, axis_w, axis_v, w, v)
+    integer, intent(in) :: m                  !< number of steps of the plan
+    type(step_type), intent(in) :: steps(m)   !< steps of the plan
+    integer, intent(in) :: n                  !< number of steps of the part
+    integer, intent(in) :: part(n)            !< steps of the part
+    real(wp), intent(in) :: signs(n)          !< of these steps in the loop: 1 or -1
+    real(wp), intent(in) :: place(3)          !< the closing frame's origin [m]
+    real(wp), intent(in) :: dq(m)             !< rates of the coordinates [rad/s, m/s]
+    real(wp), intent(in) :: p(3, 0:m)         !< origins of the frames [m]
+    real(wp), intent(in) :: axis_w(3, m)      !< angular velocity per unit rate
+    real(wp), intent(in) :: axis_v(3, m)      !< velocity of the origin per unit rate
+    real(wp), intent(inout) :: w(3)           !< relative angular velocity [rad/s]
+    real(wp), intent(inout) :: v(3)           !< relative velocity at the place [m/s]
+    real(wp) :: spin(3), slip(3)
+    integer :: i, s
+
+    do i = 1, n
+      s = part(i)
+      if (.not. abs(dq(steps(s)%coordinate)) > 0.0_wp) cycle
+      call carry_screw(signs(i)*dq(steps(s)%coordinate), axis_w(:, s), axis_v(:, s), p(:, s), place, spin, slip)
+      w = w + spin
+      v = v + slip
+    end do
+  end subroutine add_velocities
 
   !> Difference at a place between the motions of the two bodies on whose frames the part of a loop begins: of the velocities, or
   !> of the accelerations without their centripetal terms.
@@ -166,34 +239,60 @@ contains
     type(state_type), intent(in) :: state       !< with rates, accelerations and velocities of frames
     real(wp), intent(out) :: w(3)               !< relative angular acceleration, in the axes of frame 0 [rad/s^2]
     real(wp), intent(out) :: v(3)   !< relative acceleration at the closing frame's origin, in the axes of frame 0 [m/s^2]
-    real(wp) :: place(3), arm(3), spin(3), slip(3), rate, acceleration
-    integer :: i, s, f
+    real(wp) :: place(3), arm(3), slip(3)
 
     place = state%p(:, closure%closing)
     call stem_difference(closure, place, state%p, state%alpha, state%a, w, v)
-    do i = 1, size(closure%part%steps)
-      s = closure%part%steps(i)
-      f = plan%steps(s)%parent
-      rate = state%dq(plan%steps(s)%coordinate)
-      acceleration = state%ddq(plan%steps(s)%coordinate)
-      arm = state%p(:, s) - state%p(:, f)
-      spin = rate*state%axis_w(:, s)
-      slip = cross(state%omega(:, f), arm) + 2.0_wp*rate*state%axis_v(:, s)
-      spin = acceleration*state%axis_w(:, s) + cross(state%omega(:, f), spin)
-      slip = acceleration*state%axis_v(:, s) + cross(state%omega(:, f), slip)
-      if (.not. plan%steps(s)%is_screw) then
-        spin = spin + rate**2*state%axis_w_rate(:, s)
-        slip = slip + rate**2*state%axis_v_rate(:, s)
-      end if
-      w = w + closure%part%signs(i)*spin
-      arm = place - state%p(:, s)
-      v = v + closure%part%signs(i)*(slip + cross(spin, arm))
-    end do
-    f = closure%target
-    arm = place - state%p(:, f)
-    slip = cross(state%omega(:, f), arm)
-    v = v - cross(state%omega(:, f), slip)
+    call add_accelerations(size(plan%steps), plan%steps, size(closure%part%steps), closure%part%steps, closure%part%signs, &
+                           place, state%dq, state%ddq, state%p, state%omega, state%axis_w, state%axis_v, state%axis_w_rate, &
+                           state%axis_v_rate, w, v)
+    arm = place - state%p(:, closure%target)
+    slip = cross(state%omega(:, closure%target), arm)
+    v = v - cross(state%omega(:, closure%target), slip)
   end subroutine opening_acceleration
+
+  !> Add the accelerations that the rates and accelerations of steps give to the relative acceleration of a closure's frames,
+  !> from plain arrays.
+  pure subroutine add_accelerations(m, steps, n, part, signs, place, dq, ddq, p, omega, axis_w, axis_v, axis_w_rate, &
+                                    axis_v_rate, w, v)
+    integer, intent(in) :: m                    !< number of steps of the plan
+    type(step_type), intent(in) :: steps(m)     !< steps of the plan
+    integer, intent(in) :: n                    !< number of steps of the part
+    integer, intent(in) :: part(n)              !< steps of the part
+    real(wp), intent(in) :: signs(n)            !< of these steps in the loop: 1 or -1
+    real(wp), intent(in) :: place(3)            !< the closing frame's origin [m]
+    real(wp), intent(in) :: dq(m)               !< rates of the coordinates [rad/s, m/s]
+    real(wp), intent(in) :: ddq(m)              !< accelerations of the coordinates [rad/s^2, m/s^2]
+    real(wp), intent(in) :: p(3, 0:m)           !< origins of the frames [m]
+    real(wp), intent(in) :: omega(3, 0:m)       !< angular velocities of the frames [rad/s]
+    real(wp), intent(in) :: axis_w(3, m)        !< angular velocity per unit rate
+    real(wp), intent(in) :: axis_v(3, m)        !< velocity of the origin per unit rate
+    real(wp), intent(in) :: axis_w_rate(3, m)   !< derivative of axis_w in q, of user pairs
+    real(wp), intent(in) :: axis_v_rate(3, m)   !< derivative of axis_v in q, of user pairs
+    real(wp), intent(inout) :: w(3)             !< relative angular acceleration [rad/s^2]
+    real(wp), intent(inout) :: v(3)             !< relative acceleration at the place [m/s^2]
+    real(wp) :: arm(3), spin(3), slip(3), rate, acceleration
+    integer :: i, s, f
+
+    do i = 1, n
+      s = part(i)
+      f = steps(s)%parent
+      rate = dq(steps(s)%coordinate)
+      acceleration = ddq(steps(s)%coordinate)
+      arm = p(:, s) - p(:, f)
+      spin = rate*axis_w(:, s)
+      slip = cross(omega(:, f), arm) + 2.0_wp*rate*axis_v(:, s)
+      spin = acceleration*axis_w(:, s) + cross(omega(:, f), spin)
+      slip = acceleration*axis_v(:, s) + cross(omega(:, f), slip)
+      if (.not. steps(s)%is_screw) then
+        spin = spin + rate**2*axis_w_rate(:, s)
+        slip = slip + rate**2*axis_v_rate(:, s)
+      end if
+      w = w + signs(i)*spin
+      arm = place - p(:, s)
+      v = v + signs(i)*(slip + cross(spin, arm))
+    end do
+  end subroutine add_accelerations
 
   !> The error pose of a closure as a screw at the closing frame's origin, in the axes of frame 0.
   pure subroutine error_screw(closure, state, w, v, place)

@@ -1,0 +1,292 @@
+!> The operations on one front of a sparse QR factorization. Loops of the most frequent sizes are compiled for these sizes.
+!>
+!> Arrays are of explicit shape, so that the compiler keeps their addresses in registers.
+module mech9_front_kernels
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: gather, eliminate, add_squares, pass_rows, reflect, substitute, take_covariance, invert, find_lengths, fill_covariance
+
+contains
+
+  !> Take a front's own rows out of the matrix.
+  pure subroutine gather(own, rows, n, columns, m_matrix, n_matrix, matrix, m, a)
+    integer, intent(in) :: own                           !< number of own rows
+    integer, intent(in) :: rows(own)                     !< their numbers in the matrix
+    integer, intent(in) :: n                             !< columns of the front
+    integer, intent(in) :: columns(n)                    !< their numbers in the matrix
+    integer, intent(in) :: m_matrix                      !< rows of the matrix
+    integer, intent(in) :: n_matrix                      !< columns of the matrix
+    real(wp), intent(in) :: matrix(m_matrix, n_matrix)   !< the matrix
+    integer, intent(in) :: m                             !< rows of the front
+    real(wp), intent(inout) :: a(m, n)                   !< gets the first rows of the front
+    integer :: i, j
+
+    do j = 1, n
+      do i = 1, own
+        a(i, j) = matrix(rows(i), columns(j))
+      end do
+    end do
+  end subroutine gather
+
+  !> Eliminate the pivots of a front by reflections.
+  pure subroutine eliminate(m, p, n, a, scales, reciprocals, sign_of_det)
+    integer, intent(in) :: m                  !< rows of the front
+    integer, intent(in) :: p                  !< pivots of the front
+    integer, intent(in) :: n                  !< columns of the front
+    real(wp), intent(inout) :: a(m, n)        !< the front; R and reflections afterwards
+    real(wp), intent(out) :: scales(p)        !< scales of the reflections
+    real(wp), intent(out) :: reciprocals(p)   !< of the diagonal of R, 0 where that is 0
+    integer, intent(inout) :: sign_of_det     !< changed for each negative factor of the determinant
+
+    if (m == 6 .and. p == 5) then
+      call eliminate_6_5(n, a, scales, reciprocals, sign_of_det)
+    else if (m == 5 .and. p == 5) then
+      call eliminate_5_5(n, a, scales, reciprocals, sign_of_det)
+    else if (m == 6) then
+      call eliminate_6(p, n, a, scales, reciprocals, sign_of_det)
+    else if (m == 3) then
+      call eliminate_3(p, n, a, scales, reciprocals, sign_of_det)
+    else
+      call eliminate_any(m, p, n, a, scales, reciprocals, sign_of_det)
+    end if
+  end subroutine eliminate
+
+  ! The arguments that these procedures share are declared and described in the included file.
+
+  !> `eliminate` for any number of rows.
+  pure subroutine eliminate_any(m, p, n, a, scales, reciprocals, sign_of_det)
+    integer, intent(in) :: m   !< number of rows
+    integer, intent(in) :: p   !< number of pivots
+    include 'elimination.inc'
+  end subroutine eliminate_any
+
+  !> `eliminate` for the six rows of a spatial closure.
+  pure subroutine eliminate_6(p, n, a, scales, reciprocals, sign_of_det)
+    integer, parameter :: m = 6
+    integer, intent(in) :: p   !< number of pivots
+    include 'elimination.inc'
+  end subroutine eliminate_6
+
+  !> `eliminate` for five pivots in the six rows of a spatial closure.
+  pure subroutine eliminate_6_5(n, a, scales, reciprocals, sign_of_det)
+    integer, parameter :: m = 6, p = 5
+    include 'elimination.inc'
+  end subroutine eliminate_6_5
+
+  !> `eliminate` for five pivots in five rows.
+  pure subroutine eliminate_5_5(n, a, scales, reciprocals, sign_of_det)
+    integer, parameter :: m = 5, p = 5
+    include 'elimination.inc'
+  end subroutine eliminate_5_5
+
+  !> `eliminate` for the three rows of a planar or spherical closure.
+  pure subroutine eliminate_3(p, n, a, scales, reciprocals, sign_of_det)
+    integer, parameter :: m = 3
+    integer, intent(in) :: p   !< number of pivots
+    include 'elimination.inc'
+  end subroutine eliminate_3
+
+  !> Add the squares of the numbers of R to those of their columns.
+  pure subroutine add_squares(m, p, n, a, columns, n_matrix, squares)
+    integer, intent(in) :: m                       !< rows of the front
+    integer, intent(in) :: p                       !< pivots of the front
+    integer, intent(in) :: n                       !< columns of the front
+    real(wp), intent(in) :: a(m, n)                !< the front after elimination
+    integer, intent(in) :: columns(n)              !< numbers of its columns in the matrix
+    integer, intent(in) :: n_matrix                !< columns of the matrix
+    real(wp), intent(inout) :: squares(n_matrix)   !< sums of squares of each column of R
+    real(wp) :: s
+    integer :: i, j
+
+    do j = 1, n
+      s = squares(columns(j))
+      do i = 1, min(j, p)
+        s = s + a(i, j)**2
+      end do
+      squares(columns(j)) = s
+    end do
+  end subroutine add_squares
+
+  !> Pass the rows that remain on to the parent, where they are zero in the columns that the front does not have.
+  pure subroutine pass_rows(m, p, n, a, places, m_parent, n_parent, before, parent)
+    integer, intent(in) :: m                               !< rows of the front
+    integer, intent(in) :: p                               !< pivots of the front
+    integer, intent(in) :: n                               !< columns of the front
+    real(wp), intent(in) :: a(m, n)                        !< the front after elimination
+    integer, intent(in) :: places(n)                       !< place of each column among the columns of the parent
+    integer, intent(in) :: m_parent                        !< rows of the parent
+    integer, intent(in) :: n_parent                        !< columns of the parent
+    integer, intent(in) :: before                          !< rows of the parent before those that it gets
+    real(wp), intent(inout) :: parent(m_parent, n_parent)  !< gets the rows
+    integer :: i, j
+
+    do j = 1, n_parent
+      do i = before + 1, before + m - p
+        parent(i, j) = 0.0_wp
+      end do
+    end do
+    do j = p + 1, n
+      do i = p + 1, m
+        parent(before + i - p, places(j)) = a(i, j)
+      end do
+    end do
+  end subroutine pass_rows
+
+  !> b becomes Q^T b, with the p reflections of a front.
+  pure subroutine reflect(m, p, a, scales, b)
+    integer, intent(in) :: m            !< rows of the front
+    integer, intent(in) :: p            !< pivots of the front
+    real(wp), intent(in) :: a(m, p)     !< the front after elimination
+    real(wp), intent(in) :: scales(p)   !< scales of the reflections
+    real(wp), intent(inout) :: b(m)     !< right-hand side; Q^T b afterwards
+    real(wp) :: s
+    integer :: i, j
+
+    do j = 1, p
+      s = b(j)
+      do i = j + 1, m
+        s = s + a(i, j)*b(i)
+      end do
+      s = s*scales(j)
+      b(j) = b(j) - s
+      do i = j + 1, m
+        b(i) = b(i) - s*a(i, j)
+      end do
+    end do
+  end subroutine reflect
+
+  !> The solution of a front for its pivots, from the solution for its other columns.
+  pure subroutine substitute(m, p, n, a, reciprocals, columns, n_matrix, b, x)
+    integer, intent(in) :: m                  !< rows of the front
+    integer, intent(in) :: p                  !< pivots of the front
+    integer, intent(in) :: n                  !< columns of the front
+    real(wp), intent(in) :: a(m, n)           !< the front after elimination
+    real(wp), intent(in) :: reciprocals(p)    !< of the diagonal of R
+    integer, intent(in) :: columns(n)         !< numbers of the columns in the matrix
+    integer, intent(in) :: n_matrix           !< columns of the matrix
+    real(wp), intent(inout) :: b(m)           !< right-hand side; overwritten
+    real(wp), intent(inout) :: x(n_matrix)    !< with the solution for the other columns; gets that for the pivots
+    integer :: i, j
+
+    do j = n, 1, -1
+      if (j <= p) x(columns(j)) = b(j)*reciprocals(j)
+      do i = 1, min(j - 1, p)
+        b(i) = b(i) - a(i, j)*x(columns(j))
+      end do
+    end do
+  end subroutine substitute
+
+  !> The covariance of the columns that a front shares with its parent.
+  pure subroutine take_covariance(r, places, n_parent, of_parent, of_others)
+    integer, intent(in) :: r                              !< number of these columns
+    integer, intent(in) :: places(r)                      !< their places among the columns of the parent
+    integer, intent(in) :: n_parent                       !< columns of the parent
+    real(wp), intent(in) :: of_parent(n_parent, n_parent) !< covariance of the columns of the parent
+    real(wp), intent(out) :: of_others(r, r)              !< covariance of the shared columns
+    integer :: i, j
+
+    do j = 1, r
+      do i = 1, r
+        of_others(i, j) = of_parent(places(i), places(j))
+      end do
+    end do
+  end subroutine take_covariance
+
+  !> The inverse among the pivots of a front, and its products with the other columns.
+  pure subroutine invert(m, p, r, a, reciprocals, of_others, inverse, coupling, product)
+    integer, intent(in) :: m                  !< rows of the front
+    integer, intent(in) :: p                  !< pivots of the front
+    integer, intent(in) :: r                  !< number of its other columns
+    real(wp), intent(in) :: a(m, p + r)       !< the front after elimination
+    real(wp), intent(in) :: reciprocals(p)    !< of the diagonal of R
+    real(wp), intent(in) :: of_others(r, r)   !< covariance of the other columns
+    real(wp), intent(out) :: inverse(p, p)    !< R^-1 among the pivots, an upper triangle
+    real(wp), intent(out) :: coupling(p, r)   !< product of that inverse and R in the other columns
+    real(wp), intent(out) :: product(p, r)    !< product of the coupling and the covariance
+
+    if (p == 5) then
+      call invert_5(m, r, a, reciprocals, of_others, inverse, coupling, product)
+    else
+      call invert_any(m, p, r, a, reciprocals, of_others, inverse, coupling, product)
+    end if
+  end subroutine invert
+
+  !> `invert` for any number of pivots.
+  pure subroutine invert_any(m, p, r, a, reciprocals, of_others, inverse, coupling, product)
+    integer, intent(in) :: p   !< number of pivots
+    include 'inversion.inc'
+  end subroutine invert_any
+
+  !> `invert` for five pivots.
+  pure subroutine invert_5(m, r, a, reciprocals, of_others, inverse, coupling, product)
+    integer, parameter :: p = 5
+    include 'inversion.inc'
+  end subroutine invert_5
+
+  !> The diagonal of the covariance for the pivots of a front.
+  pure subroutine find_lengths(p, r, inverse, coupling, product, columns, n_matrix, squares)
+    integer, intent(in) :: p                       !< pivots of the front
+    integer, intent(in) :: r                       !< number of its other columns
+    real(wp), intent(in) :: inverse(p, p)          !< R^-1 among the pivots
+    real(wp), intent(in) :: coupling(p, r)         !< product of that inverse and R in the other columns
+    real(wp), intent(in) :: product(p, r)          !< product of the coupling and the covariance of these columns
+    integer, intent(in) :: columns(p)              !< numbers of the pivots in the matrix
+    integer, intent(in) :: n_matrix                !< columns of the matrix
+    real(wp), intent(inout) :: squares(n_matrix)   !< gets the squares of the lengths of the rows of R^-1
+    real(wp) :: sums(p)
+    integer :: i, j
+
+    sums = 0.0_wp
+    do j = 1, p
+      do i = 1, j
+        sums(i) = sums(i) + inverse(i, j)**2
+      end do
+    end do
+    do j = 1, r
+      do i = 1, p
+        sums(i) = sums(i) + coupling(i, j)*product(i, j)
+      end do
+    end do
+    do i = 1, p
+      squares(columns(i)) = sums(i)
+    end do
+  end subroutine find_lengths
+
+  !> The covariance of all columns of a front.
+  pure subroutine fill_covariance(p, r, inverse, coupling, product, of_others, covariance)
+    integer, intent(in) :: p                              !< pivots of the front
+    integer, intent(in) :: r                              !< number of its other columns
+    real(wp), intent(in) :: inverse(p, p)                 !< R^-1 among the pivots
+    real(wp), intent(in) :: coupling(p, r)                !< product of that inverse and R in the other columns
+    real(wp), intent(in) :: product(p, r)                 !< product of the coupling and the covariance of these columns
+    real(wp), intent(in) :: of_others(r, r)               !< covariance of the other columns
+    real(wp), intent(out) :: covariance(p + r, p + r)     !< covariance of all columns
+    integer :: i, j, k
+
+    do j = 1, p
+      do i = 1, p
+        covariance(i, j) = 0.0_wp
+      end do
+      do k = j, p
+        do i = 1, k
+          covariance(i, j) = covariance(i, j) + inverse(i, k)*inverse(j, k)
+        end do
+      end do
+      do k = 1, r
+        do i = 1, p
+          covariance(i, j) = covariance(i, j) + product(i, k)*coupling(j, k)
+        end do
+      end do
+    end do
+    do j = 1, r
+      do i = 1, p
+        covariance(i, p + j) = -product(i, j)
+        covariance(p + j, i) = -product(i, j)
+      end do
+      do i = 1, r
+        covariance(p + i, p + j) = of_others(i, j)
+      end do
+    end do
+  end subroutine fill_covariance
+end module mech9_front_kernels
