@@ -161,17 +161,18 @@ contains
         call solve_rates(plan, block, other, by_fronts, remainder)
         call solve_accelerations(plan, block, other, by_fronts)
         if (block%equations == 0) cycle
-        call test%is_true(abs(remainder - expected) <= 1.0e-12_wp*norm2(state%dq), name//': what no rates remove')
-        call test%is_true(by_fronts%equations%determinant_sign() == full%equations%determinant_sign(), name//': the sign')
+        call test%is_true(abs(remainder - expected) <= 1.0e-12_wp*norm2(state%dq), name//': the remainder is what no rates remove')
+        call test%is_true(by_fronts%equations%determinant_sign() == full%equations%determinant_sign(), &
+                          name//': the determinant has the same sign by both methods')
         associate (one => by_fronts%equations%least_singular_value(), two => full%equations%least_singular_value())
-          call test%is_true(abs(one - two) <= 1.0e-5_wp*two, name//': the least singular value')
+          call test%is_true(abs(one - two) <= 1.0e-5_wp*two, name//': the least singular value is the same by both methods')
         end associate
         ! round-off over the conditioning: once in rates, again in accelerations
         allowed = allowed*4.0_wp/min(1.0_wp, full%equations%conditioning())**2
       end associate
     end do
-    call test%is_true(used .eqv. sparse, name//': whether fronts are used')
-    call test%is_true(maxval(abs(other%dq - state%dq)) <= allowed*maxval(abs(state%dq)), name//': rates')
-    call test%is_true(maxval(abs(other%ddq - state%ddq)) <= allowed*maxval(abs(state%ddq)), name//': accelerations')
+    call test%is_true(used .eqv. sparse, name//': fronts are used where they save work')
+    call test%is_true(maxval(abs(other%dq - state%dq)) <= allowed*maxval(abs(state%dq)), name//': the rates are equal')
+    call test%is_true(maxval(abs(other%ddq - state%ddq)) <= allowed*maxval(abs(state%ddq)), name//': the accelerations are equal')
   end subroutine check_same_motion
 end program test_platforms

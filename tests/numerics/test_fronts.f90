@@ -125,7 +125,8 @@ contains
     structure = platform(6, 6, 5)
     plan = new_front_plan(structure%n, structure%sizes, structure%lists, structure%members)
     call test%is_true(plan%used, 'fronts save work on a platform')
-    call test%is_true(all(plan%fronts%rows == [6, 6, 6, 6, 6, 5]), 'a front has the rows of a closure; the last, those that remain')
+    call test%is_true(all(plan%fronts%rows == [6, 6, 6, 6, 6, 5]), &
+                      'a front has the rows of a closure, and the last one those that remain')
     call test%is_true(all(plan%fronts%pivots == 5), 'every front eliminates a leg')
     call test%is_true(all(plan%fronts(:5)%parent == 6), 'the legs pass their rows on to the last front')
     structure = platform(2, 6, 3)
@@ -177,20 +178,25 @@ contains
     ! round-off over the conditioning; where ranks are doubtful, both are solved in the same way
     allowed = 1.0e3_wp*epsilon(1.0_wp)*s(1)/max(s(size(s)), 1.0e-16_wp*s(1))
     if (allowed < 1.0e-3_wp) then
-      call test%is_true(norm2(x - y) <= allowed*(norm2(y) + norm2(b)*s(1)/s(size(s))**2), name//': the solution')
-      call test%is_true(abs(remainder - expected) <= allowed*norm2(b), name//': the residual')
-      call test%is_true(by_fronts%determinant_sign() == full%determinant_sign(), name//': the sign of the determinant')
+      call test%is_true(norm2(x - y) <= allowed*(norm2(y) + norm2(b)*s(1)/s(size(s))**2), &
+                        name//': the solution is that of the full matrix')
+      call test%is_true(abs(remainder - expected) <= allowed*norm2(b), name//': the remainder is that of the full matrix')
+      call test%is_true(by_fronts%determinant_sign() == full%determinant_sign(), &
+                        name//': the determinant has the sign of the full matrix')
     end if
-    call test%is_true(by_fronts%rank(1.0e-9_wp) == full%rank(1.0e-9_wp), name//': the rank')
+    call test%is_true(by_fronts%rank(1.0e-9_wp) == full%rank(1.0e-9_wp), name//': the rank is that of the full matrix')
     associate (least => s(size(s)), pivot => by_fronts%least_pivot())
       ! below round-off of the largest singular value neither is known
       allowed = 1.0e-12_wp*s(1)
       call test%is_true(pivot >= least*(1.0_wp - 1.0e-10_wp) - allowed, name//': the least pivot is above the least singular value')
       ! fronts bound it by the root of the number of columns, exchange of columns hardly ever exceeds twice that
-      call test%is_true(pivot <= 2.0_wp*least*sqrt(real(size(s), wp)) + allowed, name//': and not far above it')
-      call test%is_true(abs(by_fronts%largest_pivot() - full%largest_pivot()) <= 1.0e-14_wp*s(1), name//': the largest pivot')
+      call test%is_true(pivot <= 2.0_wp*least*sqrt(real(size(s), wp)) + allowed, &
+                        name//': the least pivot is not far above the least singular value')
+      call test%is_true(abs(by_fronts%largest_pivot() - full%largest_pivot()) <= 1.0e-14_wp*s(1), &
+                        name//': the largest pivot is that of the full matrix')
       if (least > 1.0e-9_wp*s(1)) &
-        call test%is_true(abs(by_fronts%least_singular_value() - least) <= 1.0e-5_wp*least, name//': the least singular value')
+        call test%is_true(abs(by_fronts%least_singular_value() - least) <= 1.0e-5_wp*least, &
+                          name//': the least singular value is that of the full matrix')
     end associate
   end subroutine check_matrix
 

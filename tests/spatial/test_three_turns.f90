@@ -93,8 +93,8 @@ contains
         q = random_vector(random)*2.0_wp*pi
         constant = combine(transpose(rotation_of(turns%swing(q, 0.0_wp*q, 0.0_wp*q))), turned(before, sign, offset, q))
         if (k == 1) first = constant
-        call test%near(maxval(abs(constant - first)), 0.0_wp, round_off, 'the rotation of the turns')
-        call test%near(constant(3, 3), 1.0_wp, round_off, 'the third axis of the turns')
+        call test%near(maxval(abs(constant - first)), 0.0_wp, round_off, 'the turns differ from the swing by a constant rotation')
+        call test%near(constant(3, 3), 1.0_wp, round_off, 'the constant rotation is one about the third axis')
       end do
     end do
   end subroutine common_form
@@ -121,11 +121,12 @@ contains
     real(wp), intent(in) :: tolerance            !< largest difference of components
     character(len=*), intent(in) :: why          !< the statement that is checked
 
-    call test%near(maxval(abs(rotation_of(a) - rotation_of(b))), 0.0_wp, tolerance, why//': the rotation')
-    call test%near(maxval(abs(a%omega + a%spin(2)*a%d - b%omega - b%spin(2)*b%d)), 0.0_wp, tolerance, why//': the velocity')
+    call test%near(maxval(abs(rotation_of(a) - rotation_of(b))), 0.0_wp, tolerance, why//': the rotations are equal')
+    call test%near(maxval(abs(a%omega + a%spin(2)*a%d - b%omega - b%spin(2)*b%d)), 0.0_wp, tolerance, &
+                   why//': the angular velocities are equal')
     call test%near(maxval(abs(a%omega_rate + a%spin(3)*a%d + a%spin(2)*cross(a%omega, a%d) &
                               - b%omega_rate - b%spin(3)*b%d - b%spin(2)*cross(b%omega, b%d))), 0.0_wp, tolerance, &
-                   why//': the acceleration')
+                   why//': the angular accelerations are equal')
   end subroutine same_motion
 
   !> One motion has the same rotation, angular velocity and angular acceleration in both triples, and comes back to the same
@@ -148,7 +149,8 @@ contains
       dq = random_vector(random)
       ddq = random_vector(random)
       motion = given%swing(q, dq, ddq)
-      call test%near(given%distance(motion), given%margin(q(2)), round_off, 'the distance from the lock')
+      call test%near(given%distance(motion), given%margin(q(2)), round_off, &
+                     'the distance from the lock is that of the second angle')
       heading = heading_type()
       call other%continue_heading(motion, 0.0_wp, heading)
       call other%coordinates(motion, heading, 0.0_wp, a, da, dda)
@@ -160,9 +162,9 @@ contains
                              given%sign(3)*q(3) + given%shift(3) - substituted%spin(1) - 0.1_wp)
       call given%continue_heading(substituted, 0.0_wp, heading)
       call given%coordinates(substituted, heading, 0.0_wp, a, da, dda)
-      call test%near(maxval(abs(a - q)), 0.0_wp, limit, 'and back: coordinates')
-      call test%near(maxval(abs(da - dq)), 0.0_wp, limit, 'and back: rates')
-      call test%near(maxval(abs(dda - ddq)), 0.0_wp, limit, 'and back: accelerations')
+      call test%near(maxval(abs(a - q)), 0.0_wp, limit, 'coordinates that are carried there and back are the same')
+      call test%near(maxval(abs(da - dq)), 0.0_wp, limit, 'rates that are carried there and back are the same')
+      call test%near(maxval(abs(dda - ddq)), 0.0_wp, limit, 'accelerations that are carried there and back are the same')
     end do
   end subroutine one_motion_in_two_triples
 
@@ -207,10 +209,10 @@ contains
       call given%continue_heading(motion, 1.0e-9_wp, heading)
       call given%coordinates(motion, heading, 1.0e-9_wp, a, da, dda)
       ignored = a - q
-      call test%near(maxval(abs(ignored)), 0.0_wp, 1.0e-12_wp, 'coordinates in gimbal lock')
-      call test%near(maxval(abs(da - dq)), 0.0_wp, 1.0e-11_wp, 'rates in gimbal lock')
+      call test%near(maxval(abs(ignored)), 0.0_wp, 1.0e-12_wp, 'the coordinates in gimbal lock are found')
+      call test%near(maxval(abs(da - dq)), 0.0_wp, 1.0e-11_wp, 'the rates in gimbal lock are found')
       ! the difference has an error of step**2 times fifth derivatives, some tens, and of round-off over the step
-      call test%near(maxval(abs(dda - ddq)), 0.0_wp, 1.0e-7_wp, 'accelerations in gimbal lock')
+      call test%near(maxval(abs(dda - ddq)), 0.0_wp, 1.0e-7_wp, 'the accelerations in gimbal lock are found')
     end do
   end subroutine limits_in_lock
 
@@ -256,7 +258,7 @@ contains
       call test%is_true(heading%first < -1.0_wp .and. heading%first > -0.5_wp*pi, 'the first angle went over 0')
       call test%is_true(heading%second < 0.5_wp*pi, 'the second angle stayed below 90 degrees')
       call follow(-aside, 1.0e-9_wp, heading)
-      call test%is_true(heading%first > 4.0_wp .and. heading%first < 1.5_wp*pi, 'on the other side it went over pi')
+      call test%is_true(heading%first > 4.0_wp .and. heading%first < 1.5_wp*pi, 'the first angle went over pi on the other side')
     end do
   end subroutine way_past_the_lock
 
