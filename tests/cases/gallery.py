@@ -11,6 +11,15 @@ A line of expected.txt is one of
 where is `every row`, `first`, `last` or `t = number`. Expressions are of columns (q1, dq4, P.x), of points as wholes
 (distance(A, B)), numbers, + - * / **, functions of numpy, rad() and deg(), first(): the value of the first row. The scale is the
 largest value of `left` in any row, but at most 1; where that is below the tolerance, 1.
+
+A tolerance is an expression of numbers and of the names
+    closed           Newton's method closes chains to 32 units of round-off of the size of the mechanism; the least conditioning
+                     of the run divides it, and up to ten coordinates add up in a place
+    rates            the same, divided by the conditioning once more
+    accelerations    and again
+    tolerance        the relative tolerance of an integration, which bounds the error of a step
+    steps            the tolerance times the number of steps: the errors of all steps add up
+A factor, or a number in place of a name, has its reason in its line or at the head of the file.
 """
 import os
 import re
@@ -54,13 +63,22 @@ def rows_of(where, t):
     return np.flatnonzero(np.abs(t - time) <= 1e-12 * max(1.0, abs(time)))
 
 
+def tolerances_of(report):
+    """The names that a tolerance may hold."""
+    conditioning = report.get('least_conditioning', 1.0)
+    closed = 10 * 32 * np.finfo(float).eps / conditioning
+    tolerance = report.get('relative_tolerance', 0.0)
+    return {'closed': closed, 'rates': closed / conditioning, 'accelerations': closed / conditioning ** 2,
+            'tolerance': tolerance, 'steps': tolerance * report['steps'], '__builtins__': {}}
+
+
 def check_values(checks, table, known, where, left, right, tolerance, why):
     rows = rows_of(where, table['t'])
     count = len(table['t'])
     values, expected = (np.broadcast_to(value_of(side, known), (count,)) for side in (left, right))
     largest = np.max(np.abs(values))
-    checks.near(values[rows], expected[rows], float(tolerance), f'{where}: {left} = {right} ({why})',
-                scale=min(1.0, largest) if largest > float(tolerance) else 1.0)
+    checks.near(values[rows], expected[rows], tolerance, f'{where}: {left} = {right} ({why})',
+                scale=min(1.0, largest) if largest > tolerance else 1.0)
 
 
 def program_of(example, folder, samples):
@@ -89,7 +107,8 @@ def check_example(checks, example, program):
             done = run(program, example.data, option)
             checks.true(wanted in done.stdout.splitlines(), f'{option} tells: {wanted} ({why})', done.stdout)
         else:
-            check_values(checks, table, known, *parts)
+            where, left, right, tolerance, why = parts
+            check_values(checks, table, known, where, left, right, eval(tolerance, tolerances_of(report)), why)
 
 
 def check_options(checks, example, program):
