@@ -70,7 +70,7 @@ contains
       space%model = flat%model
       call prepare(space, .true., found)
       call test%is_true(found, 'the same structure in space has a position')
-      call check_motion(space, 'the same in space')
+      call check_motion(space, 'the same structure in space')
       call test%near(maxval(abs(space%work%accelerations - flat%work%accelerations)) &
                      /maxval(abs(flat%work%accelerations)), 0.0_wp, 1.0e-11_wp, &
                      'planar and spatial arithmetic give the same accelerations')

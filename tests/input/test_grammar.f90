@@ -105,7 +105,8 @@ contains
     rows = find_item_rows(row%group, 'kind')
     call tester%is_true(size(rows) == 1, label(row)//': the group of the name has kinds')
     do k = 1, size(kinds)
-      call tester%is_true(any(words_of(item_table(rows(1))%words) == kinds(k)), label(row)//': kind '//trim(kinds(k)))
+      call tester%is_true(any(words_of(item_table(rows(1))%words) == kinds(k)), &
+                          label(row)//': the group has the kind '//trim(kinds(k)))
     end do
   end subroutine check_kinds
 

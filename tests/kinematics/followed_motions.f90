@@ -41,7 +41,7 @@ contains
     call set_inputs(model%problem%drives, t, q, dq, ddq, err)
     call test%no_error(err, 'drives have values')
     call make_plan(model%mechanism, model%problem%partition, q, plan, state, err)
-    call test%no_error(err, 'plan and assembly')
+    call test%no_error(err, 'the mechanism has a plan and is assembled')
     if (allocated(err)) call test%finish()
     call start_driven_motion(model%problem%drives, plan, state, t, driven, err)
     if (present(start_error)) then

@@ -42,7 +42,7 @@ contains
       end associate
     end do
     right = right .and. step == plan%n_coordinates .and. closure == size(plan%closures)
-    call test%is_true(right, why//': steps, closures and blocks in a valid order')
+    call test%is_true(right, why//': steps, closures and blocks stand in a valid order')
   end subroutine check_order
 
   pure integer function link_of(plan, frame)
@@ -73,7 +73,7 @@ contains
     do c = 1, size(plan%closures)
       largest = max(largest, plan%constraints(c)%item%gap(plan, state))
     end do
-    call test%near(largest/reach, 0.0_wp, 1.0e-13_wp, why//': closed to round-off')
+    call test%near(largest/reach, 0.0_wp, 1.0e-13_wp, why//': the chains are closed to round-off')
   end subroutine check_closed
 
   !> No block could be divided: the loops of any part of its chains, and the frames they stand on, leave more

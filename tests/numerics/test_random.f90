@@ -16,7 +16,7 @@ program test_random
   do i = 1, 10000
     x = random%symmetric()
   end do
-  call test%is_true(random%seed == 399268537_long, 'number 10000 of the minimal standard generator')
+  call test%is_true(random%seed == 399268537_long, 'the minimal standard generator gives its known number 10000')
   call test%near(x, 2.0_wp*399268537.0_wp/2147483647.0_wp - 1.0_wp, 1.0e-15_wp, 'a number of the generator is brought to -1 .. 1')
 
   random = random_type()

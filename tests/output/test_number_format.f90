@@ -188,6 +188,6 @@ contains
     end do
     compilers = seconds() - start
     print '(2(f0.1,a))', own/many*1.0e9_wp, ' ns a number, formatted write ', compilers/many*1.0e9_wp, ' ns'
-    call tester%is_true(3*own < compilers, 'at least three times as fast as the formatted write')
+    call tester%is_true(3*own < compilers, 'numbers are written at least three times as fast as by the formatted write')
   end subroutine test_speed
 end program test_number_format

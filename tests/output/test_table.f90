@@ -78,7 +78,7 @@ contains
     call table%write_row([1.0_wp, 2.0_wp, 3.0_wp], err)
     call table%close(err)
     call read_lines('odd.dat', lines, count)
-    call tester%is_true(count == 7, 'a comment for each line of the title and no other lines')
+    call tester%is_true(count == 7, 'the table has a comment for each line of the title and no other lines')
     call tester%is_true(lines(1) == '# one' .and. lines(2) == '# two', 'each line of the title is a comment')
     call tester%is_true(lines(3) == '#  a ?'//e_acute//'?', 'control characters and broken UTF-8 are replaced')
     call tester%is_true(lines(5)(25:25) == '1' .and. lines(5)(48:50) == 'm/s' &

@@ -210,7 +210,7 @@ contains
     integer :: choice, k
 
     call best_independent(plan, state, independent)
-    call test%is_true(count(independent) == size(plan%independent), why//': as many coordinates as there are degrees of freedom')
+    call test%is_true(count(independent) == size(plan%independent), why//': there are as many coordinates as degrees of freedom')
     a = closures_jacobian(plan, state, rows)
     best = 0.0_wp
     do choice = 0, 2**plan%n_coordinates - 1

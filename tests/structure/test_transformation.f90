@@ -117,7 +117,7 @@ contains
         call transform_literally(structure, independent, literal)
         equal = same(vectors%nrg, literal%nrg) .and. same(vectors%nws, literal%nws) .and. &
                 same(vectors%rdw, literal%rdw) .and. same(vectors%nrw, literal%nrw)
-        call tester%is_true(equal, 'the rules taken literally agree: '//named(kind, n, seed))
+        call tester%is_true(equal, 'the rules taken literally give the same vectors: '//named(kind, n, seed))
       end do
     end do
   end subroutine follows_rules
@@ -139,12 +139,12 @@ contains
         call random_structure(kind, n, 1000 + seed, structure, independent)
         call transform(structure, independent, vectors)
         wrong = what_is_wrong(structure, independent, vectors)
-        call tester%is_true(wrong == '', 'vectors as defined: '//named(kind, n, seed)//': '//wrong)
+        call tester%is_true(wrong == '', 'the vectors are as defined: '//named(kind, n, seed)//': '//wrong)
         call structure_from_vectors(vectors, back, by_rdw, findings)
-        call tester%is_true(size(findings) == 0, 'accepted as data: '//named(kind, n, seed))
+        call tester%is_true(size(findings) == 0, 'the vectors are accepted as data: '//named(kind, n, seed))
         if (size(findings) > 0) cycle
         call tester%is_true(same_structure(structure, back) .and. all(by_rdw .eqv. independent), &
-                            'structure given back: '//named(kind, n, seed))
+                            'the vectors give the structure back: '//named(kind, n, seed))
       end do
     end do
   end subroutine holds_definitions

@@ -72,7 +72,7 @@ contains
       pairs = pairs + structure%n_coordinates
       time = min(time, ended - began)
       wrong = what_is_wrong(structure, independent, vectors)
-      call tester%is_true(wrong == '', 'vectors as defined: '//trim(kind_names(kind))//', '//to_text(n)// &
+      call tester%is_true(wrong == '', 'the vectors are as defined: '//trim(kind_names(kind))//', '//to_text(n)// &
                           ' links, seed '//to_text(seed)//': '//wrong)
     end do
     pairs = pairs/seeds
