@@ -227,11 +227,16 @@ contains
     real(wp) :: h(3, 3), j(3, 3)
     integer :: i
 
+    ! written out, because a call of `cross` for each column would cost as much as its arithmetic
     do i = 1, 3
-      h(:, i) = inertia(:, 3 + i) + cross(arm, inertia(:, 6 + i))
+      h(1, i) = inertia(1, 3 + i) + (arm(2)*inertia(3, 6 + i) - arm(3)*inertia(2, 6 + i))
+      h(2, i) = inertia(2, 3 + i) + (arm(3)*inertia(1, 6 + i) - arm(1)*inertia(3, 6 + i))
+      h(3, i) = inertia(3, 3 + i) + (arm(1)*inertia(2, 6 + i) - arm(2)*inertia(1, 6 + i))
     end do
     do i = 1, 3
-      j(:, i) = inertia(:, i) + cross(arm, h(i, :))
+      j(1, i) = inertia(1, i) + (arm(2)*h(i, 3) - arm(3)*h(i, 2))
+      j(2, i) = inertia(2, i) + (arm(3)*h(i, 1) - arm(1)*h(i, 3))
+      j(3, i) = inertia(3, i) + (arm(1)*h(i, 2) - arm(2)*h(i, 1))
     end do
     j(:, 1) = j(:, 1) + arm(2)*inertia(:, 6) - arm(3)*inertia(:, 5)
     j(:, 2) = j(:, 2) + arm(3)*inertia(:, 4) - arm(1)*inertia(:, 6)

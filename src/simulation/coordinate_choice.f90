@@ -39,15 +39,16 @@ contains
       if (clusters%of_step(s) /= s .or. .not. clusters%closed(s)) cycle
       steps = pack([(i, i=s, plan%n_coordinates)], clusters%of_step(s:) == s)
       place(steps) = [(i, i=1, size(steps))]
-      call choose_in_cluster(plan, state, steps, place, independent)
+      call choose_in_cluster(plan, state, clusters, steps, place, independent)
     end do
   end subroutine best_independent
 
   !> The choice in one closed cluster: each of its blocks in turn exchanges coordinates on which it depends for unknowns of its own,
   !> where these serve better.
-  subroutine choose_in_cluster(plan, state, steps, place, independent)
+  subroutine choose_in_cluster(plan, state, clusters, steps, place, independent)
     type(plan_type), intent(in) :: plan         !< the plan of the mechanism
     type(state_type), intent(in) :: state       !< frames in place
+    type(clusters_type), intent(in) :: clusters !< clusters of the plan
     integer, intent(in) :: steps(:)             !< steps of the cluster, ascending
     integer, intent(in) :: place(:)             !< (M) place of a step in `steps`
     logical, intent(inout) :: independent(:)    !< (M) gets the choice for the cluster's coordinates
@@ -62,7 +63,7 @@ contains
     end do
     do b = 1, size(plan%blocks)
       if (size(plan%blocks(b)%unknowns) == 0) cycle
-      if (.not. any(steps == plan%blocks(b)%unknowns(1))) cycle
+      if (clusters%of_step(plan%blocks(b)%unknowns(1)) /= steps(1)) cycle
       call exchange(plan, state, plan%blocks(b), place, free, rates)
     end do
     independent(plan%steps(steps)%coordinate) = .false.
