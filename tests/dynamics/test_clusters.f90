@@ -84,16 +84,19 @@ contains
     type(case_type) :: this
     type(random_type) :: random
     type(structure_type) :: structure
-    integer :: i, trial
+    integer :: i, trial, link
     logical :: found
 
     do trial = 1, 2
       call random_structure(random, trial == 1, 0, structure)
       do i = 1, 20
-        call add_open_link(random, max(1, structure%n_links - 1), structure)
-        call add_loop(random, structure%n_links, structure%n_links, 4, structure)
+        link = max(1, structure%n_links - 1)
+        call add_open_link(random, link, structure)
+        link = structure%n_links
+        call add_loop(random, link, link, 4, structure)
       end do
-      call add_ladder(random, structure%n_links, 3, structure)
+      link = structure%n_links
+      call add_ladder(random, link, 3, structure)
       call finished(random, structure, this%model)
       call prepare(this, .false., found)
       call test%is_true(found, 'modules in series have a position')
