@@ -194,10 +194,9 @@ module mech9_grammar
     item_row_type('time', 'end', 'real', 1, 1, 's', optional, '1', '', '', '', 'time of the last result', '2.5'), &
     item_row_type('time', 'intervals', 'integer', 1, 1, '', optional, '100', '>=0', '', '', &
                   'number of intervals between the results; 0 for the start alone', '200'), &
-    item_row_type('solver', 'method', 'text', 1, 1, '', optional, '''prince-dormand''', '', &
-                  'prince-dormand dormand-prince verner fehlberg merson adams bdf auto', '', &
-                  'the method of integration; bdf for stiff motions; auto: prince-dormand, and bdf where the motion is stiff', &
-                  '''auto'''), &
+    item_row_type('solver', 'method', 'text', 1, 1, '', optional, '''auto''', '', &
+                  'auto prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
+                  'the method of integration; auto: prince-dormand, and bdf while the motion is stiff', '''bdf'''), &
     item_row_type('solver', 'accuracy', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
                   'largest error of an output, in rad and m; other runs estimate it, and tolerances follow; 0: tolerances decide', &
                   '1e-8', seldom=.true.), &

@@ -115,6 +115,7 @@ contains
       call go_over(self, t_stop, outcome)
       if (outcome /= stepped) return
     end if
+    if (.not. self%is_implicit) call watch_last_stages(self, t_stop)
     call self%active%advance(t_stop, t, y, outcome)
     if (outcome /= stepped) return
     if (self%is_implicit) then
@@ -125,6 +126,16 @@ contains
     self%t = t
     self%y = y
   end subroutine advance
+
+  !> Let the evaluations at the end of the explicit method's next step be watched, and no others.
+  subroutine watch_last_stages(self, t_stop)
+    class(automatic_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t_stop                 !< latest end of the step [s]
+    real(wp), parameter :: nearly_all = 0.95_wp    ! part of the step before its last stages
+
+    self%box%t_from = self%t
+    self%box%reach = nearly_all*min(abs(self%explicit%next_step()), abs(t_stop - self%t))
+  end subroutine watch_last_stages
 
   !> Let the implicit method make the next step where the last steps of the explicit one were stiff.
   subroutine judge_explicit(self, step, rest)
@@ -209,6 +220,7 @@ contains
     self%goes_over = .false.
     self%counted%method_changes = self%counted%method_changes + 1
     self%is_implicit = .not. self%is_implicit
+    self%box%watches = .not. self%is_implicit
     if (self%is_implicit) then
       self%direction = self%box%direction
       self%last_ratio = 0.0_wp

@@ -37,6 +37,8 @@ module mech9_integration_methods
 
   !> All methods, in the order in which they are listed for users.
   type(integration_method_type), parameter :: integration_methods(*) = [ &
+    integration_method_type('auto', automatic, no_table, 8, 0, .false., 3.0e-4_wp, &
+                            'prince-dormand, and bdf while the motion is stiff'), &
     integration_method_type('prince-dormand', runge_kutta, prince_dormand_table, 8, 13, .false., 1.0_wp, &
                             'Prince-Dormand 8(7), Runge-Kutta'), &
     integration_method_type('dormand-prince', runge_kutta, dormand_prince_table, 5, 7, .true., 1.0_wp, &
@@ -48,9 +50,7 @@ module mech9_integration_methods
                             'Kutta-Merson 4(3), the MERSOL of 1995'), &
     integration_method_type('adams', multistep, no_table, 12, 0, .false., 1.0e-3_wp, 'Adams-Moulton, orders 1 to 12'), &
     integration_method_type('bdf', multistep, no_table, 5, 0, .false., 3.0e-4_wp, &
-                            'backward differences, orders 1 to 5; for stiff motions'), &
-    integration_method_type('auto', automatic, no_table, 8, 0, .false., 3.0e-4_wp, &
-                            'prince-dormand, and bdf while the motion is stiff')]
+                            'backward differences, orders 1 to 5; for stiff motions')]
 
   !> A relative tolerance at which the error of a step still stands above round-off.
   real(wp), parameter :: above_round_off = 1.0e-14_wp

@@ -26,6 +26,8 @@ module mech9_sundials_system
     !> Whether the rate after settling is taken from the last stage, of the same time and nearly the same y.
     logical :: reuses_last_rate = .false.
     logical :: watches = .false.               !< the reaction of the equations to changes is watched
+    real(wp) :: t_from = 0.0_wp                !< start of the step that is made [s]
+    real(wp) :: reach = 0.0_wp                 !< evaluations that are not so far from it are not watched [s]
     real(wp) :: reaction = 0.0_wp              !< change of the rate over the change of y, in two evaluations at one time [1/s]
     real(wp), allocatable :: direction(:)      !< change of the rate in these evaluations
     real(wp), allocatable, private :: y_before(:), rate_before(:)   !< of the last evaluation
@@ -68,7 +70,7 @@ contains
     call box%system%rate(box%origin + t, y_values, ydot_values, box%err)
     if (.not. allocated(box%err)) call must_be_finite(ydot_values, failure_infinite_rate, box%err)
     answer = answer_to(box, t)
-    if (box%watches .and. answer == 0) call compare(box, t, y_values, ydot_values)
+    if (box%watches .and. answer == 0 .and. abs(t - box%t_from) >= box%reach) call compare(box, t, y_values, ydot_values)
   end function evaluate_rate
 
   !> Watch the reaction of the equations from now on.
@@ -87,10 +89,11 @@ contains
     real(wp), intent(in) :: t                     !< time of the evaluation, from the origin [s]
     real(wp), intent(in) :: y(:)                  !< values at t
     real(wp), intent(in) :: ydot(:)               !< derivatives of y in time
+    real(wp), parameter :: large = 1.0e150_wp   ! larger numbers have no squares
     real(wp) :: change, reaction
     integer :: i
 
-    if (abs(t - box%t_before) <= 0.0_wp) then
+    if (abs(t - box%t_before) <= 0.0_wp .and. maxval(abs(y)) < large .and. maxval(abs(ydot)) < large) then
       change = 0.0_wp
       reaction = 0.0_wp
       do i = 1, size(y)
@@ -98,7 +101,7 @@ contains
         change = change + (y(i) - box%y_before(i))**2
         reaction = reaction + box%direction(i)**2
       end do
-      if (change > 0.0_wp) box%reaction = sqrt(reaction/change)
+      if (change > 0.0_wp) box%reaction = sqrt(reaction)/sqrt(change)
     end if
     box%t_before = t
     do i = 1, size(y)

@@ -11,7 +11,7 @@ module mech9_accuracy
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
-  use mech9_integration_methods, only: integration_methods, least_tolerance, automatic
+  use mech9_integration_methods, only: integration_methods, method_index, least_tolerance, automatic
   use mech9_integrator, only: check_method, integration_statistics_type
   use mech9_simulation, only: interruption_type, estimated_errors_type
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
@@ -64,7 +64,8 @@ contains
     call check_method(model%request%solver%method, method, err)
     if (allocated(err)) return
     least = least_tolerance(integration_methods(method))
-    if (integration_methods(method)%family == automatic) least = least_tolerance(integration_methods(1))
+    if (integration_methods(method)%family == automatic) &
+      least = least_tolerance(integration_methods(method_index('prince-dormand')))
     errors%allowed = model%request%solver%accuracy
     tolerance = min(loosest, max(0.1_wp*errors%allowed, 10.0_wp*least))
     control = 1.0_wp

@@ -61,7 +61,7 @@ contains
     select case (failure%kind)
     case (failure_many_steps)
       reason = to_text(failure%limit)//' steps were not enough to come to t = '//to_text(failure%t_stop, 10)// &
-               ' s, and they are now '//to_text(failure%step, 3)//' s long. The motion is stiff (try method ''auto''), or the'// &
+               ' s, and they are now '//to_text(failure%step, 3)//' s long. The motion is stiff (try method ''bdf''), or the'// &
                ' tolerances are too small, or maximum_steps is'
     case (failure_inaccurate_step)
       reason = 'however short the step, its error stays too large.'// &

@@ -13,7 +13,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from mech9_cases import TREE, Checks, text_of
 
 checks = Checks()
-METHODS = ['prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf', 'auto']
+METHODS = ['auto', 'prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf']
 
 
 def tables_of(text):

@@ -301,7 +301,7 @@ def free_cases():
          [f'{stops}0 s: the tolerances ask for more digits than the numbers have. Raise relative_tolerance or absolute_tolerance']),
         ('many_steps', SPRING.format(1e6, 0, 0, 1), settings(maximum_steps=30), INTEGRATOR,
          [stops, ' s: 30 steps were not enough to come to t = 1 s, and they are now ', ' s long. The motion is stiff (try method '
-          "'auto'), or the tolerances are too small, or maximum_steps is"]),
+          "'bdf'), or the tolerances are too small, or maximum_steps is"]),
         ('short_step', SPRING.format(1e6, 0, 1e15, 1e15 + 1), (), INTEGRATOR,
          [f'{stops}1e15 s: the steps have become too short for time to advance. The motion becomes infinitely fast there, or comes '
           'to a position that it cannot pass; or times are so large that they should begin at 0']),

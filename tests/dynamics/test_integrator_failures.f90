@@ -2,7 +2,7 @@
 program test_integrator_failures
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_internal, exit_data, exit_singular, exit_integrator
-  use mech9_integration_methods, only: integration_method_type, integration_methods, runge_kutta, no_table
+  use mech9_integration_methods, only: integration_method_type, integration_methods, method_index, runge_kutta, no_table
   use mech9_stepper, only: refused
   use mech9_sundials_system, only: system_box_type
   use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
@@ -220,7 +220,7 @@ contains
                           row%name//' does not share its table')
       end associate
     end do
-    method = integration_methods(1)
+    method = integration_methods(method_index('prince-dormand'))
     method%table = no_table
     allocate (box)
     box%system => orbit

@@ -239,8 +239,9 @@ module mech9_explanations
                   'The time from start to end is divided into this number of equal steps, with a result at the end of '// &
                   'each; 0 gives the start alone.', '200 (201 results)'), &
     explanation_type('solver', 'method', '', &
-                  'The method integrates the equations of motion; prince-dormand, of order 8, serves nearly always. For very '// &
-                  'stiff springs and dampers take bdf, or auto, which takes bdf while the motion is stiff.', 'auto'), &
+                  'The method integrates the equations of motion; auto serves nearly always: it makes the steps of '// &
+                  'prince-dormand, of order 8, and those of bdf while very stiff springs or dampers would hold them down.', &
+                  'bdf'), &
     explanation_type('solver', 'accuracy', '', &
                   'At each result, no coordinate and no point may be wrong by more than this, in rad and in m. The program '// &
                   'runs the motion several times, finds the tolerances by which this is so, and tells the error of each '// &
