@@ -4,7 +4,6 @@ module mech9_spatial_dynamics
   use mech9_rotation, only: turn, turn_back, cross
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_spatial_closure, only: reduced_screw
   use mech9_block_solver, only: solver_factorize => factorize_block
   use mech9_articulated_bodies, only: articulated_type, new_articulated, new_articulated_work, add_to_frame, set_bodies, &
     go_inward, go_outward
@@ -129,7 +128,7 @@ contains
         w = w - jacobian%w(:, t)
         v = v - jacobian%v(:, t) - cross(jacobian%w(:, t), arm)
       end if
-      call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), column)
+      call plan%constraints(c)%item%opening(plan, state, w, v, column)
     end associate
   end subroutine closing_column
 

@@ -79,6 +79,8 @@ def main():
         checks.true('by articulated bodies' in across and 'by articulated bodies' in flat, 'an open link on a closed chain')
         checks.true('by articulated bodies' not in plan_of(IN_XY, ALONE), 'one closed chain alone')
         checks.true('spatial arithmetic: pair 5 ' in across, 'the pair that has another axis is named', across)
+        checks.true('planar arithmetic: all its pairs turn about or slide across the direction (0, 0, 1) of link 1\n' in across,
+                    'the block that keeps its plane', across)
 
         tables = []
         for values in IN_XY, IN_YZ, ACROSS:

@@ -110,9 +110,9 @@ contains
   subroutine check_close(values, expected, allowed, name)
     real(wp), intent(in) :: values(:)      !< values that are checked
     real(wp), intent(in) :: expected(:)    !< the right ones, as many
-    real(wp), intent(in) :: allowed        !< largest difference, over the largest right value
+    real(wp), intent(in) :: allowed        !< largest difference
     character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
 
-    call test%near(values, expected, allowed, name)
+    call test%near(maxval(abs(values - expected))/max(1.0_wp, maxval(abs(expected))), 0.0_wp, allowed, name)
   end subroutine check_close
 end program test_planar_chain

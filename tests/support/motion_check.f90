@@ -96,7 +96,9 @@ contains
     real(wp), intent(in) :: expected(:)        !< the right numbers, as many
     real(wp), intent(in) :: tolerance          !< over the larger of one and the largest number
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
+    real(wp) :: scale
 
-    call test%near(numbers, expected, tolerance, why, scale=max(1.0_wp, maxval(abs(expected))))
+    scale = max(1.0_wp, maxval(abs(expected)))
+    call test%near(maxval(abs(numbers - expected))/scale, 0.0_wp, tolerance, why)
   end subroutine check_numbers
 end module mech9_motion_check

@@ -13,12 +13,10 @@ module mech9_testing
     integer :: failed = 0
   contains
     procedure :: is_true
-    generic :: near => near_number, near_numbers
+    procedure :: near
     procedure :: no_error
     procedure :: has_error
     procedure :: finish
-    procedure, private :: near_number
-    procedure, private :: near_numbers
   end type tester_type
 
 contains
@@ -48,56 +46,22 @@ contains
     end if
   end subroutine is_true
 
-  !> Check |value - expected| <= tol*max(scale, |expected|). The scale is one unless it is given: a small number, such as an
-  !> energy of a light mechanism, is compared in parts of the largest of its kind, which the caller knows.
-  subroutine near_number(self, value, expected, tol, why, scale)
+  !> Check |value - expected| <= tol*max(1, |expected|). The mechanisms of unit tests are of order one; smaller quantities are
+  !> divided by their size before they are compared.
+  subroutine near(self, value, expected, tol, why)
     class(tester_type), intent(inout) :: self   !< counts the checks
     real(wp), intent(in) :: value               !< value that is checked
     real(wp), intent(in) :: expected            !< the right value
-    real(wp), intent(in) :: tol                 !< over the larger of the scale and the right value
+    real(wp), intent(in) :: tol                 !< over the larger of one and the right value
     character(len=*), intent(in) :: why         !< the statement that is checked, printed where it is wrong
-    real(wp), intent(in), optional :: scale     !< the size of the largest number of this kind; 1 unless given
-    real(wp) :: size_of_kind
 
-    size_of_kind = 1.0_wp
-    if (present(scale)) size_of_kind = scale
-    if (abs(value - expected) <= tol*max(size_of_kind, abs(expected))) then
+    if (abs(value - expected) <= tol*max(1.0_wp, abs(expected))) then
       self%passed = self%passed + 1
     else
       self%failed = self%failed + 1
-      print '(2a,4(a,es24.16))', 'FAILED: ', why, ': got', value, ', expected', expected, ', tolerance', tol, &
-        ', scale', size_of_kind
+      print '(2a,3(a,es24.16))', 'FAILED: ', why, ': got', value, ', expected', expected, ', tolerance', tol
     end if
-  end subroutine near_number
-
-  !> Check numbers of one kind: the largest difference is at most `tol` of the scale, which is the largest right number
-  !> unless it is given. Where all right numbers lie below the tolerance they are zeros but for round-off, and the scale is 1.
-  subroutine near_numbers(self, values, expected, tol, why, scale)
-    class(tester_type), intent(inout) :: self   !< counts the checks
-    real(wp), intent(in) :: values(:)           !< numbers that are checked
-    real(wp), intent(in) :: expected(:)         !< the right numbers, as many
-    real(wp), intent(in) :: tol                 !< over the scale
-    character(len=*), intent(in) :: why         !< the statement that is checked, printed where it is wrong
-    real(wp), intent(in), optional :: scale     !< the size of the largest number of this kind
-    real(wp) :: size_of_kind
-    integer :: worst
-
-    if (size(values) == 0 .or. size(values) /= size(expected)) then
-      call self%is_true(.false., why//' (there are as many numbers as expected, and some)')
-      return
-    end if
-    size_of_kind = maxval(abs(expected))
-    if (size_of_kind <= tol) size_of_kind = 1.0_wp
-    if (present(scale)) size_of_kind = scale
-    worst = maxloc(abs(values - expected), dim=1)
-    if (all(abs(values - expected) <= tol*size_of_kind)) then
-      self%passed = self%passed + 1
-    else
-      self%failed = self%failed + 1
-      print '(2a,i0,4(a,es24.16))', 'FAILED: ', why//': got in place ', worst, ':', values(worst), ', expected', expected(worst), &
-        ', tolerance', tol, ', scale', size_of_kind
-    end if
-  end subroutine near_numbers
+  end subroutine near
 
   !> Check that a call went well.
   subroutine no_error(self, err, why)

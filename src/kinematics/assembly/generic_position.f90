@@ -167,7 +167,7 @@ contains
     integer :: i
 
     block%whole_loops = .true.
-    block%arithmetic = 1
+    block%arithmetic = merge(1, 0, size(plan%arithmetics) == 1)
     block%first_step = 1
     block%last_step = last_step
     block%first_closure = 1

@@ -1,14 +1,16 @@
-!> The choice of the arithmetic in which a plan is executed: in space, or in the plane of a planar mechanism.
+!> The choice of the arithmetic in which a plan is executed: in space, in the plane of a planar mechanism, or in space with planar
+!> blocks.
 module mech9_arithmetics
-  use mech9_plan, only: plan_type
+  use mech9_plan, only: plan_type, arithmetic_slot_type
   use mech9_planar_plan, only: planar_plan_type
   use mech9_spatial_arithmetic, only: spatial_arithmetic_type
   use mech9_spatial_closure, only: spatial_closure_type
   use mech9_planar_arithmetic, only: planar_arithmetic_type
+  use mech9_planar_block_arithmetic, only: planar_block_arithmetic_type
   use mech9_planar_closure, only: planar_closure_constraint_type
   implicit none
   private
-  public :: set_in_space, set_in_plane
+  public :: set_in_space, set_in_plane, set_blocks_in_planes
 
 contains
 
@@ -40,4 +42,24 @@ contains
       allocate (plan%constraints(c)%item, source=planar_closure_constraint_type(equations=3, closure=c))
     end do
   end subroutine set_in_plane
+
+  !> Execute the planar blocks of a plan in their planes, where these have been laid out; the others stay in space.
+  pure subroutine set_blocks_in_planes(plan)
+    type(plan_type), intent(inout) :: plan   !< the plan in space; gets the arithmetic and the constraints in the planes
+    type(arithmetic_slot_type) :: both(2)
+    integer :: b, c
+
+    if (size(plan%planar%planes) == 0) return
+    both(1) = plan%arithmetics(1)
+    allocate (planar_block_arithmetic_type :: both(2)%kind)
+    plan%arithmetics = both
+    do b = 1, size(plan%blocks)
+      if (plan%planar%plane_of(plan%blocks(b)%last_step) == 0) cycle
+      plan%blocks(b)%arithmetic = 2
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        deallocate (plan%constraints(c)%item)
+        allocate (plan%constraints(c)%item, source=planar_closure_constraint_type(equations=3, closure=c))
+      end do
+    end do
+  end subroutine set_blocks_in_planes
 end module mech9_arithmetics

@@ -7,7 +7,8 @@ module mech9_block_solver
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
-  use mech9_frame_motion, only: place_frames, place_frames_after_change, spread_velocities, spread_accelerations
+  use mech9_frame_motion, only: place_unshown, place_frames_after_change, spread_velocities, spread_accelerations
+  use mech9_planar_view, only: show_poses, show_velocities, show_accelerations
   use mech9_block_equations, only: block_jacobian, block_rates, block_residual, block_fronts
   implicit none
   private
@@ -86,7 +87,7 @@ contains
     least = 0
     if (present(at_least)) least = at_least
     previous = 0.0_wp
-    call place_frames(plan, block, state, err)
+    call place_unshown(plan, block, state, err)
     if (allocated(err)) return
     work%count%frames_placed = work%count%frames_placed + steps_of(block)
     outcome%converged = size(block%unknowns) == 0
@@ -94,9 +95,9 @@ contains
       call block_residual(plan, block, state, work%right)
       residual_norm = maxval(abs(work%right))
       outcome%converged = residual_norm <= closed_to_round_off .and. outcome%iterations >= least
-      if (outcome%converged) return
+      if (outcome%converged) exit
       ! the iteration has diverged, or is too slow
-      if (outcome%iterations == most_iterations .or. .not. residual_norm < huge(residual_norm)) return
+      if (outcome%iterations == most_iterations .or. .not. residual_norm < huge(residual_norm)) exit
       call factorize_block(plan, block, state, work)
       work%right = -work%right
       call work%equations%solve(work%right, work%change)
@@ -110,7 +111,7 @@ contains
         if (size_of_change <= small_turn) then
           call place_frames_after_change(plan, block, work%change, state, err)
         else
-          call place_frames(plan, block, state, err)
+          call place_unshown(plan, block, state, err)
         end if
       end if
       if (allocated(err)) return
@@ -119,6 +120,7 @@ contains
       if (outcome%iterations == 2) outcome%contraction = size_of_change/max(previous, tiny(previous))
       previous = size_of_change
     end do
+    if (block%is_shown) call show_poses(plan, plan%planar%shown, block%first_step, block%last_step, state)
   end subroutine close_block
 
   !> Jacobian of a block at the position in `state`, factorized.
@@ -186,6 +188,7 @@ contains
       last = block%last_step
       if (present(without_accelerations)) last = merge(work%chain%last_moved, last, without_accelerations)
       call chain_rates(plan%planar, work%chain, work%equations%inverse, last, state%dq, state%planar)
+      if (block%is_shown) call show_velocities(plan, plan%planar%shown, block%first_step, last, state)
       work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
       return
     end if
@@ -218,6 +221,10 @@ contains
 
     if (work%chain%used .and. work%equations%by_cofactors) then
       call chain_motion(plan%planar, work%chain, work%equations%inverse, state%dq, state%ddq, state%planar)
+      if (block%is_shown) then
+        call show_velocities(plan, plan%planar%shown, block%first_step, block%last_step, state)
+        call show_accelerations(plan, plan%planar%shown, block%first_step, work%chain%last_moved, state)
+      end if
       work%count%rates = work%count%rates + 1
       work%count%accelerations = work%count%accelerations + 1
       work%count%frames_moved = work%count%frames_moved + steps_of(block) &

@@ -1,13 +1,16 @@
-!> The motion of frames, links and points, each in the arithmetic of its block.
+!> The motion of frames, links and points, each in the arithmetic of its block; frames of planar blocks are also composed with the
+!> motion of their plane's base where they are read in space.
 module mech9_frame_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
+  use mech9_planar_view, only: show_poses, show_velocities, show_accelerations
   implicit none
   private
-  public :: place_frames, place_frames_after_change, spread_velocities, spread_accelerations, place_all, spread_all_velocities, &
-    spread_all_accelerations, link_motion, point_motion, step_screw
+  public :: place_frames, place_unshown, place_frames_after_change
+  public :: spread_velocities, spread_accelerations, place_all, spread_all_velocities, spread_all_accelerations
+  public :: show_all_frames, link_motion, point_motion, step_screw
 
 contains
 
@@ -19,11 +22,27 @@ contains
     type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of the block's frames out
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
 
-    call plan%arithmetics(block%arithmetic)%kind%place(plan, block%first_step, block%last_step, state, err)
+    call place_unshown(plan, block, state, err)
+    if (allocated(err) .or. .not. block%is_shown) return
+    call show_poses(plan, plan%planar%shown, block%first_step, block%last_step, state)
   end subroutine place_frames
 
-  !> Poses of a block's frames after a small change of its unknowns. The cosines and sines of their angles are corrected to
-  !> second order and not computed anew.
+  !> The same as place_frames, without the poses in space of planar frames that are read there.
+  subroutine place_unshown(plan, block, state, err)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(block_type), intent(in) :: block               !< the block
+    type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of the block's frames out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+
+    if (block%arithmetic == 0) then
+      call place_all(plan, state, err)
+    else
+      call plan%arithmetics(block%arithmetic)%kind%place(plan, block%first_step, block%last_step, state, err)
+    end if
+  end subroutine place_unshown
+
+  !> Poses of a block's frames after a small change of its unknowns, without those in space of planar frames that are read
+  !> there. The cosines and sines of their angles are corrected to second order and not computed anew.
   subroutine place_frames_after_change(plan, block, change, state, err)
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(block_type), intent(in) :: block               !< the block
@@ -31,8 +50,12 @@ contains
     type(state_type), intent(inout) :: state            !< changed coordinates in; poses and screws of the block's frames out
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
 
-    call plan%arithmetics(block%arithmetic)%kind%place_after_change(plan, block%first_step, block%last_step, block%unknowns, &
-                                                                    change, state, err)
+    if (block%arithmetic == 0) then
+      call place_all(plan, state, err)
+    else
+      call plan%arithmetics(block%arithmetic)%kind%place_after_change(plan, block%first_step, block%last_step, &
+                                                                      block%unknowns, change, state, err)
+    end if
   end subroutine place_frames_after_change
 
   !> Velocities of a block's frames from the rates in `state`.
@@ -41,7 +64,12 @@ contains
     type(block_type), intent(in) :: block      !< the block
     type(state_type), intent(inout) :: state   !< rates in; velocities of the block's frames out
 
-    call plan%arithmetics(block%arithmetic)%kind%spread_velocities(plan, block%first_step, block%last_step, state)
+    if (block%arithmetic == 0) then
+      call spread_all_velocities(plan, state)
+    else
+      call plan%arithmetics(block%arithmetic)%kind%spread_velocities(plan, block%first_step, block%last_step, state)
+      if (block%is_shown) call show_velocities(plan, plan%planar%shown, block%first_step, block%last_step, state)
+    end if
   end subroutine spread_velocities
 
   !> Accelerations of a block's frames from the rates and accelerations in `state`.
@@ -51,7 +79,12 @@ contains
     integer, intent(in) :: last                !< frames up to this one
     type(state_type), intent(inout) :: state   !< rates and accelerations in; accelerations of the block's frames out
 
-    call plan%arithmetics(block%arithmetic)%kind%spread_accelerations(plan, block%first_step, last, state)
+    if (block%arithmetic == 0) then
+      call spread_all_accelerations(plan, state)
+    else
+      call plan%arithmetics(block%arithmetic)%kind%spread_accelerations(plan, block%first_step, last, state)
+      if (block%is_shown) call show_accelerations(plan, plan%planar%shown, block%first_step, last, state)
+    end if
   end subroutine spread_accelerations
 
   !> Poses of the frames of all blocks.
@@ -67,6 +100,8 @@ contains
       call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%place(plan, plan%blocks(b)%first_step, &
                                                                   plan%blocks(last)%last_step, state, err)
       if (allocated(err)) return
+      if (any(plan%blocks(b:last)%is_shown)) call show_poses(plan, plan%planar%shown, plan%blocks(b)%first_step, &
+                                                             plan%blocks(last)%last_step, state)
       b = last + 1
     end do
   end subroutine place_all
@@ -82,6 +117,8 @@ contains
       last = end_of_run(plan, b)
       call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%spread_velocities(plan, plan%blocks(b)%first_step, &
                                                                               plan%blocks(last)%last_step, state)
+      if (any(plan%blocks(b:last)%is_shown)) call show_velocities(plan, plan%planar%shown, plan%blocks(b)%first_step, &
+                                                                  plan%blocks(last)%last_step, state)
       b = last + 1
     end do
   end subroutine spread_all_velocities
@@ -97,9 +134,21 @@ contains
       last = end_of_run(plan, b)
       call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%spread_accelerations(plan, plan%blocks(b)%first_step, &
                                                                                  plan%blocks(last)%last_step, state)
+      if (any(plan%blocks(b:last)%is_shown)) call show_accelerations(plan, plan%planar%shown, plan%blocks(b)%first_step, &
+                                                                     plan%blocks(last)%last_step, state)
       b = last + 1
     end do
   end subroutine spread_all_accelerations
+
+  !> Poses and velocities in space of all frames of planar blocks, those included that no block reads there.
+  pure subroutine show_all_frames(plan, state)
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    type(state_type), intent(inout) :: state   !< poses and velocities in the planes in; those in space out
+
+    if (.not. allocated(plan%planar%planes)) return
+    call show_poses(plan, plan%planar%plane_of > 0, 1, plan%n_coordinates, state)
+    call show_velocities(plan, plan%planar%plane_of > 0, 1, plan%n_coordinates, state)
+  end subroutine show_all_frames
 
   !> The last of the blocks from b on whose steps follow each other in one arithmetic, so that one call serves them all.
   pure integer function end_of_run(plan, b) result(last)
@@ -124,7 +173,7 @@ contains
     real(wp), intent(out) :: omega(3)       !< angular velocity [rad/s]
     real(wp), intent(out) :: v(3)           !< velocity of the origin [m/s]
 
-    call plan%arithmetics(1)%kind%link_motion(plan, state, link, r, p, omega, v)
+    call plan%arithmetics(arithmetic_of(plan, plan%frame_of(link)))%kind%link_motion(plan, state, link, r, p, omega, v)
   end subroutine link_motion
 
   !> Position (14), velocity (15) and acceleration (16) of a point of a link, in the system of link 1; those that are
@@ -138,7 +187,8 @@ contains
     real(wp), intent(out), optional :: velocity(3)       !< in the axes of link 1 [m/s]
     real(wp), intent(out), optional :: acceleration(3)   !< in the axes of link 1 [m/s^2]
 
-    call plan%arithmetics(1)%kind%point_motion(plan, state, link, place, position, velocity, acceleration)
+    call plan%arithmetics(arithmetic_of(plan, plan%frame_of(link)))%kind%point_motion(plan, state, link, place, position, &
+      velocity, acceleration)
   end subroutine point_motion
 
   !> The angular velocity and the velocity of the new frame's origin that a step gives per unit rate, and that origin; in the
@@ -151,6 +201,16 @@ contains
     real(wp), intent(out) :: v(3)           !< velocity of the new frame's origin per unit rate [m per unit of q]
     real(wp), intent(out) :: place(3)       !< origin of the new frame, from that of frame 0 [m]
 
-    call plan%arithmetics(1)%kind%step_screw(plan, state, s, w, v, place)
+    call plan%arithmetics(arithmetic_of(plan, s))%kind%step_screw(plan, state, s, w, v, place)
   end subroutine step_screw
+
+  !> The arithmetic that knows the motion of a frame.
+  pure integer function arithmetic_of(plan, frame) result(arithmetic)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: frame          !< number of the frame
+
+    arithmetic = 1
+    if (.not. allocated(plan%planar%plane_of)) return
+    if (plan%planar%plane_of(frame) > 0) arithmetic = 2
+  end function arithmetic_of
 end module mech9_frame_motion

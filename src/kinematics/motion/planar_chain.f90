@@ -38,7 +38,8 @@ contains
     type(planar_chain_type) :: chain
     integer :: i, s
 
-    if (.not. plan%planar%used .or. block%first_closure /= block%last_closure .or. size(block%unknowns) /= 3) return
+    if (.not. (plan%planar%used .or. block%arithmetic > 1)) return
+    if (block%first_closure /= block%last_closure .or. size(block%unknowns) /= 3) return
     chain%first_step = block%first_step
     chain%last_step = block%last_step
     chain%last_moved = min(block%last_step, block%last_moved)

@@ -6,6 +6,7 @@ module mech9_planar_closure
   use mech9_planar_formulas, only: step_column, add_rate, add_bias, stem_difference, rows_at_base
   use mech9_plan, only: plan_type, loop_type, constraint_type
   use mech9_state, only: planar_motion_type, state_type
+  use mech9_planar_view, only: plane_in_space
   implicit none
   private
   public :: planar_closure_constraint_type, planar_bias_rates, planar_difference
@@ -18,6 +19,7 @@ module mech9_planar_closure
     procedure :: jacobian
     procedure :: column
     procedure :: rates
+    procedure :: opening
     procedure :: gap
   end type planar_closure_constraint_type
 
@@ -90,6 +92,23 @@ contains
       call rows_at_base(closure, 1.0_wp/plan%length, size(steps), motion%pose, opening, values)
     end associate
   end subroutine rates
+
+  !> The equations' values for a motion of the closing frame relative to the target.
+  pure subroutine opening(self, plan, state, w, v, values)
+    class(planar_closure_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                         !< the plan of the mechanism
+    type(state_type), intent(in) :: state                       !< with the poses of the frames
+    real(wp), intent(in) :: w(3)                     !< angular velocity, in the axes of frame 0 [rad/s]
+    real(wp), intent(in) :: v(3)                     !< velocity of the closing frame's origin, in the axes of frame 0 [m/s]
+    real(wp), intent(out), contiguous :: values(:)   !< (3) [rad/s, lengths of the mechanism/s]
+    real(wp) :: axes(3, 3)
+
+    associate (closure => plan%planar%closures(self%closure))
+      axes = plane_in_space(plan, state, closure%closing)
+      call rows_at_base(closure, 1.0_wp/plan%length, size(plan%planar%steps), state%planar%pose, &
+                        [dot_product(axes(:, 3), w), dot_product(axes(:, 1), v), dot_product(axes(:, 2), v)], values)
+    end associate
+  end subroutine opening
 
   !> The gap of the closure, a length [m]: the larger of its distance and its angle times the mechanism's size.
   pure real(wp) function gap(self, plan, state)

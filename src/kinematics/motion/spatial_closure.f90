@@ -21,6 +21,7 @@ module mech9_spatial_closure
     procedure :: jacobian
     procedure :: column
     procedure :: rates
+    procedure :: opening
     procedure :: gap
   end type spatial_closure_type
 
@@ -152,6 +153,20 @@ contains
       call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), values)
     end associate
   end subroutine rates
+
+  !> The equations' values for a motion of the closing frame relative to the target.
+  pure subroutine opening(self, plan, state, w, v, values)
+    class(spatial_closure_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    type(state_type), intent(in) :: state             !< with the poses of the frames
+    real(wp), intent(in) :: w(3)                      !< angular velocity, in the axes of frame 0 [rad/s]
+    real(wp), intent(in) :: v(3)                      !< velocity of the closing frame's origin, in the axes of frame 0 [m/s]
+    real(wp), intent(out), contiguous :: values(:)    !< (equations) [rad/s, lengths of the mechanism/s]
+
+    associate (closure => plan%closures(self%closure))
+      call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), values)
+    end associate
+  end subroutine opening
 
   !> The gap of the closure, a length [m]: the larger of its distance and its angle times the mechanism's size. Redundant
   !> components are included.

@@ -39,7 +39,8 @@ module mech9_plan
   type :: loop_type
     integer, allocatable :: steps(:)    !< their numbers
     real(wp), allocatable :: signs(:)   !< +1 for a step towards the closing frame, -1 for one towards the target
-    !> Frames from which these steps lead to the closing frame and to the target; the same in a whole loop.
+    !> Frames from which these steps lead to the closing frame and to the target; the same in a whole loop. In a plane of a
+    !> spatial mechanism, 0 stands for its base.
     integer :: stems(2) = 0
   end type loop_type
 
@@ -68,7 +69,8 @@ module mech9_plan
     integer :: first_closure = 1, last_closure = 0   !< its closures, which are also its constraints
     integer, allocatable :: chains(:)                !< numbers of its closed chains, as in nrw
     integer :: equations = 0                         !< number of equations of its constraints
-    integer :: arithmetic = 1                        !< number among the plan's arithmetics
+    integer :: arithmetic = 1                        !< number among the plan's arithmetics; 0: each step in that of its own block
+    logical :: is_shown = .false.                    !< some of its frames are planar and are read in space
     logical :: whole_loops = .false.                 !< all coordinates of the loops are unknowns, also those of earlier blocks
     logical :: is_constant = .false.                 !< its Jacobian is constant, because nothing turns in its loops
     integer, allocatable :: unknowns(:)              !< steps of its dependent coordinates
@@ -101,6 +103,7 @@ module mech9_plan
     procedure(jacobian_interface), deferred :: jacobian
     procedure(column_interface), deferred :: column
     procedure(rates_interface), deferred :: rates
+    procedure(opening_interface), deferred :: opening
     procedure(gap_interface), deferred :: gap
   end type constraint_type
 
@@ -119,7 +122,7 @@ module mech9_plan
     type(step_type), allocatable :: steps(:)        !< (M)
     type(closure_type), allocatable :: closures(:)  !< in the order of blocks
     type(constraint_slot_type), allocatable :: constraints(:)   !< constraint c is that of closure c
-    type(arithmetic_slot_type), allocatable :: arithmetics(:)   !< all that blocks use; links are read by the first
+    type(arithmetic_slot_type), allocatable :: arithmetics(:)   !< all that blocks use; the first is that of the mechanism
     type(block_type), allocatable :: blocks(:)      !< in the order of execution
     integer, allocatable :: step_of(:)              !< step of each coordinate
     integer, allocatable :: frame_of(:)             !< first frame of each link
@@ -129,7 +132,7 @@ module mech9_plan
     real(wp) :: angle_unit = 1.0_wp                 !< one unit of angle in them [rad]
     integer, allocatable :: independent(:)          !< coordinates, ascending
     type(pair_slot_type), allocatable :: pairs(:)   !< (M) only pairs without a fixed axis are set
-    type(planar_plan_type) :: planar                !< the plan in planar arithmetic, if that can be used
+    type(planar_plan_type) :: planar                !< the plan in planar arithmetic, as far as that can be used
   end type plan_type
 
   abstract interface
@@ -253,6 +256,17 @@ module mech9_plan
       type(state_type), intent(in) :: state            !< with the velocities, or velocities and accelerations, of the frames
       real(wp), intent(out), contiguous :: values(:)   !< (equations)
     end subroutine rates_interface
+
+    !> The equations' values for a motion of the closing frame relative to the target.
+    pure subroutine opening_interface(self, plan, state, w, v, values)
+      import :: constraint_type, plan_type, state_type, wp
+      class(constraint_type), intent(in) :: self       !< the constraint
+      type(plan_type), intent(in) :: plan              !< the plan of the mechanism
+      type(state_type), intent(in) :: state            !< with the position of the frames
+      real(wp), intent(in) :: w(3)                     !< angular velocity, in the axes of frame 0
+      real(wp), intent(in) :: v(3)                     !< velocity of the closing frame's origin, in the axes of frame 0 [m]
+      real(wp), intent(out), contiguous :: values(:)   !< (equations)
+    end subroutine opening_interface
 
     !> The residual of all equations, redundant ones included, as a length [m]; rotations are multiplied by the
     !> mechanism's size.

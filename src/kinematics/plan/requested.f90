@@ -12,6 +12,7 @@ module mech9_requested
     logical, allocatable :: coordinates(:)   !< (M) coordinates that are requested
     logical, allocatable :: links(:)         !< (N) links whose motion is requested
     integer :: derivatives = 2               !< order of the highest derivative in time that is requested
+    logical :: frames = .false.              !< all frames are read in space
   end type requested_type
 
 contains
@@ -40,6 +41,7 @@ contains
     type(requested_type), intent(inout) :: requested   !< the requested coordinates and links
     integer :: i
 
+    requested%frames = .true.
     do i = 1, size(mechanism%bodies)
       if (mechanism%bodies(i)%has_inertia()) requested%links(mechanism%bodies(i)%link) = .true.
     end do
@@ -96,7 +98,29 @@ contains
         call mark_outer_frames(plan, block, frames)
       end associate
     end do
+    if (allocated(plan%planar%planes) .and. .not. requested%frames) call show_outer_frames(plan)
   end subroutine leave_out_unrequested
+
+  !> Show only those frames of planar blocks that blocks outside their plane use.
+  pure subroutine show_outer_frames(plan)
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
+    integer :: b
+
+    plan%planar%shown = .false.
+    do b = 1, size(plan%blocks)
+      associate (plane => plan%planar%plane_of(plan%blocks(b)%last_step))
+        if (plane == 0) then
+          call mark_outer_frames(plan, plan%blocks(b), plan%planar%shown)
+        else
+          plan%planar%shown(plan%planar%planes(plane)%base) = .true.
+        end if
+      end associate
+    end do
+    plan%planar%shown = plan%planar%shown .and. plan%planar%plane_of > 0
+    do b = 1, size(plan%blocks)
+      plan%blocks(b)%is_shown = any(plan%planar%shown(plan%blocks(b)%first_step:plan%blocks(b)%last_step))
+    end do
+  end subroutine show_outer_frames
 
   !> Request from now on all coordinates that a plan computes. When other coordinates become independent, another plan may
   !> need the position of a chain, which would be unknown if the chain had been left out before.

@@ -14,8 +14,10 @@ module mech9_planning
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type, leave_out_unrequested
   use mech9_spanning_tree, only: lay_out_frames
-  use mech9_arithmetics, only: set_in_space, set_in_plane
+  use mech9_arithmetics, only: set_in_space, set_in_plane, set_blocks_in_planes
+  use mech9_frame_motion, only: place_all
   use mech9_planar_layout, only: lay_out_in_plane
+  use mech9_planar_blocks, only: lay_out_planes
   use mech9_loop_space, only: find_loop_spaces
   use mech9_loop_rank, only: find_offers
   use mech9_tree_paths, only: split_loops
@@ -79,9 +81,27 @@ contains
     ! a plan with `requested` is made for other independent coordinates of a mechanism that is known to move
     if (.not. present(requested)) call check_motion(plan, state, err)
     if (allocated(err)) return
+    if (.not. spatial .and. .not. plan%planar%used) call plan_blocks_in_planes(plan, state, err)
     if (present(requested)) call leave_out_unrequested(plan, requested)
     call find_constants(plan)
   end subroutine make_plan
+
+  !> Plan the planar blocks of an assembled mechanism in planar arithmetic. The blocks were found and assembled in space, where
+  !> blocks of different arithmetics can be joined.
+  subroutine plan_blocks_in_planes(plan, state, err)
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism, in space
+    type(state_type), intent(inout) :: state   !< the assembled start; gets its frames in the planes
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: q(plan%n_coordinates)
+
+    call lay_out_planes(plan)
+    if (.not. allocated(plan%planar%planes)) return
+    call set_blocks_in_planes(plan)
+    q = state%q
+    state = new_state(plan)
+    state%q = q
+    call place_all(plan, state, err)
+  end subroutine plan_blocks_in_planes
 
   !> Propose blocks by the structure and the ranks of the loops. Fails if they cannot determine all coordinates.
   subroutine propose_blocks(plan, state, err)

@@ -65,6 +65,7 @@ contains
     else
       write (unit, '(a)') '  nothing to solve: an open chain'
     end if
+    if (block%arithmetic > 1) call print_plane(unit, plan, block)
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c))
         write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes on link '//to_text(plan%steps(closure%closing)%link)// &
@@ -74,6 +75,21 @@ contains
       end associate
     end do
   end subroutine print_block
+
+  !> Write the plane of a planar block of a spatial mechanism.
+  subroutine print_plane(unit, plan, block)
+    integer, intent(in) :: unit            !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan    !< the plan of the mechanism
+    type(block_type), intent(in) :: block  !< the block
+    integer :: link
+
+    associate (plane => plan%planar%planes(plan%planar%plane_of(block%last_step)))
+      link = 1
+      if (plane%base > 0) link = plan%steps(plane%base)%link
+      write (unit, '(a)') '  planar arithmetic: all its pairs turn about or slide across the direction '// &
+        direction_in_words(matmul(plane%axes(:, 3), plan%link_in_frame(link)%r))//' of link '//to_text(link)
+    end associate
+  end subroutine print_plane
 
   !> Write the directions in which the links of a chain can move, as in "turning about (0, 0, 1), sliding along (1, 0, 0),
 !> (0, 1, 0) of link 1"; nothing where all six motions are possible.
