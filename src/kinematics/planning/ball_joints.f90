@@ -97,7 +97,7 @@ contains
     end do
     free = .false.
     do i = 1, size(plan%blocks)
-      if (size(plan%blocks(i)%unknowns) == 0) free(plan%blocks(i)%first_step:plan%blocks(i)%last_step) = .true.
+      free(plan%blocks(i)%first_step:plan%blocks(i)%last_step) = .true.
     end do
     do i = 1, size(plan%closures)
       free(plan%closures(i)%loop%steps) = .false.
