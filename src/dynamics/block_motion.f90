@@ -113,6 +113,7 @@ contains
       state%ddq(k) = expected(k)
       scale = max(scale, (state%dq(k)/plan%unit_of(k))**2)
     end do
+    call spread_accelerations(plan, block, block%last_step, state)
     call block_rates(plan, block, 2, state, work%right)
     work%right = -work%right
     call work%equations%solve(work%right, work%change, round_off=round_off_of_rates*scale)

@@ -52,8 +52,7 @@ contains
   end subroutine block_jacobian
 
   !> First or second time derivatives of the block's residual at the rates, or rates and accelerations, in `state`. The motion
-  !> of the frames of earlier blocks must agree with these rates. Accelerations of the block's own frames are not used, nor are
-  !> their velocities for the first derivatives.
+  !> of the frames of earlier blocks must agree with these; for second derivatives, that of the block's own frames too.
   pure subroutine block_rates(plan, block, order, state, rates)
     type(plan_type), intent(in) :: plan             !< the plan of the mechanism
     type(block_type), intent(in) :: block           !< the block

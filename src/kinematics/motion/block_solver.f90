@@ -248,6 +248,8 @@ contains
     last = min(block%last_step, block%last_moved)
     call clear_at(size(block%unknowns), block%coordinates, state%ddq)
     if (size(block%unknowns) > 0) then
+      call spread_accelerations(plan, block, block%last_step, state)
+      work%count%frames_moved = work%count%frames_moved + steps_of(block)
       call block_rates(plan, block, 2, state, work%right)
       work%right = -work%right
       call work%equations%solve(work%right, work%change)

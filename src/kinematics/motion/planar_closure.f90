@@ -3,7 +3,7 @@
 module mech9_planar_closure
   use mech9_kinds, only: wp
   use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
-  use mech9_planar_formulas, only: step_column, add_rate, add_bias, stem_difference, rows_at_base
+  use mech9_planar_formulas, only: step_column, add_rate, stem_difference, rows_at_base
   use mech9_plan, only: plan_type, loop_type, constraint_type
   use mech9_state, only: planar_motion_type, state_type
   use mech9_planar_view, only: plane_in_space
@@ -68,8 +68,8 @@ contains
                      state%planar%pose(3:4, plan%planar%closures(self%closure)%base), 1.0_wp/plan%length, values)
   end subroutine column
 
-  !> First or second time derivatives at the rates, or rates and accelerations, in `state`. The second derivatives need the
-  !> velocities of all frames of the loop.
+  !> First or second time derivatives at the rates, or rates and accelerations, in `state`. The motion of the frames of earlier
+  !> blocks must agree with these; for second derivatives, that of the block's own frames too.
   pure subroutine rates(self, plan, order, state, values)
     class(planar_closure_constraint_type), intent(in) :: self   !< the constraint
     type(plan_type), intent(in) :: plan                         !< the plan of the mechanism
@@ -83,13 +83,11 @@ contains
       if (order == 1) then
         call sum_rates(closure, size(steps), steps, size(part%steps), part%steps, part%signs, part%stems, state%dq, &
                        motion%pose, motion%slide, motion%velocity, opening)
+        call rows_at_base(closure, 1.0_wp/plan%length, size(steps), motion%pose, opening, values)
       else
-        call sum_rates(closure, size(steps), steps, size(part%steps), part%steps, part%signs, part%stems, state%ddq, &
-                       motion%pose, motion%slide, motion%acceleration, opening)
-        call sum_bias(closure, size(steps), steps, size(part%steps), part%steps, part%signs, state%dq, motion%pose, &
-                       motion%slide, motion%velocity, opening)
+        call find_difference(closure, 1.0_wp/plan%length, size(steps), motion%pose, motion%acceleration(:, closure%closing), &
+                             motion%acceleration(:, closure%target), motion%velocity(1, closure%target)**2, values)
       end if
-      call rows_at_base(closure, 1.0_wp/plan%length, size(steps), motion%pose, opening, values)
     end associate
   end subroutine rates
 
@@ -184,8 +182,8 @@ contains
     end do
   end subroutine fill_columns
 
-  !> Motion of the closing frame relative to the target, at the closing frame's origin. It results from the rates (or
-  !> accelerations) of the coordinates in the closure's part, and from the motion of the frames at which this part begins.
+  !> Velocity of the closing frame relative to the target, at the closing frame's origin. It results from the rates of the
+  !> coordinates in the closure's part, and from the velocities of the frames at which this part begins.
   pure subroutine sum_rates(closure, m, flat, n_steps, steps, signs, stems, rates, f, slide, v, opening)
     type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
     integer, intent(in) :: m                           !< number of steps of the plan
@@ -194,11 +192,11 @@ contains
     integer, intent(in) :: steps(n_steps)              !< steps of the part
     real(wp), intent(in) :: signs(n_steps)             !< of these steps in the loop: 1 or -1
     integer, intent(in) :: stems(2)                    !< frames at which the two branches of the part begin
-    real(wp), intent(in) :: rates(m)                   !< rates, or accelerations, of the coordinates
+    real(wp), intent(in) :: rates(m)                   !< rates of the coordinates [rad/s, m/s]
     real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
     real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
-    real(wp), intent(in) :: v(3, 0:m)                  !< velocities, or accelerations, of the frames
-    real(wp), intent(out) :: opening(3)                !< relative motion of the closing frame
+    real(wp), intent(in) :: v(3, 0:m)                  !< velocities of the frames [rad/s, m/s]
+    real(wp), intent(out) :: opening(3)                !< relative velocity of the closing frame [rad/s, m/s]
     integer :: i, s
 
     call stem_difference(m, stems, f(3:4, closure%closing), f, v, opening)
@@ -207,31 +205,6 @@ contains
       call add_rate(flat(s), signs(i)*rates(flat(s)%coordinate), f(:, s), slide(:, s), f(3:4, closure%closing), opening)
     end do
   end subroutine sum_rates
-
-  !> Add the bias acceleration: the centripetal and Coriolis terms of the steps in the closure's part, and the centripetal term
-  !> of the target.
-  pure subroutine sum_bias(closure, m, flat, n_steps, steps, signs, dq, f, slide, v, opening)
-    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
-    integer, intent(in) :: m                           !< number of steps of the plan
-    type(planar_step_type), intent(in) :: flat(m)      !< steps of the plan
-    integer, intent(in) :: n_steps                     !< number of steps of the part
-    integer, intent(in) :: steps(n_steps)              !< steps of the part
-    real(wp), intent(in) :: signs(n_steps)             !< of these steps in the loop: 1 or -1
-    real(wp), intent(in) :: dq(m)                      !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
-    real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
-    real(wp), intent(in) :: v(3, 0:m)                  !< velocities of the frames [rad/s, m/s]
-    real(wp), intent(inout) :: opening(3)              !< relative acceleration of the closing frame [rad/s^2, m/s^2]
-    integer :: i, s, p
-
-    do i = 1, n_steps
-      s = steps(i)
-      p = flat(s)%parent
-      call add_bias(flat(s), signs(i), dq(flat(s)%coordinate), f(3, s) - f(3, p), f(4, s) - f(4, p), slide(:, s), v(1, p), &
-                     opening(2:3))
-    end do
-    opening(2:3) = opening(2:3) + v(1, closure%target)**2*(f(3:4, closure%closing) - f(3:4, closure%target))
-  end subroutine sum_bias
 
   !> Second time derivatives of the closures first .. last, from the accelerations of their frames.
   pure subroutine planar_bias_rates(planar, first, last, motion, rates)

@@ -134,8 +134,7 @@ contains
   end subroutine column
 
   !> First or second time derivatives at the rates, or rates and accelerations, in `state`. The motion of the frames of earlier
-  !> blocks must agree with these rates. Accelerations of the block's own frames are not used, nor are their velocities for the
-  !> first derivatives.
+  !> blocks must agree with these; for second derivatives, that of the block's own frames too.
   pure subroutine rates(self, plan, order, state, values)
     class(spatial_closure_type), intent(in) :: self   !< the constraint
     type(plan_type), intent(in) :: plan               !< the plan of the mechanism
@@ -148,7 +147,7 @@ contains
       if (order == 1) then
         call opening_velocity(plan, closure, state, w, v)
       else
-        call opening_acceleration(plan, closure, state, w, v)
+        call opening_acceleration(closure, state, w, v)
       end if
       call reduced_screw(plan, closure, state, w, v, state%p(:, closure%closing), values)
     end associate
@@ -221,16 +220,15 @@ contains
     end do
   end subroutine add_velocities
 
-  !> Difference at a place between the motions of the two bodies on whose frames the part of a loop begins: of the velocities, or
-  !> of the accelerations without their centripetal terms.
+  !> Difference at a place between the velocities of the two bodies on whose frames the part of a loop begins.
   pure subroutine stem_difference(closure, place, p, omega, v_frame, w, v)
     type(closure_type), intent(in) :: closure   !< the closure
     real(wp), intent(in) :: place(3)            !< from the origin of frame 0, in its axes [m]
     real(wp), intent(in) :: p(:, 0:)            !< origins of the frames [m]
-    real(wp), intent(in) :: omega(:, 0:)        !< angular velocities, or accelerations, of the frames
-    real(wp), intent(in) :: v_frame(:, 0:)      !< velocities or accelerations of their origins
-    real(wp), intent(out) :: w(3)               !< difference of the angular velocities, or accelerations
-    real(wp), intent(out) :: v(3)               !< difference of the velocities, or accelerations, at the place
+    real(wp), intent(in) :: omega(:, 0:)        !< angular velocities of the frames [rad/s]
+    real(wp), intent(in) :: v_frame(:, 0:)      !< velocities of their origins [m/s]
+    real(wp), intent(out) :: w(3)               !< difference of the angular velocities [rad/s]
+    real(wp), intent(out) :: v(3)               !< difference of the velocities at the place [m/s]
     real(wp) :: arm(3)
     integer :: f, g
 
@@ -246,68 +244,21 @@ contains
     w = omega(:, f) - omega(:, g)
   end subroutine stem_difference
 
-  !> Acceleration of the closing frame relative to the target, from the rates and accelerations of the coordinates in the
-  !> closure's part.
-  pure subroutine opening_acceleration(plan, closure, state, w, v)
-    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+  !> Acceleration of the closing frame relative to the target, from the motion of both frames.
+  pure subroutine opening_acceleration(closure, state, w, v)
     type(closure_type), intent(in) :: closure   !< the closure
-    type(state_type), intent(in) :: state       !< with rates, accelerations and velocities of frames
+    type(state_type), intent(in) :: state       !< with velocities and accelerations of the frames
     real(wp), intent(out) :: w(3)               !< relative angular acceleration, in the axes of frame 0 [rad/s^2]
     real(wp), intent(out) :: v(3)   !< relative acceleration at the closing frame's origin, in the axes of frame 0 [m/s^2]
-    real(wp) :: place(3), arm(3), slip(3)
+    real(wp) :: arm(3), slip(3)
 
-    place = state%p(:, closure%closing)
-    call stem_difference(closure, place, state%p, state%alpha, state%a, w, v)
-    call add_accelerations(size(plan%steps), plan%steps, size(closure%part%steps), closure%part%steps, closure%part%signs, &
-                           place, state%dq, state%ddq, state%p, state%omega, state%axis_w, state%axis_v, state%axis_w_rate, &
-                           state%axis_v_rate, w, v)
-    arm = place - state%p(:, closure%target)
-    slip = cross(state%omega(:, closure%target), arm)
-    v = v - cross(state%omega(:, closure%target), slip)
+    associate (f => closure%closing, g => closure%target)
+      arm = state%p(:, f) - state%p(:, g)
+      slip = cross(state%omega(:, g), arm)
+      w = state%alpha(:, f) - state%alpha(:, g)
+      v = state%a(:, f) - state%a(:, g) - cross(state%alpha(:, g), arm) - cross(state%omega(:, g), slip)
+    end associate
   end subroutine opening_acceleration
-
-  !> Add the accelerations that the rates and accelerations of steps give to the relative acceleration of a closure's frames,
-  !> from plain arrays.
-  pure subroutine add_accelerations(m, steps, n, part, signs, place, dq, ddq, p, omega, axis_w, axis_v, axis_w_rate, &
-                                    axis_v_rate, w, v)
-    integer, intent(in) :: m                    !< number of steps of the plan
-    type(step_type), intent(in) :: steps(m)     !< steps of the plan
-    integer, intent(in) :: n                    !< number of steps of the part
-    integer, intent(in) :: part(n)              !< steps of the part
-    real(wp), intent(in) :: signs(n)            !< of these steps in the loop: 1 or -1
-    real(wp), intent(in) :: place(3)            !< the closing frame's origin [m]
-    real(wp), intent(in) :: dq(m)               !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: ddq(m)              !< accelerations of the coordinates [rad/s^2, m/s^2]
-    real(wp), intent(in) :: p(3, 0:m)           !< origins of the frames [m]
-    real(wp), intent(in) :: omega(3, 0:m)       !< angular velocities of the frames [rad/s]
-    real(wp), intent(in) :: axis_w(3, m)        !< angular velocity per unit rate
-    real(wp), intent(in) :: axis_v(3, m)        !< velocity of the origin per unit rate
-    real(wp), intent(in) :: axis_w_rate(3, m)   !< derivative of axis_w in q, of user pairs
-    real(wp), intent(in) :: axis_v_rate(3, m)   !< derivative of axis_v in q, of user pairs
-    real(wp), intent(inout) :: w(3)             !< relative angular acceleration [rad/s^2]
-    real(wp), intent(inout) :: v(3)             !< relative acceleration at the place [m/s^2]
-    real(wp) :: arm(3), spin(3), slip(3), rate, acceleration
-    integer :: i, s, f
-
-    do i = 1, n
-      s = part(i)
-      f = steps(s)%parent
-      rate = dq(steps(s)%coordinate)
-      acceleration = ddq(steps(s)%coordinate)
-      arm = p(:, s) - p(:, f)
-      spin = rate*axis_w(:, s)
-      slip = cross(omega(:, f), arm) + 2.0_wp*rate*axis_v(:, s)
-      spin = acceleration*axis_w(:, s) + cross(omega(:, f), spin)
-      slip = acceleration*axis_v(:, s) + cross(omega(:, f), slip)
-      if (.not. steps(s)%is_screw) then
-        spin = spin + rate**2*axis_w_rate(:, s)
-        slip = slip + rate**2*axis_v_rate(:, s)
-      end if
-      w = w + signs(i)*spin
-      arm = place - p(:, s)
-      v = v + signs(i)*(slip + cross(spin, arm))
-    end do
-  end subroutine add_accelerations
 
   !> The error pose of a closure as a screw at the closing frame's origin, in the axes of frame 0.
   pure subroutine error_screw(closure, state, w, v, place)
