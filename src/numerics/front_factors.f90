@@ -9,7 +9,7 @@ module mech9_front_factors
   use mech9_kinds, only: wp
   use mech9_front_plan, only: front_plan_type
   use mech9_front_kernels, only: gather, eliminate, add_squares, pass_rows, reflect, substitute, take_covariance, &
-    invert, find_lengths, fill_covariance
+    invert, fill_covariance
   implicit none
   private
   public :: front_factors_type, new_front_factors
@@ -28,6 +28,7 @@ module mech9_front_factors
     real(wp), allocatable :: reciprocals(:)     !< (n) of the diagonal of R
     real(wp), allocatable :: sides(:)           !< (rows of all fronts) right-hand sides
     real(wp), allocatable :: squares(:)         !< (n) scratch: squares of the lengths of columns
+    real(wp), allocatable :: variances(:)       !< (n) diagonal of (R^T R)^-1, in the order in which columns are eliminated
     real(wp), allocatable :: covariances(:)     !< (R^T R)^-1 for the columns of each front that has children
     real(wp), allocatable :: inverse(:)         !< scratch: R^-1 among the pivots of one front
     real(wp), allocatable :: coupling(:)        !< scratch: R^-1 times the part of R in the other columns of one front
@@ -56,7 +57,7 @@ contains
       allocate (self%values(sum(fronts%rows*fronts%columns)), self%sides(sum(fronts%rows)), source=0.0_wp)
       allocate (self%covariances(sum(fronts%columns**2, fronts%has_children)), source=0.0_wp)
     end associate
-    allocate (self%scales(plan%n), self%reciprocals(plan%n), self%squares(plan%n), source=0.0_wp)
+    allocate (self%scales(plan%n), self%reciprocals(plan%n), self%squares(plan%n), self%variances(plan%n), source=0.0_wp)
     allocate (self%inverse(p*p), self%coupling(max(1, p*r)), self%product(max(1, p*r)), self%of_others(max(1, r*r)), source=0.0_wp)
   end function new_front_factors
 
@@ -128,19 +129,17 @@ contains
           end associate
         end if
         call invert(front%rows, front%pivots, r, self%values(front%value + 1:), self%reciprocals(front%pivot + 1:), &
-                    self%of_others, self%inverse, self%coupling, self%product)
-        call find_lengths(front%pivots, r, self%inverse, self%coupling, self%product, plan%columns(front%column + 1:), &
-                          plan%n, self%squares)
+                    self%of_others, self%inverse, self%coupling, self%product, self%variances(front%pivot + 1:))
         if (front%has_children) call fill_covariance(front%pivots, r, self%inverse, self%coupling, self%product, &
                                                      self%of_others, self%covariances(front%square + 1:))
       end associate
     end do
-    most = 0.0_wp
-    do i = 1, self%plan%n
-      if (.not. self%squares(i) > most) cycle
-      most = self%squares(i)
-      self%nearest = i
+    i = maxloc(self%variances, 1)
+    most = self%variances(i)
+    do f = size(self%plan%fronts), 1, -1
+      if (self%plan%fronts(f)%pivot < i) exit
     end do
+    self%nearest = self%plan%columns(self%plan%fronts(f)%column + i - self%plan%fronts(f)%pivot)
     self%least = 1.0_wp/sqrt(most)
   end subroutine find_distances
 

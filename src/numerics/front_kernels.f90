@@ -5,7 +5,7 @@ module mech9_front_kernels
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: gather, eliminate, add_squares, pass_rows, reflect, substitute, take_covariance, invert, find_lengths, fill_covariance
+  public :: gather, eliminate, add_squares, pass_rows, reflect, substitute, take_covariance, invert, fill_covariance
 
 contains
 
@@ -22,6 +22,17 @@ contains
     real(wp), intent(inout) :: a(m, n)                   !< gets the first rows of the front
     integer :: i, j
 
+    if (own == 6) then
+      if (rows(6) == rows(1) + 5) then
+        ! the rows of one spatial closure
+        do j = 1, n
+          do i = 1, 6
+            a(i, j) = matrix(rows(1) + i - 1, columns(j))
+          end do
+        end do
+        return
+      end if
+    end if
     do j = 1, n
       do i = 1, own
         a(i, j) = matrix(rows(i), columns(j))
@@ -140,21 +151,26 @@ contains
     real(wp), intent(in) :: a(m, p)     !< the front after elimination
     real(wp), intent(in) :: scales(p)   !< scales of the reflections
     real(wp), intent(inout) :: b(m)     !< right-hand side; Q^T b afterwards
-    real(wp) :: s
-    integer :: i, j
 
-    do j = 1, p
-      s = b(j)
-      do i = j + 1, m
-        s = s + a(i, j)*b(i)
-      end do
-      s = s*scales(j)
-      b(j) = b(j) - s
-      do i = j + 1, m
-        b(i) = b(i) - s*a(i, j)
-      end do
-    end do
+    if (m == 6 .and. p == 5) then
+      call reflect_6_5(a, scales, b)
+    else
+      call reflect_any(m, p, a, scales, b)
+    end if
   end subroutine reflect
+
+  !> `reflect` for fronts of any size.
+  pure subroutine reflect_any(m, n, a, tau, b)
+    integer, intent(in) :: m   !< rows of the front
+    integer, intent(in) :: n   !< pivots of the front
+    include 'reflection.inc'
+  end subroutine reflect_any
+
+  !> `reflect` for five pivots in the six rows of a spatial closure.
+  pure subroutine reflect_6_5(a, tau, b)
+    integer, parameter :: m = 6, n = 5
+    include 'reflection.inc'
+  end subroutine reflect_6_5
 
   !> The solution of a front for its pivots, from the solution for its other columns.
   pure subroutine substitute(m, p, n, a, reciprocals, columns, n_matrix, b, x)
@@ -165,17 +181,27 @@ contains
     real(wp), intent(in) :: reciprocals(p)    !< of the diagonal of R
     integer, intent(in) :: columns(n)         !< numbers of the columns in the matrix
     integer, intent(in) :: n_matrix           !< columns of the matrix
-    real(wp), intent(inout) :: b(m)           !< right-hand side; overwritten
+    real(wp), intent(in) :: b(p)              !< right-hand side
     real(wp), intent(inout) :: x(n_matrix)    !< with the solution for the other columns; gets that for the pivots
-    integer :: i, j
 
-    do j = n, 1, -1
-      if (j <= p) x(columns(j)) = b(j)*reciprocals(j)
-      do i = 1, min(j - 1, p)
-        b(i) = b(i) - a(i, j)*x(columns(j))
-      end do
-    end do
+    if (p == 5) then
+      call substitute_5(m, n, a, reciprocals, columns, n_matrix, b, x)
+    else
+      call substitute_any(p, m, n, a, reciprocals, columns, n_matrix, b, x)
+    end if
   end subroutine substitute
+
+  !> `substitute` for any number of pivots.
+  pure subroutine substitute_any(p, m, n, a, reciprocals, columns, n_matrix, b, x)
+    integer, intent(in) :: p   !< number of pivots
+    include 'front_substitution.inc'
+  end subroutine substitute_any
+
+  !> `substitute` for five pivots.
+  pure subroutine substitute_5(m, n, a, reciprocals, columns, n_matrix, b, x)
+    integer, parameter :: p = 5
+    include 'front_substitution.inc'
+  end subroutine substitute_5
 
   !> The covariance of the columns that a front shares with its parent.
   pure subroutine take_covariance(r, places, n_parent, of_parent, of_others)
@@ -194,7 +220,7 @@ contains
   end subroutine take_covariance
 
   !> The inverse among the pivots of a front, and its products with the other columns.
-  pure subroutine invert(m, p, r, a, reciprocals, of_others, inverse, coupling, product)
+  pure subroutine invert(m, p, r, a, reciprocals, of_others, inverse, coupling, product, variances)
     integer, intent(in) :: m                  !< rows of the front
     integer, intent(in) :: p                  !< pivots of the front
     integer, intent(in) :: r                  !< number of its other columns
@@ -204,54 +230,26 @@ contains
     real(wp), intent(out) :: inverse(p, p)    !< R^-1 among the pivots, an upper triangle
     real(wp), intent(out) :: coupling(p, r)   !< product of that inverse and R in the other columns
     real(wp), intent(out) :: product(p, r)    !< product of the coupling and the covariance
+    real(wp), intent(out) :: variances(p)     !< diagonal of the covariance for the pivots
 
     if (p == 5) then
-      call invert_5(m, r, a, reciprocals, of_others, inverse, coupling, product)
+      call invert_5(m, r, a, reciprocals, of_others, inverse, coupling, product, variances)
     else
-      call invert_any(m, p, r, a, reciprocals, of_others, inverse, coupling, product)
+      call invert_any(m, p, r, a, reciprocals, of_others, inverse, coupling, product, variances)
     end if
   end subroutine invert
 
   !> `invert` for any number of pivots.
-  pure subroutine invert_any(m, p, r, a, reciprocals, of_others, inverse, coupling, product)
+  pure subroutine invert_any(m, p, r, a, reciprocals, of_others, inverse, coupling, product, variances)
     integer, intent(in) :: p   !< number of pivots
     include 'inversion.inc'
   end subroutine invert_any
 
   !> `invert` for five pivots.
-  pure subroutine invert_5(m, r, a, reciprocals, of_others, inverse, coupling, product)
+  pure subroutine invert_5(m, r, a, reciprocals, of_others, inverse, coupling, product, variances)
     integer, parameter :: p = 5
     include 'inversion.inc'
   end subroutine invert_5
-
-  !> The diagonal of the covariance for the pivots of a front.
-  pure subroutine find_lengths(p, r, inverse, coupling, product, columns, n_matrix, squares)
-    integer, intent(in) :: p                       !< pivots of the front
-    integer, intent(in) :: r                       !< number of its other columns
-    real(wp), intent(in) :: inverse(p, p)          !< R^-1 among the pivots
-    real(wp), intent(in) :: coupling(p, r)         !< product of that inverse and R in the other columns
-    real(wp), intent(in) :: product(p, r)          !< product of the coupling and the covariance of these columns
-    integer, intent(in) :: columns(p)              !< numbers of the pivots in the matrix
-    integer, intent(in) :: n_matrix                !< columns of the matrix
-    real(wp), intent(inout) :: squares(n_matrix)   !< gets the squares of the lengths of the rows of R^-1
-    real(wp) :: sums(p)
-    integer :: i, j
-
-    sums = 0.0_wp
-    do j = 1, p
-      do i = 1, j
-        sums(i) = sums(i) + inverse(i, j)**2
-      end do
-    end do
-    do j = 1, r
-      do i = 1, p
-        sums(i) = sums(i) + coupling(i, j)*product(i, j)
-      end do
-    end do
-    do i = 1, p
-      squares(columns(i)) = sums(i)
-    end do
-  end subroutine find_lengths
 
   !> The covariance of all columns of a front.
   pure subroutine fill_covariance(p, r, inverse, coupling, product, of_others, covariance)
