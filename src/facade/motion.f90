@@ -64,7 +64,11 @@ contains
       call simulation%start(err, interruption)
     end if
     call mechanism%point_at(err)
-    if (.not. allocated(err)) call move_alloc(simulation, self%simulation)
+    if (allocated(err)) then
+      call self%close()
+    else
+      call move_alloc(simulation, self%simulation)
+    end if
   end subroutine start_kinematics
 
   !> Start a free motion from the initial positions and rates of the independent coordinates. Fails as start_kinematics does,
@@ -88,6 +92,7 @@ contains
     call mechanism%point_at(err)
     if (allocated(err)) then
       call simulation%close()
+      call self%close()
     else
       call move_alloc(simulation, self%simulation)
     end if
