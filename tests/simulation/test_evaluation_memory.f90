@@ -1,5 +1,5 @@
-!> Dynamics with closed chains allocates nothing: neither an evaluation of the rates, as an integrator asks for it, nor the
-!> closing of chains after a step.
+!> The dynamics of closed chains allocates no memory in an evaluation of the rates of change, and none when it closes the chains
+!> after a step.
 program test_evaluation_memory
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -232,7 +232,7 @@ contains
     call end_simulation(simulation)
   end subroutine check_order_of_times
 
-  !> No position with open chains is handed out, whoever asks for it.
+  !> A simulation fails at a position whose chains are open by more than 1e-9 of the size, and does not show it.
   subroutine check_open_chains()
     type(open_chains_type) :: simulation
     type(model_type), target :: model
