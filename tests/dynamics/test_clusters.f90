@@ -7,30 +7,12 @@ program test_clusters
   use mech9_error, only: error_type, exit_data
   use mech9_random, only: random_type
   use mech9_cholesky, only: cholesky_factorize
-  use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
-  use mech9_dynamics_plan, only: make_dynamics_plan
-  use mech9_lagrange_work, only: new_lagrange_work
-  use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
-  use mech9_block_equations, only: block_rates
-  use mech9_literal_lagrange, only: literal_type, literal_equations
+  use mech9_lagrange, only: find_motion, find_equations
+  use mech9_cluster_case, only: cluster_case_type, prepare, check_motion, check_literally
   use mech9_mixed_structures, only: structure_type, random_structure, add_open_link, add_loop, add_ladder, finished
   use mech9_testing, only: tester_type
   use mech9_counted_memory, only: calls
   implicit none
-
-  !> A mechanism and all that its motion needs.
-  type :: case_type
-    type(model_type) :: model
-    type(plan_type) :: plan
-    type(state_type) :: state
-    type(dynamics_plan_type) :: dynamics
-    type(lagrange_work_type) :: work
-    real(wp) :: conditioning = 0.0_wp   !< the worst of all blocks
-  end type case_type
 
   type(tester_type) :: test
 
@@ -44,11 +26,11 @@ contains
 
   !> Structures of 2 to 7 pieces. Positions with a badly conditioned loop are left out.
   subroutine random_structures()
-    type(case_type) :: flat, space
+    type(cluster_case_type) :: flat, space
     type(random_type) :: random
     type(structure_type) :: structure
     integer :: trial, compared, literal
-    logical :: planar, found
+    logical :: planar, found, by_differences
 
     compared = 0
     literal = 0
@@ -59,18 +41,18 @@ contains
       call prepare(flat, .false., found)
       if (.not. found .or. flat%conditioning < 0.02_wp) cycle
       compared = compared + 1
-      call check_motion(flat, 'a structure')
+      call check_motion(test, flat, 'a structure')
       call check_memory(flat)
       if (size(flat%plan%independent) <= 4 .and. flat%conditioning > 0.1_wp .and. literal < 12) then
-        literal = literal + 1
-        call check_literally(flat, 'a structure')
+        call check_literally(test, flat, flat%model, 'a structure', by_differences)
+        if (by_differences) literal = literal + 1
       end if
       if (.not. planar) cycle
       call test%is_true(flat%plan%planar%used, 'a structure in the plane takes planar arithmetic')
       space%model = flat%model
       call prepare(space, .true., found)
       call test%is_true(found, 'the same structure in space has a position')
-      call check_motion(space, 'the same structure in space')
+      call check_motion(test, space, 'the same structure in space')
       call test%near(maxval(abs(space%work%accelerations - flat%work%accelerations)) &
                      /maxval(abs(flat%work%accelerations)), 0.0_wp, 1.0e-11_wp, &
                      'planar and spatial arithmetic give the same accelerations')
@@ -81,7 +63,7 @@ contains
 
   !> Twenty modules of an open link and a four-bar in series, then a ladder, in the plane and in space.
   subroutine series()
-    type(case_type) :: this
+    type(cluster_case_type) :: this
     type(random_type) :: random
     type(structure_type) :: structure
     integer :: i, trial, link
@@ -100,13 +82,13 @@ contains
       call finished(random, structure, this%model)
       call prepare(this, .false., found)
       call test%is_true(found, 'modules in series have a position')
-      if (found) call check_motion(this, 'modules in series')
+      if (found) call check_motion(test, this, 'modules in series')
     end do
   end subroutine series
 
   !> One closed cluster on link 1 has its accelerations from the coefficients; two have them by articulated bodies.
   subroutine one_cluster()
-    type(case_type) :: this
+    type(cluster_case_type) :: this
     type(random_type) :: random
     type(structure_type) :: structure
     logical :: found
@@ -117,17 +99,17 @@ contains
     call prepare(this, .false., found)
     call test%is_true(found, 'a ladder has a position')
     call test%is_true(.not. this%dynamics%articulated, 'a ladder on link 1 is one cluster')
-    call check_motion(this, 'a ladder')
+    call check_motion(test, this, 'a ladder')
     call add_ladder(random, 1, 1, structure)
     call finished(random, structure, this%model)
     call prepare(this, .false., found)
     call test%is_true(this%dynamics%articulated, 'two ladders are two clusters')
-    call check_motion(this, 'two ladders')
+    call check_motion(test, this, 'two ladders')
   end subroutine one_cluster
 
   !> A four-bar without mass at the tip of an open link: its coordinate is named.
   subroutine without_inertia()
-    type(case_type) :: this
+    type(cluster_case_type) :: this
     type(random_type) :: random
     type(structure_type) :: structure
     type(error_type), allocatable :: err
@@ -153,87 +135,8 @@ contains
                       'the error names the coordinate of the singular coefficients')
   end subroutine without_inertia
 
-  !> Plan, and some rates.
-  subroutine prepare(this, in_space, found)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
-    logical, intent(in) :: in_space          !< spatial arithmetic, also where the mechanism is planar
-    logical, intent(out) :: found            !< the mechanism moves
-    type(error_type), allocatable :: err
-    integer :: i
-
-    call make_plan(this%model%mechanism, this%model%problem%partition, this%model%problem%initial%position, this%plan, &
-                   this%state, err, in_space=in_space)
-    found = .not. allocated(err)
-    if (.not. found) return
-    call make_dynamics_plan(this%model%mechanism, this%plan, this%dynamics)
-    this%work = new_lagrange_work(this%plan, this%dynamics)
-    this%state%dq(this%plan%independent) = [(1.3_wp*cos(2.0_wp*i), i=1, size(this%plan%independent))]
-    call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    found = .not. allocated(err)
-    this%conditioning = 1.0_wp
-    do i = 1, size(this%work%blocks)
-      this%conditioning = min(this%conditioning, this%work%blocks(i)%equations%conditioning())
-    end do
-  end subroutine prepare
-
-  !> The accelerations satisfy a ddq = Q - h, and those of the dependent coordinates the closures. Sums over all links along a chain
-  !> lose some hundreds of units of round-off.
-  subroutine check_motion(this, why)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
-    character(len=*), intent(in) :: why      !< the statement that is checked, printed where it is wrong
-    type(error_type), allocatable :: err
-    real(wp), allocatable :: a(:, :), left(:), right(:)
-    real(wp) :: terms
-    integer :: i, n
-
-    call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%no_error(err, why//': the motion is found')
-    if (allocated(err)) return
-    n = size(this%plan%independent)
-    associate (ddq => this%work%accelerations)
-      call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-      call test%no_error(err, why//': the equations are found')
-      a = this%work%coefficients
-      do i = 1, n
-        a(i, i + 1:) = a(i + 1:, i)
-      end do
-      left = matmul(a, ddq) - this%work%forces + this%work%velocity_terms
-      terms = maxval(matmul(abs(a), abs(ddq)) + abs(this%work%forces) + abs(this%work%velocity_terms))
-    end associate
-    call test%is_true(terms > 1.0_wp, why//': there is something to compare')
-    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-13_wp/this%conditioning, why//': Lagrange''s equations hold')
-    call complete_accelerations(this%plan, this%dynamics, this%work, this%state)
-    do i = 1, size(this%plan%blocks)
-      if (this%plan%blocks(i)%equations == 0) cycle
-      if (allocated(right)) deallocate (right)
-      allocate (right(this%plan%blocks(i)%equations))
-      call block_rates(this%plan, this%plan%blocks(i), 2, this%state, right)
-      call test%near(maxval(abs(right))/(1.0_wp + maxval(abs(this%state%ddq))), 0.0_wp, 1.0e-12_wp/this%conditioning, &
-                     why//': the closed chains stay closed')
-    end do
-  end subroutine check_motion
-
-  !> Accelerations against (19), (21) and (25) by differences of closed positions, which lose 1e-9 of the largest number.
-  subroutine check_literally(this, why)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
-    character(len=*), intent(in) :: why      !< the statement that is checked, printed where it is wrong
-    type(literal_type) :: literal
-    type(error_type), allocatable :: err
-    real(wp), allocatable :: left(:)
-    real(wp) :: terms
-
-    call literal_equations(this%model, this%plan, this%state, literal, err)
-    ! the neighbouring positions may be out of reach
-    if (allocated(err)) return
-    associate (ddq => this%work%accelerations)
-      left = matmul(literal%coefficients, ddq) - literal%forces + literal%velocity_terms
-      terms = maxval(matmul(abs(literal%coefficients), abs(ddq)) + abs(literal%forces) + abs(literal%velocity_terms))
-    end associate
-    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-8_wp, why//': equation (19) taken literally holds')
-  end subroutine check_literally
-
   subroutine check_memory(this)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
+    type(cluster_case_type), intent(inout) :: this   !< mechanism, plans, state and equations
     type(error_type), allocatable :: err
     integer :: i, before
 
