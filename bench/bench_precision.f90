@@ -4,7 +4,8 @@
 !> usage: bench_precision TREE PROBLEM full|quick
 !> Prints a line of names and a row for each method and tolerance that came to the end. The error is the largest difference of
 !> coordinates or of a point's position [rad, m] from tests/reference; where there is no reference, from a run at 1e-13
-!> by another method.
+!> by another method. For Andrews' mechanism, rows of the method `by-hand` are for its equation in one coordinate, derived by hand,
+!> by prince-dormand.
 program bench_precision
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
@@ -15,9 +16,10 @@ program bench_precision
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_integration_methods, only: integration_methods
-  use mech9_integrator, only: integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
   use mech9_row_source, only: row_source_type, new_row_source
+  use mech9_closed_andrews, only: closed_andrews_type, andrews_angles
   use mech9_bench_support, only: read_data_file, stop_at, median, argument
   implicit none
 
@@ -81,6 +83,7 @@ contains
         call time_method(model, problems(p), trim(integration_methods(m)%name), exact, quick)
       end if
     end do
+    if (problems(p)%name == 'andrews') call time_by_hand(model, exact, quick)
   end subroutine run
 
   subroutine tight_run(model, problem, method, values)
@@ -140,6 +143,58 @@ contains
       if (spent > patience) exit
     end do
   end subroutine time_method
+
+  !> The rows of Andrews' mechanism in one coordinate.
+  subroutine time_by_hand(model, exact, quick)
+    type(model_type), intent(in) :: model   !< the mechanism, with the crank's start and the times
+    real(wp), intent(in) :: exact(:)        !< the seven angles at the end [rad]
+    logical, intent(in) :: quick            !< a few tolerances, one run each
+    type(integration_statistics_type) :: counts
+    real(wp), parameter :: turn = 2.0_wp*acos(-1.0_wp)
+    real(wp) :: times(most_repetitions), tolerance, beta, difference(7)
+    integer :: power, n
+
+    do power = 3, 13, merge(5, 1, quick)
+      tolerance = 10.0_wp**(-power)
+      n = 0
+      do
+        n = n + 1
+        call integrate_by_hand(model, tolerance, beta, counts, times(n))
+        if (quick .or. n == most_repetitions .or. sum(times(:n)) > long_enough) exit
+      end do
+      difference = andrews_angles(beta) - exact(:7)
+      ! the closed form does not count the turns of the angles after beta
+      difference(2:) = difference(2:) - turn*anint(difference(2:)/turn)
+      print '(a,2es12.3,es14.5,2i10)', 'by-hand', tolerance, maxval(abs(difference)), median(times(:n)), &
+        counts%rate_evaluations, counts%steps
+    end do
+  end subroutine time_by_hand
+
+  !> Andrews' mechanism in one coordinate from start to end.
+  subroutine integrate_by_hand(model, tolerance, beta, counts, time)
+    type(model_type), intent(in) :: model                      !< the mechanism, with the crank's start and the times
+    real(wp), intent(in) :: tolerance                          !< relative, and absolute [rad, rad/s]
+    real(wp), intent(out) :: beta                              !< angle of the crank at the end [rad]
+    type(integration_statistics_type), intent(out) :: counts   !< work of the integrator
+    real(wp), intent(out) :: time                              !< of the run [s]
+    type(closed_andrews_type), target :: system
+    type(integrator_type) :: integrator
+    type(error_type), allocatable :: err
+    real(wp) :: t, y(2), begin
+
+    t = model%request%time%start
+    y = [model%problem%initial%position(1), model%problem%initial%velocity(1)]
+    begin = seconds()
+    call integrator%create(system, 'prince-dormand', tolerance, [tolerance, tolerance], t, y, err)
+    do while (.not. allocated(err) .and. t < model%request%time%end)
+      call integrator%step(model%request%time%end, t, y, err)
+    end do
+    time = seconds() - begin
+    call stop_at(err, 'Andrews'' mechanism by hand')
+    counts = integrator%statistics()
+    call integrator%destroy()
+    beta = y(1)
+  end subroutine integrate_by_hand
 
   !> One run from start to end: the values there, and the time it took besides reading and planning.
   subroutine integrate(model, problem, values, counts, time, err)

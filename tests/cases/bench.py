@@ -43,7 +43,8 @@ def check_positions(rows):
 
 
 def check_precision(heading, rows):
-    checks.equal([row[0] for row in rows[1:]], METHODS, f'{heading}: all methods')
+    methods = METHODS + (['by hand'] if heading.startswith('Andrews') else [])
+    checks.equal([row[0] for row in rows[1:]], methods, f'{heading}: all methods')
     for row in rows[1:]:
         least = float(row[-1])
         # the loosest bound, over a twentieth of the motion
@@ -51,6 +52,16 @@ def check_precision(heading, rows):
         cells = [cell for cell in row[1:-1] if cell != '-']
         checks.true(cells and all(re.fullmatch(r'[\d.e+-]+ ms, \d+', cell) for cell in cells),
                     f'{heading}, {row[0]}: times and evaluations', row)
+
+
+def check_by_hand(page, rows):
+    by_hand = rows[-1]
+    # round-off of a short motion, in angles of order one
+    checks.true(float(by_hand[-1]) < 1e-13, 'the equation by hand has the motion of the reference', by_hand)
+    times = [float(row[3].split()[0]) for row in rows[1:]]
+    ratio = float(re.search(r'the program takes (\S+) times as long', page).group(1))
+    # times stand there with three digits
+    checks.near(ratio / (min(times[:-1]) / times[-1]), 1.0, 0.02, 'the ratio is that of the times to 1e-8')
 
 
 def check_growth(rows):
@@ -91,6 +102,7 @@ with tempfile.TemporaryDirectory() as folder:
         checks.equal(len(problems), 6, 'six problems')
         for heading in problems:
             check_precision(heading, tables[heading])
+        check_by_hand(page, next(tables[heading] for heading in problems if heading.startswith('Andrews')))
         check_growth(tables['Growth'])
         check_mixed(tables['Mixed structures'])
         pictures = re.findall(r'\((pictures/\S+\.svg)\)', page)
