@@ -3,6 +3,7 @@ module mech9_coordinate_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_motion_view, only: motion_view_type
+  use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type
   use mech9_load, only: load_type
   implicit none
@@ -22,6 +23,7 @@ module mech9_coordinate_load
     procedure :: mark_coordinates
     procedure :: apply
     procedure :: potential
+    procedure :: vary
   end type coordinate_load_type
 
 contains
@@ -58,6 +60,19 @@ contains
       call sum%add_generalized(k, self%force - self%stiffness*(state%q(k) - self%rest) - self%damping*state%dq(k))
     end associate
   end subroutine apply
+
+  !> Add the derivative of the generalized force by a parameter.
+  subroutine vary(self, state, change, changes, err)
+    class(coordinate_load_type), intent(in) :: self     !< the coordinate load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    associate (k => self%coordinate)
+      call changes%add_generalized(k, -self%stiffness*change%q(k) - self%damping*change%dq(k))
+    end associate
+  end subroutine vary
 
   !> Energy of the spring [J]; the work of the actuator counts as put in.
   pure real(wp) function potential(self, state)

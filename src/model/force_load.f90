@@ -3,6 +3,7 @@ module mech9_force_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_motion_view, only: motion_view_type
+  use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type
   use mech9_load, only: load_type
   implicit none
@@ -21,6 +22,7 @@ module mech9_force_load
     procedure :: is_idle
     procedure :: apply
     procedure :: potential
+    procedure :: vary
   end type force_load_type
 
 contains
@@ -55,6 +57,25 @@ contains
       call sum%add_torque(self%link, self%torque)
     end if
   end subroutine apply
+
+  !> Add the derivative of the forces by a parameter: the arm of the force turns, and components in the link's axes turn, too.
+  subroutine vary(self, state, change, changes, err)
+    class(force_load_type), intent(in) :: self          !< the force load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    associate (link => state%links(self%link), of_link => change%links(self%link))
+      if (self%turns_with_link) then
+        call change%add_force(state, self%link, self%position, link%fixed_components(self%force), &
+                              of_link%of_arm(link, self%force), changes)
+        call changes%add_torque(self%link, of_link%of_arm(link, self%torque))
+      else
+        call change%add_force(state, self%link, self%position, self%force, [0.0_wp, 0.0_wp, 0.0_wp], changes)
+      end if
+    end associate
+  end subroutine vary
 
   !> Zero: the work of a given force counts as put in.
   pure real(wp) function potential(self, state)

@@ -1,9 +1,12 @@
 !> A load pulls, pushes or turns links or coordinates; all kinds of loads have this interface.
 module mech9_load
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type
+  use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil
   use mech9_motion_view, only: motion_view_type
-  use mech9_force_sum, only: force_sum_type
+  use mech9_motion_change, only: motion_change_type
+  use mech9_force_sum, only: force_sum_type, new_force_sum
   implicit none
   private
   public :: load_type, load_slot_type
@@ -17,6 +20,7 @@ module mech9_load
     procedure :: is_idle
     procedure(apply_interface), deferred :: apply
     procedure(potential_interface), deferred :: potential
+    procedure :: vary
   end type load_type
 
   !> One of several loads of different kinds.
@@ -64,4 +68,71 @@ contains
 
     is_idle = .false.
   end function is_idle
+
+  !> Add the derivative of the load's forces by a parameter on which the motion depends. Fails where the load has no value.
+  !> This procedure, for kinds whose formula is not known, takes differences over a wide stencil of motions, of which the one
+  !> with the least error counts; the motion must change by about its own size when the parameter changes by 1.
+  subroutine vary(self, state, change, changes, err)
+    class(load_type), intent(in) :: self                !< the load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: values(6*size(changes%force, 2) + size(changes%generalized), -half_width:half_width)
+    real(wp) :: trial(size(values, 1)), derivative(size(values, 1)), h, worst, best, error, second
+    integer :: number, i, n
+    logical :: found
+
+    best = huge(best)
+    derivative = 0.0_wp
+    do number = 1, step_count
+      h = trial_step(number, 1.0_wp)
+      call sample(self, state, change, h, values, found, err)
+      if (.not. found) cycle
+      worst = 0.0_wp
+      do i = 1, size(values, 1)
+        call derivatives_from_stencil(values(i, :), h, trial(i), second, error)
+        worst = max(worst, h*error)
+      end do
+      if (worst < best) then
+        best = worst
+        derivative = trial
+      end if
+      ! the error is mere round-off, which only grows as stencils get narrower
+      if (worst <= 64.0_wp*epsilon(h)*maxval(abs(values))/h) exit
+    end do
+    if (.not. best < huge(best)) return
+    if (allocated(err)) deallocate (err)
+    n = size(changes%force, 2)
+    changes%force = changes%force + reshape(derivative(:3*n), [3, n])
+    changes%torque = changes%torque + reshape(derivative(3*n + 1:6*n), [3, n])
+    changes%generalized = changes%generalized + derivative(6*n + 1:)
+    changes%any_generalized = .true.
+  end subroutine vary
+
+  !> The sums of a load's forces at motions on both sides of the present one. `found` is false where one of them is not finite,
+  !> or the load fails.
+  subroutine sample(load, state, change, h, values, found, err)
+    class(load_type), intent(in) :: load                       !< the load
+    type(motion_view_type), intent(in) :: state                !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change             !< derivative of the motion by the parameter
+    real(wp), intent(in) :: h                                  !< distance of neighbouring motions, in units of the parameter
+    real(wp), intent(out) :: values(:, -half_width:)           !< (forces, torques and generalized forces; motions)
+    logical, intent(out) :: found                              !< all values are finite
+    type(error_type), allocatable, intent(out) :: err          !< failure of the load
+    type(motion_view_type) :: other
+    type(force_sum_type) :: sum
+    integer :: i
+
+    found = .false.
+    sum = new_force_sum(size(state%links), size(state%q))
+    do i = -half_width, half_width
+      call sum%clear()
+      other = change%moved(state, i*h)
+      call load%apply(other, sum, err)
+      if (allocated(err)) return
+      values(:, i) = [sum%force, sum%torque, sum%generalized]
+    end do
+    found = all(ieee_is_finite(values))
+  end subroutine sample
 end module mech9_load

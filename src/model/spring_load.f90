@@ -4,6 +4,7 @@ module mech9_spring_load
   use mech9_error, only: error_type, raise, exit_integrator
   use mech9_text, only: to_text
   use mech9_motion_view, only: motion_view_type
+  use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type
   use mech9_load, only: load_type
   implicit none
@@ -22,7 +23,10 @@ module mech9_spring_load
     procedure :: is_idle
     procedure :: apply
     procedure :: potential
+    procedure :: vary
     procedure, private :: span
+    procedure, private :: span_rate
+    procedure, private :: pull
   end type spring_load_type
 
 contains
@@ -52,30 +56,97 @@ contains
            - state%links(self%links(1))%point_position(self%positions(:, 1))
   end function span
 
+  !> Rate of this vector, fixed axes [m/s].
+  pure function span_rate(self, state)
+    class(spring_load_type), intent(in) :: self   !< the spring load
+    type(motion_view_type), intent(in) :: state   !< present motion of links and coordinates
+    real(wp) :: span_rate(3)
+
+    span_rate = state%links(self%links(2))%point_velocity(self%positions(:, 2)) &
+                - state%links(self%links(1))%point_velocity(self%positions(:, 1))
+  end function span_rate
+
+  !> The force on the first end, fixed axes [N]. Fails for a spring with a free length whose ends meet.
+  subroutine pull(self, d, rate, force, err)
+    class(spring_load_type), intent(in) :: self         !< the spring load
+    real(wp), intent(in) :: d(3)                        !< from the first end to the second, fixed axes [m]
+    real(wp), intent(in) :: rate(3)                     !< rate of this vector [m/s]
+    real(wp), intent(out) :: force(3)                   !< fixed axes [N]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: length
+
+    length = norm2(d)
+    force = 0.0_wp
+    if (length > 0.0_wp) then
+      force = (self%stiffness*(length - self%free_length) + self%damping*dot_product(d, rate)/length)/length*d
+    else if (abs(self%free_length) > 0.0_wp) then
+      call raise(err, exit_integrator, 'a spring of free length '//to_text(self%free_length)// &
+                 ' m has shrunk to nothing, where its direction is not defined', self%place)
+    else
+      force = self%damping*rate
+    end if
+  end subroutine pull
+
   !> Add the pull at both ends. Fails for a spring with a free length whose ends meet.
   subroutine apply(self, state, sum, err)
     class(spring_load_type), intent(in) :: self         !< the spring load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: d(3), rate(3), pull(3), length
+    real(wp) :: force(3)
+
+    call self%pull(self%span(state), self%span_rate(state), force, err)
+    if (allocated(err)) return
+    call sum%add_force(state, self%links(1), self%positions(:, 1), force)
+    call sum%add_force(state, self%links(2), self%positions(:, 2), -force)
+  end subroutine apply
+
+  !> Add the derivative of the pull at both ends by a parameter. Fails for a spring with a free length whose ends meet.
+  subroutine vary(self, state, change, changes, err)
+    class(spring_load_type), intent(in) :: self         !< the spring load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: d(3), rate(3), d_change(3), rate_change(3), force(3), force_change(3)
 
     d = self%span(state)
-    rate = state%links(self%links(2))%point_velocity(self%positions(:, 2)) &
-           - state%links(self%links(1))%point_velocity(self%positions(:, 1))
+    rate = self%span_rate(state)
+    call self%pull(d, rate, force, err)
+    if (allocated(err)) return
+    associate (i => self%links(1), k => self%links(2), at => self%positions)
+      d_change = change%links(k)%of_position(state%links(k), at(:, 2)) - change%links(i)%of_position(state%links(i), at(:, 1))
+      rate_change = change%links(k)%of_velocity(state%links(k), at(:, 2)) &
+                    - change%links(i)%of_velocity(state%links(i), at(:, 1))
+      force_change = change_of_pull(self, d, rate, d_change, rate_change)
+      call change%add_force(state, i, at(:, 1), force, force_change, changes)
+      call change%add_force(state, k, at(:, 2), -force, -force_change, changes)
+    end associate
+  end subroutine vary
+
+  !> Derivative of the pull. At length zero, a spring without free length has its stiffness in all directions, and its damper
+  !> acts in all of them.
+  pure function change_of_pull(spring, d, rate, d_change, rate_change) result(change)
+    type(spring_load_type), intent(in) :: spring   !< the spring load
+    real(wp), intent(in) :: d(3)                   !< from the first end to the second [m]
+    real(wp), intent(in) :: rate(3)                !< rate of this vector [m/s]
+    real(wp), intent(in) :: d_change(3)            !< derivative of the vector
+    real(wp), intent(in) :: rate_change(3)         !< derivative of its rate
+    real(wp) :: change(3), e(3), e_change(3), length, length_change, length_rate, tension
+
     length = norm2(d)
-    if (length > 0.0_wp) then
-      pull = (self%stiffness*(length - self%free_length) + self%damping*dot_product(d, rate)/length)/length*d
-    else if (abs(self%free_length) > 0.0_wp) then
-      call raise(err, exit_integrator, 'a spring of free length '//to_text(self%free_length)// &
-                 ' m has shrunk to nothing, where its direction is not defined', self%place)
+    if (.not. length > 0.0_wp) then
+      change = spring%stiffness*d_change + spring%damping*rate_change
       return
-    else
-      pull = self%damping*rate
     end if
-    call sum%add_force(state, self%links(1), self%positions(:, 1), pull)
-    call sum%add_force(state, self%links(2), self%positions(:, 2), -pull)
-  end subroutine apply
+    e = d/length
+    length_change = dot_product(e, d_change)
+    e_change = (d_change - length_change*e)/length
+    length_rate = dot_product(e, rate)
+    tension = spring%stiffness*(length - spring%free_length) + spring%damping*length_rate
+    change = (spring%stiffness*length_change + spring%damping*(dot_product(e_change, rate) + dot_product(e, rate_change)))*e &
+             + tension*e_change
+  end function change_of_pull
 
   !> Energy of the spring [J].
   pure real(wp) function potential(self, state)

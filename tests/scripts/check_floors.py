@@ -12,12 +12,12 @@ from mech9_cases import TREE, Checks, text_of
 
 FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model', 'user',
           'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
-          'ode', 'dynamics', 'simulation', 'analyses', 'wording', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
+          'ode', 'dynamics', 'dynamics/variations', 'simulation', 'analyses', 'wording', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
           'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session', 'dialogue/drafts', 'dialogue',
           'programs']
 MOST_FILES = 25            # in one folder: more are hard to find one's way in
 MOST_KINEMATICS = 14       # files of the kinematics that Lagrange's equations depend on, directly and through others
-WITHOUT_WORDS = ('numerics', 'kinematics/', 'ode', 'dynamics', 'simulation')   # they fail with numbers, see src/wording
+WITHOUT_WORDS = ('numerics', 'kinematics/', 'ode', 'dynamics', 'dynamics/variations', 'simulation')   # they fail with numbers, see src/wording
 MODULE = re.compile(r'^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*$', re.I | re.M)
 USE = re.compile(r'^\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*([\w@]+)\s*(,\s*only\s*:)?', re.I | re.M)
 PARENT = re.compile(r'^\s*submodule\s*\(\s*(\w+)', re.I | re.M)

@@ -1,0 +1,133 @@
+!> The forces of closed chains that dependent coordinates require, and the forces that remain for the independent ones: the
+!> transposed equations of the blocks, from the last block to the first.
+module mech9_loop_forces
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: turn_back, cross
+  use mech9_least_squares, only: least_squares_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type
+  use mech9_tree_forces, only: loop_wrench_type
+  implicit none
+  private
+  public :: loop_forces_type, new_loop_forces, prepare_loop_forces, eliminate_dependent, loop_wrenches
+
+  !> Transposed equations of one block.
+  type :: transposed_type
+    type(least_squares_type) :: equations      !< as many equations as unknowns of the block; factorized
+    real(wp), allocatable :: right(:)          !< (unknowns) right-hand side
+    real(wp), allocatable :: multipliers(:)    !< (equations of the block) their forces
+  end type transposed_type
+
+  !> Transposed equations of all blocks.
+  type :: loop_forces_type
+    type(transposed_type), allocatable :: blocks(:)
+  end type loop_forces_type
+
+contains
+
+  !> Room for the transposed equations.
+  pure function new_loop_forces(plan) result(loops)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism, in space
+    type(loop_forces_type) :: loops
+    integer :: b, n
+
+    allocate (loops%blocks(size(plan%blocks)))
+    do b = 1, size(plan%blocks)
+      n = size(plan%blocks(b)%unknowns)
+      call loops%blocks(b)%equations%create(n, plan%blocks(b)%equations)
+      allocate (loops%blocks(b)%right(n), loops%blocks(b)%multipliers(plan%blocks(b)%equations), source=0.0_wp)
+    end do
+  end function new_loop_forces
+
+  !> Factorize the transposed Jacobians.
+  subroutine prepare_loop_forces(plan, work, loops)
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism, in space
+    type(block_work_type), intent(in) :: work(:)      !< (blocks) with the Jacobians
+    type(loop_forces_type), intent(inout) :: loops    !< gets the factors
+    integer :: b
+
+    do b = 1, size(plan%blocks)
+      if (plan%blocks(b)%equations > 0) call loops%blocks(b)%equations%factorize(transpose(work(b)%jacobian))
+    end do
+  end subroutine prepare_loop_forces
+
+  !> Eliminate the forces of dependent coordinates by those of the closed chains. The forces of the independent coordinates then
+  !> include all that the dependent ones hand on; those of dependent coordinates are zero.
+  subroutine eliminate_dependent(plan, state, loops, forces)
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism, in space
+    type(state_type), intent(in) :: state             !< position of the mechanism
+    type(loop_forces_type), intent(inout) :: loops    !< with the factors; gets the multipliers
+    real(wp), intent(inout) :: forces(:)              !< (M) forces on the coordinates [N m, N]
+    integer :: b
+
+    do b = size(plan%blocks), 1, -1
+      if (size(plan%blocks(b)%unknowns) == 0) cycle
+      associate (block => plan%blocks(b), transposed => loops%blocks(b))
+        transposed%right = forces(block%coordinates)*plan%unit_of(block%coordinates)
+        call transposed%equations%solve(transposed%right, transposed%multipliers)
+        call hand_on(plan, block, state, transposed%multipliers, forces)
+        forces(block%coordinates) = 0.0_wp
+      end associate
+    end do
+  end subroutine eliminate_dependent
+
+  !> Subtract the forces of the chains of a block on all coordinates of their loops.
+  subroutine hand_on(plan, block, state, multipliers, forces)
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism, in space
+    type(block_type), intent(in) :: block      !< the block
+    type(state_type), intent(in) :: state      !< position of the mechanism
+    real(wp), intent(in) :: multipliers(:)     !< (equations of the block)
+    real(wp), intent(inout) :: forces(:)       !< (M) forces on the coordinates [N m, N]
+    real(wp) :: column(6)
+    integer :: c, i, k, n, row
+
+    row = 0
+    do c = block%first_closure, block%last_closure
+      n = plan%constraints(c)%item%equations
+      associate (loop => plan%closures(c)%loop)
+        do i = 1, size(loop%steps)
+          k = plan%steps(loop%steps(i))%coordinate
+          call plan%constraints(c)%item%column(plan, loop%steps(i), loop%signs(i), state, column(:n))
+          forces(k) = forces(k) - dot_product(column(:n), multipliers(row + 1:row + n))/plan%unit_of(k)
+        end do
+      end associate
+      row = row + n
+    end do
+  end subroutine hand_on
+
+  !> The forces of the closed chains from their multipliers.
+  subroutine loop_wrenches(plan, state, loops, wrenches)
+    type(plan_type), intent(in) :: plan                      !< the plan of the mechanism, in space
+    type(state_type), intent(in) :: state                    !< position of the mechanism
+    type(loop_forces_type), intent(in) :: loops              !< with the multipliers
+    type(loop_wrench_type), intent(out) :: wrenches(:)       !< (closures)
+    real(wp) :: values(6), force(3), moment(3), arm(3), along(3)
+    integer :: b, c, i, n, row
+
+    do b = 1, size(plan%blocks)
+      row = 0
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        n = plan%constraints(c)%item%equations
+        associate (multipliers => loops%blocks(b)%multipliers(row + 1:row + n))
+          do i = 1, 3
+            along = 0.0_wp
+            along(i) = 1.0_wp
+            call plan%constraints(c)%item%opening(plan, state, along, [0.0_wp, 0.0_wp, 0.0_wp], values(:n))
+            moment(i) = dot_product(values(:n), multipliers)
+            call plan%constraints(c)%item%opening(plan, state, [0.0_wp, 0.0_wp, 0.0_wp], along, values(:n))
+            force(i) = dot_product(values(:n), multipliers)
+          end do
+        end associate
+        associate (base => plan%closures(c)%base)
+          ! from the origin of the closing frame to that of the base
+          arm = state%p(:, plan%closures(c)%closing) - state%p(:, base)
+          moment = moment + cross(arm, force)
+          wrenches(c)%force = turn_back(state%r(:, :, base), force)
+          wrenches(c)%moment = turn_back(state%r(:, :, base), moment)
+        end associate
+        row = row + n
+      end do
+    end do
+  end subroutine loop_wrenches
+end module mech9_loop_forces
