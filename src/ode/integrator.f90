@@ -1,21 +1,19 @@
 !> Integration of a system of equations step by step, by a method chosen by name.
 module mech9_integrator
   use mech9_kinds, only: wp, long
-  use mech9_error, only: error_type, raise, exit_internal, exit_data, exit_integrator
-  use mech9_failure, only: failure_unknown_method, failure_tolerance_count, failure_relative_tolerance, &
-    failure_absolute_tolerance, failure_many_steps, failure_inaccurate_step, failure_unsolved_step, failure_accurate_step, &
-    failure_step_memory, failure_step_settings, failure_short_step
+  use mech9_error, only: error_type, raise, exit_integrator
+  use mech9_failure, only: failure_many_steps
   use mech9_ode_system, only: ode_system_type
-  use mech9_integration_methods, only: integration_methods, method_index, tolerance_share, runge_kutta, automatic
-  use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
-    not_convergent, too_accurate, out_of_memory
+  use mech9_integration_methods, only: integration_methods, tolerance_share, runge_kutta, automatic
+  use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed
   use mech9_sundials_system, only: system_box_type
   use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
   use mech9_sundials_multistep, only: multistep_type, new_multistep
   use mech9_automatic_stepper, only: automatic_type, new_automatic
+  use mech9_integration_failure, only: check_method, check_tolerances, fail_by_outcome, fail_by_vanishing_step
   implicit none
   private
-  public :: integrator_type, integration_statistics_type, check_method
+  public :: integrator_type, integration_statistics_type
 
   !> Trials that the system refused, in a row, before the integration is given up; each makes the step
   !> a quarter at most, so that all of them together make it 1e-24 of what it was.
@@ -116,39 +114,8 @@ contains
     type is (automatic_type)
       call new_automatic(self%box, relative_tolerance, absolute_tolerance, 0.0_wp, y, stepper, outcome)
     end select
-    if (outcome /= stepped) call fail(self, outcome, err)
+    if (outcome /= stepped) call fail_by_outcome(self%box, outcome, self%t_given_out, err)
   end subroutine create
-
-  !> Place of a method in integration_methods; blank means the first. Fails for an unknown name.
-  pure subroutine check_method(method, index, err)
-    character(len=*), intent(in) :: method              !< name, as in integration_methods; blank: the first one
-    integer, intent(out) :: index                       !< place of the method in integration_methods; 0 where the name is unknown
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-
-    index = 1
-    if (method == '') return
-    index = method_index(method)
-    if (index > 0) return
-    call raise(err, exit_data, failure_unknown_method)
-    err%failure%name = trim(method)
-  end subroutine check_method
-
-  !> Fails for tolerances with which no step can be judged.
-  pure subroutine check_tolerances(relative, absolute, n, err)
-    real(wp), intent(in) :: relative                    !< relative tolerance
-    real(wp), intent(in) :: absolute(:)                 !< absolute tolerances, one for each variable
-    integer, intent(in) :: n                            !< number of variables
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-
-    if (n < 1 .or. size(absolute) /= n) then
-      call raise(err, exit_internal, failure_tolerance_count)
-    else if (.not. (relative > 0.0_wp .and. relative < 1.0_wp)) then
-      call raise(err, exit_data, failure_relative_tolerance)
-      err%failure%tolerance = relative
-    else if (.not. all(absolute > 0.0_wp .and. absolute <= huge(absolute))) then
-      call raise(err, exit_data, failure_absolute_tolerance)
-    end if
-  end subroutine check_tolerances
 
   !> Make one accepted step towards t_stop and never beyond, or more where t is so large that one does not change it; the last
   !> one ends exactly there. With `farthest` a step may go on beyond t_stop, to there at most. On failure t and y are
@@ -229,7 +196,7 @@ contains
       if (outcome /= stepped) exit
       self%fresh = .true.
     end do
-    call fail(self, outcome, err)
+    call fail_by_outcome(self%box, outcome, self%t_given_out, err)
   end subroutine take_step
 
   !> Go on to the end of a step, whose values are in `trial`. Fails if it does not change the time.
@@ -245,7 +212,7 @@ contains
     self%steps_from_start = min(self%steps_from_start + 1, most_first_steps)
     if (.not. abs(t_new - self%t) > 0.0_wp .or. &
         (self%steps_from_start == most_first_steps .and. .not. abs(t - self%t_given_out) > 0.0_wp)) then
-      call fail_by_vanishing_step(self, err)
+      call fail_by_vanishing_step(self%box, self%t_given_out, err)
       return
     end if
     self%t = t_new
@@ -289,7 +256,7 @@ contains
 
     self%y = y
     call self%stepper%correct(self%t, y, outcome)
-    if (outcome /= stepped) call fail(self, outcome, err)
+    if (outcome /= stepped) call fail_by_outcome(self%box, outcome, self%t_given_out, err)
   end subroutine correct
 
   !> Begin anew at (t, y), after an event that changed the motion, with a first step of the given length
@@ -312,7 +279,7 @@ contains
     call self%stepper%restart(self%t, y, h, outcome)
     self%y = y
     self%fresh = .true.
-    if (outcome /= stepped) call fail(self, outcome, err)
+    if (outcome /= stepped) call fail_by_outcome(self%box, outcome, self%t_given_out, err)
   end subroutine restart
 
   !> Set limits; those that are not given stay.
@@ -328,7 +295,7 @@ contains
     if (present(maximum_steps)) self%maximum_steps = maximum_steps
     if (present(largest_step)) call self%stepper%limit(largest_step, outcome)
     if (outcome == stepped .and. present(first_step)) call self%stepper%restart(self%t, self%y, first_step, outcome)
-    if (outcome /= stepped) call fail(self, outcome, err)
+    if (outcome /= stepped) call fail_by_outcome(self%box, outcome, self%t_given_out, err)
   end subroutine limit
 
   !> The work of the integration so far.
@@ -350,55 +317,6 @@ contains
     statistics%last_order = counts%last_order
     statistics%last_step = counts%last_step
   end function statistics
-
-  !> The failure of a step.
-  subroutine fail(self, outcome, err)
-    class(integrator_type), intent(in) :: self          !< the integrator
-    integer, intent(in) :: outcome                      !< one of the outcomes of mech9_stepper but `stepped`
-    type(error_type), allocatable, intent(out) :: err   !< always allocated
-
-    if (self%box%has_cause()) then
-      call fail_by_system(self, err)
-      return
-    end if
-    select case (outcome)
-    case (too_inaccurate)
-      call raise(err, exit_integrator, failure_inaccurate_step)
-    case (not_convergent, evaluation_failed)
-      call raise(err, exit_integrator, failure_unsolved_step)
-    case (too_accurate)
-      call raise(err, exit_integrator, failure_accurate_step)
-    case (out_of_memory)
-      call raise(err, exit_integrator, failure_step_memory)
-    case default
-      call raise(err, exit_internal, failure_step_settings)
-    end select
-    err%failure%t = self%t_given_out
-  end subroutine fail
-
-  !> The failure of the system, which keeps its code, and the times of the integration.
-  subroutine fail_by_system(self, err)
-    class(integrator_type), intent(in) :: self          !< the integrator
-    type(error_type), allocatable, intent(out) :: err   !< always allocated
-
-    err = self%box%failure
-    allocate (err%stopped)
-    err%stopped%t = self%t_given_out
-    err%stopped%t_failed = self%box%origin + self%box%t_failed
-  end subroutine fail_by_system
-
-  !> The failure where a step has become too short to change the time.
-  subroutine fail_by_vanishing_step(self, err)
-    class(integrator_type), intent(in) :: self          !< the integrator
-    type(error_type), allocatable, intent(out) :: err   !< always allocated
-
-    if (self%box%has_cause()) then
-      call fail_by_system(self, err)
-      return
-    end if
-    call raise(err, exit_integrator, failure_short_step)
-    err%failure%t = self%t_given_out
-  end subroutine fail_by_vanishing_step
 
   !> Free the memory of the integration. An integrator can then be created again.
   subroutine destroy(self)

@@ -12,7 +12,8 @@ module mech9_accuracy
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
   use mech9_integration_methods, only: integration_methods, method_index, least_tolerance, automatic
-  use mech9_integrator, only: check_method, integration_statistics_type
+  use mech9_integration_failure, only: check_method
+  use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: interruption_type, estimated_errors_type
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   implicit none
