@@ -15,7 +15,6 @@ module mech9_block_motion
   private
   public :: move_block
 
-
 contains
 
   !> Find the rates, Jacobian entries and accelerations from rates of block b. Its frames must have their poses, the rates
@@ -39,6 +38,7 @@ contains
       end if
       call dynamics%arithmetic%factorize_block(plan, b, state, work)
       conditioning = work%blocks(b)%equations%conditioning()
+      work%conditioning = min(work%conditioning, conditioning)
       if (conditioning < singular_conditioning) then
         call raise(err, exit_singular, failure_singular_block)
         err%failure%chains = block%chains

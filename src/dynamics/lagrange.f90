@@ -128,6 +128,7 @@ contains
     do i = 1, size(plan%independent)
       state%ddq(plan%independent(i)) = 0.0_wp
     end do
+    work%conditioning = 1.0_wp
     if (size(plan%closures) == 0) then
       call spread_all_velocities(plan, state)
       call spread_all_accelerations(plan, state)

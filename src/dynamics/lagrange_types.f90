@@ -84,6 +84,7 @@ module mech9_lagrange_types
   !> Scratch and results of one evaluation, sized once.
   type :: lagrange_work_type
     type(block_work_type), allocatable :: blocks(:)  !< equations of each block
+    real(wp) :: conditioning = 1.0_wp                !< least pivot of a block's Jacobian over its largest, of the worst block
     real(wp), allocatable :: sides(:, :)             !< (equations of the largest block, independent coordinates) sides for B
     type(jacobian_type) :: jacobian                  !< of all frames
     !> B, entry by entry, and accelerations from rates, extrapolated from earlier evaluations. The extrapolated values matter

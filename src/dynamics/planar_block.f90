@@ -12,7 +12,7 @@ module mech9_planar_block
   use mech9_planar_lagrange, only: carry_columns
   implicit none
   private
-  public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, move_frames
+  public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, take_rates, move_frames
 
   !> A step in a loop, or a frame of an earlier block from which the loop starts.
   type :: loop_part_type
@@ -31,6 +31,10 @@ module mech9_planar_block
     type(loop_part_type), allocatable :: unknowns(:)     !< steps with the unknowns of the block
     type(loop_part_type), allocatable :: independent(:)  !< steps with independent coordinates
     type(loop_part_type), allocatable :: earlier(:)      !< columns of frames of earlier blocks
+    integer, allocatable :: first_entries(:)             !< first entry of the frame of each unknown
+    real(wp), allocatable :: units(:)                    !< unit of each unknown [rad, m]
+    integer, allocatable :: given(:)                     !< numbers of the independent coordinates
+    real(wp), allocatable :: given_units(:)              !< their units [rad, m]
   end type planar_block_type
 
 contains
@@ -48,9 +52,13 @@ contains
 
     allocate (flat%unknowns(0), flat%independent(0), flat%earlier(0))
     associate (block => plan%blocks(b))
+      flat%first_entries = first(block%unknowns)
+      flat%units = plan%unit_of(block%coordinates)
       if (size(block%unknowns) == 0) return
       flat%columns = first(block%unknowns(1) + 1) - first(block%unknowns(1))
       associate (columns => column(first(block%unknowns(1)):first(block%unknowns(1) + 1) - 1))
+        flat%given = plan%independent(columns)
+        flat%given_units = plan%unit_of(flat%given)
         do c = block%first_closure, block%last_closure
           part%row = 3*(c - block%first_closure)
           part%base = plan%closures(c)%base
@@ -134,7 +142,8 @@ contains
     integer :: i, s, row
 
     per_length = 1.0_wp/length
-    matrix = 0.0_wp
+    ! the parts of one closure, as many as columns, leave nothing else
+    if (rows > 3 .or. n < columns) matrix = 0.0_wp
     do i = 1, n
       s = parts(i)%frame
       row = parts(i)%row
@@ -170,6 +179,32 @@ contains
       matrix(row + 3, j) = matrix(row + 3, j) + parts(i)%weight*per_length*y
     end do
   end subroutine add_earlier
+
+  !> Take the entries of the unknowns' steps for one independent coordinate, and add its share to the rates of the unknowns.
+  pure subroutine take_rates(n, change, units, coordinates, first_entries, j, given, unit, n_b, m, b, dq)
+    integer, intent(in) :: n                  !< number of unknowns
+    real(wp), intent(in) :: change(n)         !< change of the closures' equations per unit of each, solved for the unknowns
+    real(wp), intent(in) :: units(n)          !< units of the unknowns [rad, m]
+    integer, intent(in) :: coordinates(n)     !< numbers of the unknowns
+    integer, intent(in) :: first_entries(n)   !< first entry of the frame of each unknown
+    integer, intent(in) :: j                  !< place of the independent coordinate among those of the block
+    integer, intent(in) :: given              !< its number
+    real(wp), intent(in) :: unit              !< its unit [rad, m]
+    integer, intent(in) :: n_b                !< number of entries of all frames
+    integer, intent(in) :: m                  !< number of coordinates
+    real(wp), intent(inout) :: b(n_b)         !< gets B, rate of the step's coordinate per unit rate of an independent one
+    real(wp), intent(inout) :: dq(m)          !< rates of all coordinates [rad/s, m/s]
+    real(wp) :: rate
+    integer :: i, e
+
+    rate = dq(given)
+    do i = 1, n
+      e = first_entries(i) + j - 1
+      b(e) = -change(i)*units(i)/unit
+      if (j == 1) dq(coordinates(i)) = 0.0_wp
+      dq(coordinates(i)) = dq(coordinates(i)) + b(e)*rate
+    end do
+  end subroutine take_rates
 
   !> Columns and velocities of frames first .. last, and their accelerations with no accelerations of any coordinate.
   pure subroutine move_frames(m, n_b, steps, first, last, entries, parent_entry, carries, b, dq, f, slide, columns, v, a)

@@ -10,7 +10,7 @@ module mech9_planar_dynamics
   use mech9_block_solver, only: block_work_type
   use mech9_planar_lagrange, only: planar_body_type, planar_body, spread_columns, add_bodies => add_inertia, &
     planar_wrench, add_force => add_link_force, planar_kinetic_energy
-  use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, move_frames
+  use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, take_rates, move_frames
   use mech9_planar_articulated, only: new_planar_work, set_bodies, go_inward, go_outward
   use mech9_cluster_bodies, only: find_rest, find_accelerations
   use mech9_planar_cluster, only: eliminate_cluster, move_cluster
@@ -127,36 +127,28 @@ contains
     type(jacobian_type), intent(inout) :: jacobian       !< with the entries of earlier blocks; gets those of this one
     real(wp), intent(inout), contiguous :: sides(:, :)   !< scratch: room for the right-hand sides of any block
     type(block_work_type), intent(inout) :: work         !< with the block's Jacobian factorized; scratch
-    real(wp) :: unit
-    integer :: e, i, j, k, m, n_b
+    integer :: i, j, m, n, n_b
 
     m = plan%n_coordinates
+    n = size(block%unknowns)
     n_b = size(jacobian%b)
     call fill_columns(size(flat%independent), flat%independent, m, plan%planar%steps, state%planar%pose, &
                       state%planar%slide, plan%length, size(sides, 1), flat%columns, sides)
-    call add_earlier(size(flat%earlier), flat%earlier, m, state%planar%pose, n_b, jacobian%flat, plan%length, &
-                     size(sides, 1), flat%columns, sides)
-    do i = 1, size(block%unknowns)
-      state%dq(block%coordinates(i)) = 0.0_wp
-    end do
+    if (size(flat%earlier) > 0) call add_earlier(size(flat%earlier), flat%earlier, m, state%planar%pose, n_b, jacobian%flat, &
+                                                 plan%length, size(sides, 1), flat%columns, sides)
+    if (flat%columns == 0) state%dq(block%coordinates) = 0.0_wp
     do j = 1, flat%columns
-      k = plan%independent(dynamics%column(dynamics%first(block%unknowns(1)) + j - 1))
-      unit = plan%unit_of(k)
       call work%equations%solve(sides(:work%equations%m, j), work%change)
-      do i = 1, size(block%unknowns)
-        e = dynamics%first(block%unknowns(i)) + j - 1
-        jacobian%b(e) = -work%change(i)*plan%unit_of(block%coordinates(i))/unit
-        state%dq(block%coordinates(i)) = state%dq(block%coordinates(i)) + jacobian%b(e)*state%dq(k)
-      end do
+      call take_rates(n, work%change, flat%units, block%coordinates, flat%first_entries, j, flat%given(j), flat%given_units(j), &
+                      n_b, m, jacobian%b, state%dq)
     end do
     call move_frames(m, n_b, plan%planar%steps, block%first_step, block%last_step, dynamics%first, &
                      dynamics%parent_entry, dynamics%carries_columns, jacobian%b, state%dq, state%planar%pose, &
                      state%planar%slide, jacobian%flat, state%planar%velocity, state%planar%acceleration)
     call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, work%right)
     call work%equations%solve(work%right, work%change)
-    do i = 1, size(block%unknowns)
-      k = block%coordinates(i)
-      state%ddq(k) = -work%change(i)*plan%unit_of(k)
+    do i = 1, n
+      state%ddq(block%coordinates(i)) = -work%change(i)*flat%units(i)
     end do
     call planar_accelerations(plan%planar, first_closed, block%last_step, state%dq, state%ddq, state%planar)
   end subroutine move_in_plane

@@ -261,14 +261,10 @@ contains
   end subroutine present
 
   !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.
-  real(wp) function conditioning(self)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    integer :: b
+  pure real(wp) function conditioning(self)
+    class(motion_system_type), intent(in) :: self   !< the motion system
 
-    conditioning = 1.0_wp
-    do b = 1, size(self%work%blocks)
-      conditioning = min(conditioning, self%work%blocks(b)%equations%conditioning())
-    end do
+    conditioning = self%work%conditioning
   end function conditioning
 
   !> The signs of the determinants of the blocks' Jacobians at the last evaluation; those of a branch change in singular

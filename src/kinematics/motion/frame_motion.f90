@@ -100,8 +100,8 @@ contains
       call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%place(plan, plan%blocks(b)%first_step, &
                                                                   plan%blocks(last)%last_step, state, err)
       if (allocated(err)) return
-      if (any(plan%blocks(b:last)%is_shown)) call show_poses(plan, plan%planar%shown, plan%blocks(b)%first_step, &
-                                                             plan%blocks(last)%last_step, state)
+      if (shows_any(plan, b, last)) call show_poses(plan, plan%planar%shown, plan%blocks(b)%first_step, &
+                                                    plan%blocks(last)%last_step, state)
       b = last + 1
     end do
   end subroutine place_all
@@ -117,8 +117,8 @@ contains
       last = end_of_run(plan, b)
       call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%spread_velocities(plan, plan%blocks(b)%first_step, &
                                                                               plan%blocks(last)%last_step, state)
-      if (any(plan%blocks(b:last)%is_shown)) call show_velocities(plan, plan%planar%shown, plan%blocks(b)%first_step, &
-                                                                  plan%blocks(last)%last_step, state)
+      if (shows_any(plan, b, last)) call show_velocities(plan, plan%planar%shown, plan%blocks(b)%first_step, &
+                                                         plan%blocks(last)%last_step, state)
       b = last + 1
     end do
   end subroutine spread_all_velocities
@@ -134,8 +134,8 @@ contains
       last = end_of_run(plan, b)
       call plan%arithmetics(plan%blocks(b)%arithmetic)%kind%spread_accelerations(plan, plan%blocks(b)%first_step, &
                                                                                  plan%blocks(last)%last_step, state)
-      if (any(plan%blocks(b:last)%is_shown)) call show_accelerations(plan, plan%planar%shown, plan%blocks(b)%first_step, &
-                                                                     plan%blocks(last)%last_step, state)
+      if (shows_any(plan, b, last)) call show_accelerations(plan, plan%planar%shown, plan%blocks(b)%first_step, &
+                                                            plan%blocks(last)%last_step, state)
       b = last + 1
     end do
   end subroutine spread_all_accelerations
@@ -162,6 +162,17 @@ contains
       last = last + 1
     end do
   end function end_of_run
+
+  !> Whether some frames of the blocks b .. last are planar and are read in space.
+  pure logical function shows_any(plan, b, last)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: b              !< number of the first block
+    integer, intent(in) :: last           !< number of the last block
+
+    shows_any = .false.
+    ! a plan with one arithmetic has no frames of another
+    if (size(plan%arithmetics) > 1) shows_any = any(plan%blocks(b:last)%is_shown)
+  end function shows_any
 
   !> A link's own system, its angular velocity and the velocity of its origin, in the system of link 1.
   pure subroutine link_motion(plan, state, link, r, p, omega, v)
