@@ -1,10 +1,10 @@
 !> Evaluations of the motion of mixed structures: open chains with a four-bar at the tip, in the middle or at the base, modules of a
 !> revolute pair and a four-bar in series, and trees of such modules, in the plane and in space.
 !>
-!> usage: bench_structures chain|tip|middle|base|modules|tree plane|space N FILE [EVALUATIONS]
+!> usage: bench_structures chain|tip|middle|base|modules|tree|four_bar|file plane|space N FILE [EVALUATIONS]
 !> Writes the data file of the mechanism, reads it again, and prints one row: structure, plane or space, N, links, independent
-!> coordinates, seconds to plan, microseconds an evaluation of the motion, megabytes of memory at most. With EVALUATIONS just
-!> this number is made, for counts of instructions.
+!> coordinates, seconds to plan, microseconds an evaluation of the motion, megabytes of memory for data. With EVALUATIONS just
+!> this number is made, for counts of instructions. `four_bar` is the four-bar alone; with `file` the data file is taken as it is.
 program bench_structures
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
@@ -16,7 +16,7 @@ program bench_structures
   use mech9_state, only: state_type
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_free_simulation, only: assemble_free
-  use mech9_bench_support, only: read_data_file, stop_at, median, argument, peak_memory
+  use mech9_bench_support, only: read_data_file, stop_at, median, argument, data_memory
   implicit none
 
   !> Repetitions for a median.
@@ -39,40 +39,40 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
-    real(wp) :: clock, planning, evaluation
+    real(wp) :: clock, planning, evaluation, memory
     integer :: n, evaluations, status
     character(len=:), allocatable :: word, kind
 
     kind = argument(1)
     word = argument(3)
     read (word, *, iostat=status) n
-    if (status /= 0 .or. n < 1 .or. index(' chain tip middle base modules tree ', ' '//kind//' ') == 0) then
+    if (status /= 0 .or. n < 1 .or. index(' chain tip middle base modules tree four_bar file ', ' '//kind//' ') == 0) then
       write (error_unit, '(a)') &
-        'usage: bench_structures chain|tip|middle|base|modules|tree plane|space N FILE [EVALUATIONS]'
+        'usage: bench_structures chain|tip|middle|base|modules|tree|four_bar|file plane|space N FILE [EVALUATIONS]'
       stop 1
     end if
     evaluations = 0
     word = argument(5)
     if (word /= '') read (word, *, iostat=status) evaluations
-    call write_structure(argument(4), kind, argument(2) == 'plane', n)
+    if (kind /= 'file') call write_structure(argument(4), kind, argument(2) == 'plane', n)
     call read_data_file(argument(4), .false., model)
     clock = seconds()
     call assemble_free(model, plan, start, err)
     planning = seconds() - clock
     call stop_at(err, kind)
-    call time_evaluations(model, plan, start, evaluations, evaluation)
-    print '(a,1x,a,3i8,f12.5,f14.4,f10.1)', kind, argument(2), n, plan%n_links, size(plan%independent), planning, &
-      evaluation, peak_memory()
+    call time_evaluations(model, plan, start, evaluations, evaluation, memory)
+    print '(a,1x,a,3i8,f12.5,f14.4,f10.3)', kind, argument(2), n, plan%n_links, size(plan%independent), planning, &
+      evaluation, memory
   end subroutine run
 
   !> Write the data file of a structure. Links of the chain are 1 m long and have 1 kg.
   subroutine write_structure(path, kind, is_planar, n)
     character(len=*), intent(in) :: path   !< of the data file
-    character(len=*), intent(in) :: kind   !< chain, tip, middle, base, modules or tree
+    character(len=*), intent(in) :: kind   !< chain, tip, middle, base, modules, tree or four_bar
     logical, intent(in) :: is_planar       !< all pairs turn about one direction
     integer, intent(in) :: n               !< links of the chain, or modules
     type(draft_type) :: draft
-    integer :: unit, status, at
+    integer :: unit, status, at, crank
 
     draft%is_planar = is_planar
     draft%independent = ''
@@ -83,6 +83,8 @@ contains
       call add_modules(draft, n)
     case ('tree')
       call add_tree(draft, n)
+    case ('four_bar')
+      call add_four_bar(draft, 1, 0.0_wp, 0.0_wp, crank)
     case default
       at = n + 1
       if (kind == 'tip') at = n
@@ -249,13 +251,14 @@ contains
     if (draft%is_planar) text = to_text(along)//','//to_text(across)//',0'
   end function place
 
-  !> Median time of one evaluation of the motion [us].
-  subroutine time_evaluations(model, plan, start, exactly, time)
+  !> Median time of one evaluation of the motion, and the memory of the process then.
+  subroutine time_evaluations(model, plan, start, exactly, time, memory)
     type(model_type), intent(in), target :: model   !< the mechanism with its problem
     type(plan_type), intent(in) :: plan             !< its plan
     type(state_type), intent(in) :: start           !< assembled position at the start, with the independent rates
     integer, intent(in) :: exactly                  !< number of evaluations; 0: as many as the clock needs
     real(wp), intent(out) :: time                   !< of an evaluation, median of the passes [us]
+    real(wp), intent(out) :: memory                 !< for data [MB]
     type(motion_system_type), allocatable :: system
     type(error_type), allocatable :: err
     real(wp), allocatable :: y(:), rates(:)
@@ -279,5 +282,6 @@ contains
       call stop_at(err, 'the motion')
     end do
     time = 1.0e6_wp*median(each(:merge(1, passes, exactly > 0)))
+    memory = data_memory()
   end subroutine time_evaluations
 end program bench_structures

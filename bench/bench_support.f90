@@ -10,7 +10,7 @@ module mech9_bench_support
   use mech9_reader, only: read_model
   implicit none
   private
-  public :: read_data_file, stop_at, median, argument, peak_memory
+  public :: read_data_file, stop_at, median, argument, peak_memory, data_memory
 
 contains
 
@@ -65,17 +65,29 @@ contains
 
   !> The most memory that this process has had [MB]; 0 where the system does not tell.
   real(wp) function peak_memory()
+    peak_memory = status_of('VmHWM:')
+  end function peak_memory
+
+  !> The memory that this process has taken for its data and keeps [MB], freed parts that were not handed back included; 0 where the
+  !> system does not tell.
+  real(wp) function data_memory()
+    data_memory = status_of('RssAnon:')
+  end function data_memory
+
+  !> A number from the system's table of this process [MB]; 0 where there is no such table or row.
+  real(wp) function status_of(name)
+    character(len=*), intent(in) :: name   !< of the row, with its colon
     character(len=80) :: line
     integer :: unit, status
 
-    peak_memory = 0.0_wp
+    status_of = 0.0_wp
     open (newunit=unit, file='/proc/self/status', action='read', status='old', iostat=status)
     do while (status == 0)
       read (unit, '(a)', iostat=status) line
-      if (status /= 0 .or. line(:6) /= 'VmHWM:') cycle
-      read (line(7:index(line, 'kB') - 1), *) peak_memory
-      peak_memory = peak_memory/1024.0_wp
+      if (status /= 0 .or. line(:len(name)) /= name) cycle
+      read (line(len(name) + 1:index(line, 'kB') - 1), *) status_of
+      status_of = status_of/1024.0_wp
     end do
     close (unit, iostat=status)
-  end function peak_memory
+  end function status_of
 end module mech9_bench_support

@@ -75,22 +75,48 @@ EOT
   ' "$work/$1.dat"
 }
 
+mixed_names="chain=open chain;tip=four-bar at the tip;middle=four-bar in the middle;base=four-bar at the base"
+mixed_names+=";modules=modules in series;tree=tree of modules"
+
 # evaluations in the plane and in space side by side, and their ratio to those of the open chain with as many links N
 mixed_table() {
   cat <<'EOT'
 | structure | N | links | independent | plane [µs] | a link [µs] | to the chain | space [µs] | a link [µs] | to the chain |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
 EOT
-  awk '
-    BEGIN {
-      name["chain"] = "open chain"; name["tip"] = "four-bar at the tip"; name["middle"] = "four-bar in the middle"
-      name["base"] = "four-bar at the base"; name["modules"] = "modules in series"; name["tree"] = "tree of modules"
-    }
+  awk -v names="$mixed_names" '
+    BEGIN { split(names, pairs, ";"); for (i in pairs) { split(pairs[i], word, "="); name[word[1]] = word[2] } }
     {
       time[$1, $2, $3] = $7
       if ($2 == "space")
         printf "| %s | %d | %d | %d | %.2f | %.3f | %.2f | %.2f | %.3f | %.2f |\n", name[$1], $3, $4, $5, time[$1, "plane", $3],
           time[$1, "plane", $3] / $4, time[$1, "plane", $3] / time["chain", "plane", $3], $7, $7 / $4, $7 / time["chain", "space", $3]
+    }
+  ' "$work/mixed.dat"
+}
+
+# memory for each further link, from the two largest N
+memory_table() {
+  cat <<'EOT'
+| structure | from N to N | plane [kB a link] | space [kB a link] |
+| --- | --- | --- | --- |
+EOT
+  awk -v names="$mixed_names" '
+    BEGIN { split(names, pairs, ";"); for (i in pairs) { split(pairs[i], word, "="); name[word[1]] = word[2] } }
+    {
+      if (!seen[$1]++) order[++n] = $1
+      if ($3 > to[$1]) { from[$1] = to[$1]; to[$1] = $3 }
+      links[$1, $3] = $4
+      memory[$1, $2, $3] = 1024 * $8
+    }
+    END {
+      for (i = 1; i <= n; i++) {
+        k = order[i]
+        more = links[k, to[k]] - links[k, from[k]]
+        printf "| %s | %d, %d | %.1f | %.1f |\n", name[k], from[k], to[k],
+          (memory[k, "plane", to[k]] - memory[k, "plane", from[k]]) / more,
+          (memory[k, "space", to[k]] - memory[k, "space", from[k]]) / more
+      }
     }
   ' "$work/mixed.dat"
 }
@@ -167,6 +193,12 @@ revolute pair and a four-bar in series; binary trees of such modules. In the pla
 and y in alternation, those of the four-bars y.
 
 $(mixed_table)
+
+### Memory of mixed structures
+
+Memory for data that each further link takes, from two sizes; reading, planning and evaluations are included.
+
+$(memory_table)
 EOT
 }
 
