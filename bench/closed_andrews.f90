@@ -8,6 +8,7 @@ module mech9_closed_andrews
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_ode_system, only: ode_system_type
+  use mech9_two_bars, only: point_type, bar_type, turning_point, meet
   implicit none
   private
   public :: closed_andrews_type, andrews_acceleration, andrews_angles
@@ -26,20 +27,6 @@ module mech9_closed_andrews
     about_ah = 1.912e-5_wp + 0.05498_wp*(0.01228_wp**2 + 0.00449_wp**2)
   !> The crank's torque [N m], the spring's stiffness [N/m] and free length [m], and its end on BE, along BE and across it [m].
   real(wp), parameter :: torque = 0.033_wp, stiffness = 4530.0_wp, free_length = 0.07785_wp, along = 0.018_wp, across = 0.02_wp
-
-  !> A point with its derivatives by the crank's angle.
-  type :: point_type
-    real(wp) :: x(2)    !< place [m]
-    real(wp) :: d(2)    !< first derivative [m]
-    real(wp) :: dd(2)   !< second derivative [m]
-  end type point_type
-
-  !> A bar: its vector, and its angle's derivatives by the crank's angle.
-  type :: bar_type
-    real(wp) :: r(2)    !< from its first pin to its second one [m]
-    real(wp) :: w       !< first derivative of the angle
-    real(wp) :: dw      !< second derivative of the angle
-  end type bar_type
 
   !> The equation of motion as an integrator uses it; its two variables are beta and beta_dot.
   type, extends(ode_system_type) :: closed_andrews_type
@@ -127,9 +114,7 @@ contains
     type(bar_type), intent(out) :: bar_eh  !< from E to H
     type(bar_type), intent(out) :: bar_ah  !< from A to H
 
-    f%x = of*[cos(beta), sin(beta)]
-    f%d = [-f%x(2), f%x(1)]
-    f%dd = -f%x
+    f = turning_point(of*[cos(beta), sin(beta)])
     call meet(f, b, fe, be, 1.0_wp, bar_fe, bar_be)
     e%x = b + bar_be%r
     e%d = bar_be%w*[-bar_be%r(2), bar_be%r(1)]
@@ -137,37 +122,6 @@ contains
     call meet(e, a, eg, ag, -1.0_wp, bar_eg, bar_ag)
     call meet(e, a, eh, ah, 1.0_wp, bar_eh, bar_ah)
   end subroutine find_bars
-
-  !> Two bars from a moving and a fixed pin to one where two circles meet.
-  pure subroutine meet(moving, fixed, first_length, second_length, side, first, second)
-    type(point_type), intent(in) :: moving     !< first pin of the first bar
-    real(wp), intent(in) :: fixed(2)           !< first pin of the second bar [m]
-    real(wp), intent(in) :: first_length       !< [m]
-    real(wp), intent(in) :: second_length      !< [m]
-    real(wp), intent(in) :: side               !< 1: the pin lies to the left of the line from the moving to the fixed one; -1: right
-    type(bar_type), intent(out) :: first       !< from the moving pin to the common one
-    type(bar_type), intent(out) :: second      !< from the fixed pin to the common one
-    real(wp) :: line(2), square, s, h, reciprocal, cosine, p, q
-
-    line = fixed - moving%x
-    square = line(1)**2 + line(2)**2
-    reciprocal = 1.0_wp/square
-    s = 0.5_wp*(1.0_wp + (first_length**2 - second_length**2)*reciprocal)
-    h = side*sqrt(first_length**2*reciprocal - s**2)
-    first%r = [s*line(1) - h*line(2), s*line(2) + h*line(1)]
-    second%r = first%r - line
-    ! the derivative of moving + first = fixed + second, along both bars; the product of the bars across each other divides
-    reciprocal = 1.0_wp/(first%r(2)*second%r(1) - first%r(1)*second%r(2))
-    cosine = first%r(1)*second%r(1) + first%r(2)*second%r(2)
-    p = first%r(1)*moving%d(1) + first%r(2)*moving%d(2)
-    q = second%r(1)*moving%d(1) + second%r(2)*moving%d(2)
-    second%w = p*reciprocal
-    first%w = q*reciprocal
-    p = first%r(1)*moving%dd(1) + first%r(2)*moving%dd(2)
-    q = second%r(1)*moving%dd(1) + second%r(2)*moving%dd(2)
-    second%dw = (p + second%w**2*cosine - first%w**2*first_length**2)*reciprocal
-    first%dw = (q - first%w**2*cosine + second%w**2*second_length**2)*reciprocal
-  end subroutine meet
 
   !> Add a bar with its mass centre between its pins to M and M'/2.
   pure subroutine add_body(mass, inertia, part, pin, bar, m, half_dm)

@@ -121,6 +121,43 @@ EOT
   ' "$work/mixed.dat"
 }
 
+# an evaluation by each program, and its ratios to the closed form and to MECH9
+others_table() {
+  cat <<'EOT'
+| mechanism | N | program | an evaluation [µs] | to the form by hand | to MECH9 | difference of accelerations |
+| --- | --- | --- | --- | --- | --- | --- |
+EOT
+  awk -F '\t' '
+    BEGIN {
+      name["two_links"] = "two links in the plane"; name["four_bar"] = "four-bar in the plane"; name["andrews"] = "Andrews\047 mechanism"
+      name["chain"] = "open chain in space"; name["tip"] = "four-bar at the tip of a chain in space"
+      name["modules"] = "modules in series in space"
+    }
+    NF < 5 { next }
+    {
+      n++
+      row[n] = $0
+      if ($3 == "by hand") hand[$1, $2] = $4
+      if ($3 == "MECH9") own[$1, $2] = $4
+    }
+    END {
+      for (i = 1; i <= n; i++) {
+        split(row[i], cell, "\t")
+        at = cell[1] SUBSEP cell[2]
+        printf "| %s | %s | %s | %.3f | %s | %.3g | %s |\n", name[cell[1]], cell[2], cell[3], cell[4],
+          at in hand ? sprintf("%.1f", cell[4] / hand[at]) : "", cell[4] / own[at], cell[3] == "MECH9" ? "" : cell[5]
+      }
+    }
+  ' "$work/others.dat"
+}
+
+# a sentence about the other programs that were not found
+missing_programs() {
+  local names
+  names=$(sed -n 's/^missing //p' "$work/others.dat" | paste -sd ',' | sed 's/,/, /g')
+  [ -z "$names" ] || echo "Not installed on this machine, and not measured: $names."
+}
+
 write_tables() {
   local problem
   cat <<EOT
@@ -199,6 +236,19 @@ $(mixed_table)
 Memory for data that each further link takes, from two sizes; reading, planning and evaluations are included.
 
 $(memory_table)
+
+## Other programs
+
+Accelerations at the closed position in which each data file starts, by procedures of one thread (\`bench/other_programs.py\`): by hand for this one
+mechanism (\`bench/closed_structures.f90\`, \`bench/closed_andrews.f90\`; position and accelerations), by MECH9, by MuJoCo with contacts
+off, and by Pinocchio. The last two are called from Python, which takes one or two microseconds of a call, and have the same links,
+positions and rates. MuJoCo holds closed chains by soft constraints as hard as it allows, and starts from the accelerations of the call before;
+Pinocchio's \`lcaba\` makes one proximal step. Both are measured as their packages are built. The last column tells how far their
+accelerations are from those of MECH9, over the largest one.
+
+$(others_table)
+
+$(missing_programs)
 EOT
 }
 

@@ -13,7 +13,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from mech9_cases import TREE, Checks, text_of
 
 checks = Checks()
-OTHER_TABLES = ['Time per position', 'Growth', 'Mixed structures', 'Memory of mixed structures']
+OTHER_TABLES = ['Time per position', 'Growth', 'Mixed structures', 'Memory of mixed structures', 'Other programs']
 METHODS = ['auto', 'prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf']
 
 
@@ -94,6 +94,27 @@ def check_memory(rows):
         checks.true(all(abs(float(cell)) < 1000 for cell in row[2:]), f'{row[0]}: memory for a link', row)
 
 
+def check_others(page, rows):
+    mechanisms = {}
+    for row in rows[1:]:
+        mechanisms.setdefault((row[0], row[1]), {})[row[2].split(',')[0]] = row
+    checks.true(len(mechanisms) >= 8, 'eight mechanisms', list(mechanisms))
+    checks.equal(sum('by hand' in found for found in mechanisms.values()), 3, 'three mechanisms by hand')
+    for (name, _), found in mechanisms.items():
+        own = found['MECH9']
+        checks.true(float(own[3]) > 0, f'{name}: an evaluation takes time', own)
+        for program, row in found.items():
+            # times stand there with three decimals
+            checks.near(float(row[5]) / (float(row[3]) / float(own[3])), 1.0, 0.05 + 0.0006 / float(row[3]), f'{name}: ratio')
+            if program != 'MECH9':
+                # soft constraints and single proximal steps leave more than round-off
+                checks.true(float(row[6]) < (1e-13 if program == 'by hand' else 1e-2), f'{name}, {program}: accelerations', row)
+    for program in ('MuJoCo', 'Pinocchio'):
+        found = [program in row for row in mechanisms.values()]
+        absent = re.search(rf'not measured: .*{program}', page)
+        checks.true(not any(found) if absent else all(found), f'{program} is measured, or said to be missing')
+
+
 programs = os.path.abspath(sys.argv[1])
 with tempfile.TemporaryDirectory() as folder:
     done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--quick', '--programs', programs, '--output', folder],
@@ -114,6 +135,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_growth(tables['Growth'])
         check_mixed(tables['Mixed structures'])
         check_memory(tables['Memory of mixed structures'])
+        check_others(page, tables['Other programs'])
         pictures = re.findall(r'\((pictures/\S+\.svg)\)', page)
         if checks.has('gnuplot', 'gnuplot-nox'):
             checks.equal(len(pictures), 7, 'a picture for each problem and one of the growth')
