@@ -4,6 +4,7 @@ module mech9_planar_arithmetic
   use mech9_error, only: error_type
   use mech9_pose, only: transformed
   use mech9_plan, only: plan_type, arithmetic_type
+  use mech9_planar_formulas, only: turn_in_plane, point_velocity, point_acceleration
   use mech9_planar_motion, only: new_planar_motion, place_in_plane, change_in_plane, planar_velocities, planar_accelerations, &
     to_space
   use mech9_state, only: state_type
@@ -88,20 +89,20 @@ contains
     real(wp), intent(out) :: p(3)           !< origin of the link [m]
     real(wp), intent(out) :: omega(3)       !< angular velocity [rad/s]
     real(wp), intent(out) :: v(3)           !< velocity of the origin [m/s]
-    real(wp) :: x, y
+    real(wp) :: arm(2), turned(2), moved(2)
     integer :: i, j
 
     i = plan%frame_of(link)
     associate (f => state%planar%pose(:, i), velocity => state%planar%velocity(:, i), in_frame => plan%planar%link_in_frame(link))
       do j = 1, 3
-        r(:, j) = to_space(plan%planar, f(1)*in_frame%r(1, j) - f(2)*in_frame%r(2, j), &
-                           f(2)*in_frame%r(1, j) + f(1)*in_frame%r(2, j), in_frame%r(3, j))
+        call turn_in_plane(f, in_frame%r(1:2, j), turned)
+        r(:, j) = to_space(plan%planar, turned(1), turned(2), in_frame%r(3, j))
       end do
-      x = f(1)*in_frame%p(1) - f(2)*in_frame%p(2)
-      y = f(2)*in_frame%p(1) + f(1)*in_frame%p(2)
-      p = to_space(plan%planar, f(3) + x, f(4) + y, in_frame%p(3)) + plan%origin
+      call turn_in_plane(f, in_frame%p(1:2), arm)
+      p = to_space(plan%planar, f(3) + arm(1), f(4) + arm(2), in_frame%p(3)) + plan%origin
       omega = to_space(plan%planar, 0.0_wp, 0.0_wp, velocity(1))
-      v = to_space(plan%planar, velocity(2) - velocity(1)*y, velocity(3) + velocity(1)*x, 0.0_wp)
+      call point_velocity(velocity, arm, moved)
+      v = to_space(plan%planar, moved(1), moved(2), 0.0_wp)
     end associate
   end subroutine link_motion
 
@@ -114,18 +115,22 @@ contains
     real(wp), intent(out) :: position(3)                 !< in the system of link 1 [m]
     real(wp), intent(out), optional :: velocity(3)       !< in the axes of link 1 [m/s]
     real(wp), intent(out), optional :: acceleration(3)   !< in the axes of link 1 [m/s^2]
-    real(wp) :: in_frame(3), x, y
+    real(wp) :: in_frame(3), arm(2), moved(2)
     integer :: i
 
     i = plan%frame_of(link)
     in_frame = transformed(plan%planar%link_in_frame(link), place)
     associate (f => state%planar%pose(:, i), v => state%planar%velocity(:, i), a => state%planar%acceleration(:, i))
-      x = f(1)*in_frame(1) - f(2)*in_frame(2)
-      y = f(2)*in_frame(1) + f(1)*in_frame(2)
-      position = to_space(plan%planar, f(3) + x, f(4) + y, in_frame(3)) + plan%origin
-      if (present(velocity)) velocity = to_space(plan%planar, v(2) - v(1)*y, v(3) + v(1)*x, 0.0_wp)
-      if (present(acceleration)) &
-        acceleration = to_space(plan%planar, a(2) - a(1)*y - v(1)**2*x, a(3) + a(1)*x - v(1)**2*y, 0.0_wp)
+      call turn_in_plane(f, in_frame(1:2), arm)
+      position = to_space(plan%planar, f(3) + arm(1), f(4) + arm(2), in_frame(3)) + plan%origin
+      if (present(velocity)) then
+        call point_velocity(v, arm, moved)
+        velocity = to_space(plan%planar, moved(1), moved(2), 0.0_wp)
+      end if
+      if (present(acceleration)) then
+        call point_acceleration(v(1), a, arm, moved)
+        acceleration = to_space(plan%planar, moved(1), moved(2), 0.0_wp)
+      end if
     end associate
   end subroutine point_motion
 

@@ -5,6 +5,7 @@ module mech9_planar_block_arithmetic
   use mech9_rotation, only: turn, combine
   use mech9_pose, only: transformed
   use mech9_plan, only: plan_type
+  use mech9_planar_formulas, only: turn_in_plane, point_velocity, point_acceleration
   use mech9_planar_arithmetic, only: planar_arithmetic_type
   use mech9_planar_view, only: plane_in_space, seen_velocity, seen_acceleration
   use mech9_state, only: state_type
@@ -31,7 +32,7 @@ contains
     real(wp), intent(out) :: p(3)           !< origin of the link [m]
     real(wp), intent(out) :: omega(3)       !< angular velocity [rad/s]
     real(wp), intent(out) :: v(3)           !< velocity of the origin [m/s]
-    real(wp) :: axes(3, 3), turned(3, 3), arm(3), x, y
+    real(wp) :: axes(3, 3), turned(3, 3), in_plane(2), arm(3), v_plane(2)
     integer :: i, base
 
     i = plan%frame_of(link)
@@ -42,12 +43,12 @@ contains
       turned(:, 2) = f(1)*axes(:, 2) - f(2)*axes(:, 1)
       turned(:, 3) = axes(:, 3)
       r = combine(turned, in_frame%r)
-      x = f(1)*in_frame%p(1) - f(2)*in_frame%p(2)
-      y = f(2)*in_frame%p(1) + f(1)*in_frame%p(2)
-      arm = turn(axes, [f(3) + x, f(4) + y, in_frame%p(3)])
+      call turn_in_plane(f, in_frame%p(1:2), in_plane)
+      arm = turn(axes, [f(3:4) + in_plane, in_frame%p(3)])
       p = state%p(:, base) + arm + plan%origin
       omega = state%omega(:, base) + velocity(1)*axes(:, 3)
-      v = seen_velocity(state, base, axes, arm, [velocity(2) - velocity(1)*y, velocity(3) + velocity(1)*x])
+      call point_velocity(velocity, in_plane, v_plane)
+      v = seen_velocity(state, base, axes, arm, v_plane)
     end associate
   end subroutine link_motion
 
@@ -60,7 +61,7 @@ contains
     real(wp), intent(out) :: position(3)                 !< in the system of link 1 [m]
     real(wp), intent(out), optional :: velocity(3)       !< in the axes of link 1 [m/s]
     real(wp), intent(out), optional :: acceleration(3)   !< in the axes of link 1 [m/s^2]
-    real(wp) :: axes(3, 3), in_frame(3), arm(3), v_plane(2), x, y
+    real(wp) :: axes(3, 3), in_frame(3), in_plane(2), arm(3), v_plane(2), a_plane(2)
     integer :: i, base
 
     i = plan%frame_of(link)
@@ -68,14 +69,14 @@ contains
     axes = plane_in_space(plan, state, i)
     in_frame = transformed(plan%planar%link_in_frame(link), place)
     associate (f => state%planar%pose(:, i), v => state%planar%velocity(:, i), a => state%planar%acceleration(:, i))
-      x = f(1)*in_frame(1) - f(2)*in_frame(2)
-      y = f(2)*in_frame(1) + f(1)*in_frame(2)
-      arm = turn(axes, [f(3) + x, f(4) + y, in_frame(3)])
+      call turn_in_plane(f, in_frame(1:2), in_plane)
+      arm = turn(axes, [f(3:4) + in_plane, in_frame(3)])
       position = state%p(:, base) + arm + plan%origin
-      v_plane = [v(2) - v(1)*y, v(3) + v(1)*x]
+      call point_velocity(v, in_plane, v_plane)
       if (present(velocity)) velocity = seen_velocity(state, base, axes, arm, v_plane)
-      if (present(acceleration)) acceleration = seen_acceleration(state, base, axes, arm, v_plane, &
-        [a(2) - a(1)*y - v(1)**2*x, a(3) + a(1)*x - v(1)**2*y])
+      if (.not. present(acceleration)) return
+      call point_acceleration(v(1), a, in_plane, a_plane)
+      acceleration = seen_acceleration(state, base, axes, arm, v_plane, a_plane)
     end associate
   end subroutine point_motion
 

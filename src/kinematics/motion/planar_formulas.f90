@@ -9,8 +9,40 @@ module mech9_planar_formulas
   implicit none
   private
   public :: step_column, step_velocity, step_acceleration, add_rate, add_bias, stem_difference, rows_at_base
+  public :: turn_in_plane, point_velocity, point_acceleration
 
 contains
+
+  !> The components in the plane's axes of a vector that is given in those of a frame.
+  pure subroutine turn_in_plane(pose, vector, turned)
+    real(wp), intent(in) :: pose(4)      !< pose of the frame [m]
+    real(wp), intent(in) :: vector(2)    !< in the frame's axes, of any unit
+    real(wp), intent(out) :: turned(2)   !< in the plane's axes
+
+    turned(1) = pose(1)*vector(1) - pose(2)*vector(2)
+    turned(2) = pose(2)*vector(1) + pose(1)*vector(2)
+  end subroutine turn_in_plane
+
+  !> Velocity of a point that moves with a frame.
+  pure subroutine point_velocity(velocity, arm, v)
+    real(wp), intent(in) :: velocity(3)   !< of the frame [rad/s, m/s]
+    real(wp), intent(in) :: arm(2)        !< from the frame's origin to the point, in the plane's axes [m]
+    real(wp), intent(out) :: v(2)         !< of the point, in the plane's axes [m/s]
+
+    v(1) = velocity(2) - velocity(1)*arm(2)
+    v(2) = velocity(3) + velocity(1)*arm(1)
+  end subroutine point_velocity
+
+  !> Acceleration of a point that moves with a frame.
+  pure subroutine point_acceleration(w, acceleration, arm, a)
+    real(wp), intent(in) :: w                 !< angular velocity of the frame [rad/s]
+    real(wp), intent(in) :: acceleration(3)   !< of the frame [rad/s^2, m/s^2]
+    real(wp), intent(in) :: arm(2)            !< from the frame's origin to the point, in the plane's axes [m]
+    real(wp), intent(out) :: a(2)             !< of the point, in the plane's axes [m/s^2]
+
+    a(1) = acceleration(2) - acceleration(1)*arm(2) - w**2*arm(1)
+    a(2) = acceleration(3) + acceleration(1)*arm(1) - w**2*arm(2)
+  end subroutine point_acceleration
 
   !> Derivatives of a closure's three equations with respect to the coordinate of a step of its loop.
   pure subroutine step_column(step, sign, pose, slide, base, per_length, column)

@@ -181,10 +181,10 @@ contains
     real(wp), intent(in) :: axes(3, 3)      !< axes of the plane, in those of frame 0
     real(wp), intent(in) :: arm(3)          !< from the plane's origin to the point, in the axes of frame 0 [m]
     real(wp), intent(in) :: velocity(2)     !< relative to the base, in the plane's axes [m/s]
-    real(wp) :: v(3)
+    real(wp) :: v(3), unused(3)
 
-    v = velocity(1)*axes(:, 1) + velocity(2)*axes(:, 2)
-    if (base > 0) v = v + state%v(:, base) + cross(state%omega(:, base), arm)
+    call show_velocity([0.0_wp, velocity], base > 0, axes, [0.0_wp, 0.0_wp, 0.0_wp], state%omega(:, base), state%v(:, base), arm, &
+                       unused, v)
   end function seen_velocity
 
   !> The acceleration of a point that moves in a plane, in the axes of frame 0 [m/s^2].
@@ -195,11 +195,9 @@ contains
     real(wp), intent(in) :: arm(3)            !< from the plane's origin to the point, in the axes of frame 0 [m]
     real(wp), intent(in) :: velocity(2)       !< relative to the base, in the plane's axes [m/s]
     real(wp), intent(in) :: acceleration(2)   !< relative to the base, in the plane's axes [m/s^2]
-    real(wp) :: a(3), slip(3)
+    real(wp) :: a(3), unused(3)
 
-    a = acceleration(1)*axes(:, 1) + acceleration(2)*axes(:, 2)
-    if (base == 0) return
-    slip = cross(state%omega(:, base), arm) + 2.0_wp*(velocity(1)*axes(:, 1) + velocity(2)*axes(:, 2))
-    a = a + state%a(:, base) + cross(state%alpha(:, base), arm) + cross(state%omega(:, base), slip)
+    call show_acceleration([0.0_wp, velocity], [0.0_wp, acceleration], base > 0, axes, [0.0_wp, 0.0_wp, 0.0_wp], &
+                           state%omega(:, base), state%alpha(:, base), state%a(:, base), arm, unused, a)
   end function seen_acceleration
 end module mech9_planar_view
