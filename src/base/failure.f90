@@ -77,7 +77,7 @@ module mech9_failure
   !> A relative tolerance is not between 0 and 1: tolerance.
   integer, parameter :: failure_relative_tolerance = 27
   integer, parameter :: failure_absolute_tolerance = 28
-  !> An integration takes too many steps: t, t_stop, limit, step. Those that follow: t.
+  !> An integration takes too many steps: t, t_stop, limit, step. The six kinds after it, of steps that cannot be made, name t.
   integer, parameter :: failure_many_steps = 29
   integer, parameter :: failure_inaccurate_step = 30
   integer, parameter :: failure_unsolved_step = 31

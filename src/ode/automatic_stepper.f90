@@ -30,9 +30,9 @@ module mech9_automatic_stepper
   !> end, unless so many were stiff.
   real(wp), parameter :: few_steps = 120.0_wp
   integer, parameter :: many_stiff = 30
-  !> Steps of the implicit method between two looks at the stiffness, and before the first of them.
+  !> Number of steps of the implicit method before its stiffness is looked at for the first time, and from one look to the next.
   integer, parameter :: steps_between = 100
-  !> Looks at which the implicit method is left that did not pay.
+  !> The implicit method did not pay if it is left after this number of looks or fewer.
   integer, parameter :: few_looks = 2
   !> Evaluations in a step of the explicit method.
   real(wp), parameter :: explicit_evaluations = 12.0_wp

@@ -16,7 +16,7 @@ module mech9_butcher_tables
 
 contains
 
-  !> Kutta-Merson, the MERSOL of 1995. The difference b - d is Merson's estimate of the error,
+  !> Kutta and Merson's method, the paper's MERSOL. The difference b - d is Merson's estimate of the error,
   !> (2 k1 - 9 k3 + 8 k4 - k5)/30. The embedded solution is of fifth order where the equations are linear
   !> with constant coefficients, and of third order in general: the step must be chosen by the third.
   pure function kutta_merson() result(table)

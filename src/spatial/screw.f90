@@ -116,7 +116,7 @@ contains
     do j = 1, n_slides
       slides(:, j) = a(4:6, n_turns + j)/norm2(a(4:6, n_turns + j))
     end do
-    ! an only slide goes along the axis, so that the turning needs none of it; two slides go across the axis
+    ! a single slide goes along the axis, so that the turning needs none of it; two slides go across the axis
     screws = .false.
     if (n_turns == 1 .and. mod(n_slides, 2) == 0) screws = abs(dot_product(a(1:3, 1), a(4:6, 1))) > tolerance
   end subroutine split_space
