@@ -1,4 +1,5 @@
-!> A mechanism with all that its motion needs, and the checks of its accelerations, for tests of articulated bodies over clusters.
+!> A mechanism with all that its motion needs, and the checks of its accelerations, for tests of articulated bodies over open links
+!> and clusters. Programs that use it are linked for the counts of mech9_counted_memory.
 module mech9_cluster_case
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -13,9 +14,10 @@ module mech9_cluster_case
   use mech9_block_equations, only: block_rates
   use mech9_literal_lagrange, only: literal_type, literal_equations
   use mech9_testing, only: tester_type
+  use mech9_counted_memory, only: calls
   implicit none
   private
-  public :: cluster_case_type, prepare, check_motion, check_literally
+  public :: cluster_case_type, prepare, check_motion, check_literally, check_memory
 
   !> A mechanism and all that its motion needs.
   type :: cluster_case_type
@@ -63,10 +65,13 @@ contains
     real(wp) :: terms
     integer :: i, n
 
+    this%work%coefficients = 0.0_wp
     call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
     call test%no_error(err, why//': the motion is found')
     if (allocated(err)) return
     n = size(this%plan%independent)
+    if (this%dynamics%articulated) call test%near(maxval(abs(this%work%coefficients)), 0.0_wp, 0.0_wp, &
+                                                  why//': the coefficients are not computed')
     associate (ddq => this%work%accelerations)
       call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
       call test%no_error(err, why//': the equations are found')
@@ -80,6 +85,8 @@ contains
     call test%is_true(terms > 1.0_wp, why//': there is something to compare')
     call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-13_wp/this%conditioning, why//': Lagrange''s equations hold')
     call complete_accelerations(this%plan, this%dynamics, this%work, this%state)
+    call test%near(maxval(abs(this%state%ddq(this%plan%independent) - this%work%accelerations)), 0.0_wp, 0.0_wp, &
+                   why//': each acceleration belongs to its coordinate')
     do i = 1, size(this%plan%blocks)
       if (this%plan%blocks(i)%equations == 0) cycle
       if (allocated(right)) deallocate (right)
@@ -111,4 +118,21 @@ contains
     end associate
     call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-8_wp, why//': equation (19) taken literally holds')
   end subroutine check_literally
+
+  !> Evaluations allocate nothing.
+  subroutine check_memory(test, this)
+    type(tester_type), intent(inout) :: test         !< gets the outcome
+    type(cluster_case_type), intent(inout) :: this   !< mechanism, plans, state and equations
+    type(error_type), allocatable :: err
+    integer :: i, before
+
+    before = calls
+    call test%is_true(before > 0, 'the counter of allocations counts')
+    do i = 1, 10
+      call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
+      if (allocated(err)) exit
+    end do
+    call test%is_true(calls == before, 'ten evaluations allocate nothing')
+    call test%no_error(err, 'ten evaluations succeed')
+  end subroutine check_memory
 end module mech9_cluster_case

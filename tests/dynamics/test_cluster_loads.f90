@@ -9,7 +9,7 @@ program test_cluster_loads
   use mech9_force_load, only: force_load_type
   use mech9_spring_load, only: spring_load_type
   use mech9_coordinate_load, only: coordinate_load_type
-  use mech9_cluster_case, only: cluster_case_type, prepare, check_motion, check_literally
+  use mech9_cluster_case, only: cluster_case_type, prepare, check_motion, check_literally, check_memory
   use mech9_loaded_mechanisms, only: add_load
   use mech9_mixed_structures, only: structure_type, random_structure, add_open_link, add_loop, finished, below
   use mech9_random_geometry, only: random_vector
@@ -52,6 +52,7 @@ contains
       compared = compared + 1
       call test%is_true(this%plan%planar%used .eqv. planar, 'forces in space leave a plane mechanism in planar arithmetic')
       call check_motion(test, this, 'a structure with a user''s forces')
+      call check_memory(test, this)
       call check_twin(this, twin, .false.)
       if (planar) call check_twin(this, twin, .true.)
       if (size(this%plan%independent) > 4 .or. this%conditioning < 0.1_wp .or. literal == 8) cycle

@@ -8,10 +8,9 @@ program test_clusters
   use mech9_random, only: random_type
   use mech9_cholesky, only: cholesky_factorize
   use mech9_lagrange, only: find_motion, find_equations
-  use mech9_cluster_case, only: cluster_case_type, prepare, check_motion, check_literally
+  use mech9_cluster_case, only: cluster_case_type, prepare, check_motion, check_literally, check_memory
   use mech9_mixed_structures, only: structure_type, random_structure, add_open_link, add_loop, add_ladder, finished
   use mech9_testing, only: tester_type
-  use mech9_counted_memory, only: calls
   implicit none
 
   type(tester_type) :: test
@@ -42,7 +41,7 @@ contains
       if (.not. found .or. flat%conditioning < 0.02_wp) cycle
       compared = compared + 1
       call check_motion(test, flat, 'a structure')
-      call check_memory(flat)
+      call check_memory(test, flat)
       if (size(flat%plan%independent) <= 4 .and. flat%conditioning > 0.1_wp .and. literal < 12) then
         call check_literally(test, flat, flat%model, 'a structure', by_differences)
         if (by_differences) literal = literal + 1
@@ -134,18 +133,4 @@ contains
     call test%is_true(all(err%failure%coordinates == this%plan%independent(failed_at)), &
                       'the error names the coordinate of the singular coefficients')
   end subroutine without_inertia
-
-  subroutine check_memory(this)
-    type(cluster_case_type), intent(inout) :: this   !< mechanism, plans, state and equations
-    type(error_type), allocatable :: err
-    integer :: i, before
-
-    before = calls
-    do i = 1, 10
-      call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-      if (allocated(err)) exit
-    end do
-    call test%is_true(calls == before, 'ten evaluations allocate nothing')
-    call test%no_error(err, 'ten evaluations succeed')
-  end subroutine check_memory
 end program test_clusters

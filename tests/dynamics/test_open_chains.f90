@@ -12,29 +12,14 @@ program test_open_chains
   use mech9_cholesky, only: cholesky_factorize
   use mech9_screw_pair, only: screw_pair_type, helical_pair
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
-  use mech9_dynamics_plan, only: make_dynamics_plan
-  use mech9_lagrange_work, only: new_lagrange_work
-  use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
+  use mech9_lagrange, only: find_motion, find_equations
+  use mech9_cluster_case, only: cluster_case_type, prepare, check_motion, check_memory
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame, general_loop
   use mech9_curved_pair, only: curved_pair_type
   use mech9_loaded_mechanisms, only: five_bar, load_everything, without_loads, add_body
   use mech9_random_geometry, only: random_vector, random_unit
   use mech9_testing, only: tester_type, message_of
-  use mech9_counted_memory, only: calls
   implicit none
-
-  !> A mechanism and all that its motion needs.
-  type :: case_type
-    type(model_type) :: model
-    type(plan_type) :: plan
-    type(state_type) :: state
-    type(dynamics_plan_type) :: dynamics
-    type(lagrange_work_type) :: work
-  end type case_type
 
   type(tester_type) :: test
 
@@ -48,7 +33,7 @@ contains
 
   !> Trees of 2 to 13 steps; on every second one some links have no mass, but never the last of a branch.
   subroutine random_trees()
-    type(case_type) :: tree
+    type(cluster_case_type) :: tree
     type(random_type) :: random
     integer, allocatable :: links(:, :)
     integer :: trial, m
@@ -60,10 +45,8 @@ contains
       call random_tree(random, m, planar, links, tree%model)
       call load_everything(random, tree%model)
       if (mod(trial, 2) == 0) call lighten(random, links, merge(1, 4, planar), tree%model)
-      call prepare(tree, 'a tree')
+      call check_articulated(tree, 'a tree')
       call test%is_true(tree%plan%planar%used .or. .not. planar, 'a tree in the plane takes planar arithmetic')
-      call check_motion(tree, 'a tree')
-      call check_memory(tree)
     end do
   end subroutine random_trees
 
@@ -178,74 +161,26 @@ contains
     end do
   end subroutine lighten
 
-  !> Plan, and some rates.
-  subroutine prepare(this, why)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
-    character(len=*), intent(in) :: why      !< the statement that is checked, printed where it is wrong
-    type(error_type), allocatable :: err
-    integer :: i
+  !> The mechanism moves by articulated bodies, whose accelerations satisfy Lagrange's equations.
+  subroutine check_articulated(this, why)
+    type(cluster_case_type), intent(inout) :: this   !< with the model
+    character(len=*), intent(in) :: why              !< the mechanism, printed where something is wrong
+    logical :: found
 
-    call make_plan(this%model%mechanism, this%model%problem%partition, this%model%problem%initial%position, this%plan, &
-                   this%state, err)
-    call test%no_error(err, why//': there is a plan')
-    call make_dynamics_plan(this%model%mechanism, this%plan, this%dynamics)
-    this%work = new_lagrange_work(this%plan, this%dynamics)
-    this%state%dq(this%plan%independent) = [(1.3_wp*cos(2.0_wp*i), i=1, size(this%plan%independent))]
-  end subroutine prepare
-
-  !> The accelerations satisfy a ddq = Q - h. The rest is round-off of the terms: of sums over all links
-  !> along a chain, some hundreds of units.
-  subroutine check_motion(this, why)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
-    character(len=*), intent(in) :: why      !< the statement that is checked, printed where it is wrong
-    type(error_type), allocatable :: err
-    real(wp), allocatable :: ddq(:), a(:, :), left(:)
-    real(wp) :: terms
-    integer :: i, n
-
+    call prepare(this, .false., found)
+    call test%is_true(found, why//': there is a plan')
+    if (.not. found) return
     call test%is_true(this%dynamics%articulated, why//': articulated bodies are taken')
-    call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%no_error(err, why//': the motion is found')
-    if (allocated(err)) return
-    n = size(this%plan%independent)
-    call test%near(maxval(abs(this%work%coefficients)), 0.0_wp, 0.0_wp, why//': the coefficients are not computed')
-    ddq = this%work%accelerations
-    call complete_accelerations(this%plan, this%dynamics, this%work, this%state)
-    call test%near(maxval(abs(this%state%ddq(this%plan%independent) - ddq)), 0.0_wp, 0.0_wp, &
-                   why//': each acceleration belongs to its coordinate')
-    call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    call test%no_error(err, why//': the equations are found')
-    a = this%work%coefficients
-    do i = 1, n
-      a(i, i + 1:) = a(i + 1:, i)
-    end do
-    left = matmul(a, ddq) - this%work%forces + this%work%velocity_terms
-    terms = maxval(matmul(abs(a), abs(ddq)) + abs(this%work%forces) + abs(this%work%velocity_terms))
-    call test%is_true(terms > 1.0_wp, why//': there is something to compare')
-    call test%near(maxval(abs(left))/terms, 0.0_wp, 1.0e-13_wp, why//': Lagrange''s equations hold')
-  end subroutine check_motion
-
-  subroutine check_memory(this)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
-    type(error_type), allocatable :: err
-    integer :: i, before
-
-    before = calls
-    call test%is_true(before > 0, 'the counter of allocations counts')
-    do i = 1, 10
-      call find_motion(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-      if (allocated(err)) exit
-    end do
-    call test%is_true(calls == before, 'ten evaluations allocate nothing')
-    call test%no_error(err, 'ten evaluations succeed')
-  end subroutine check_memory
+    call check_motion(test, this, why)
+    call check_memory(test, this)
+  end subroutine check_articulated
 
   !> Sixty links of 1 m in a row, turning about x and y by turns.
   subroutine long_chain()
     integer, parameter :: m = 60
     real(wp), parameter :: top(3) = [0.0_wp, 0.0_wp, 1.0_wp], foot(3) = 0.0_wp
     real(wp) :: axis(3)
-    type(case_type) :: chain
+    type(cluster_case_type) :: chain
     integer :: k
 
     call new_mechanism(m + 1, reshape([(k, k + 1, k=1, m)], [2, m]), [(k, k=1, m)], chain%model)
@@ -257,18 +192,17 @@ contains
       call add_body(chain%model, k + 1, 1.0_wp, 0.5_wp*top, 0.08_wp*identity)
       chain%model%problem%initial%position(k) = 0.3_wp*sin(real(k, wp))
     end do
-    call prepare(chain, 'sixty links')
-    call check_motion(chain, 'sixty links')
-    call check_memory(chain)
+    call check_articulated(chain, 'sixty links')
   end subroutine long_chain
 
   !> The error is that of the coefficients: mass that is missing at the end, and mass that turns about
   !> two axes in one line, of which the second is left no inertia but round-off.
   subroutine without_inertia()
-    type(case_type) :: chain
+    type(cluster_case_type) :: chain
     type(random_type) :: random
     real(wp) :: point(3), axis(3)
     integer :: trial, massive
+    logical :: found
 
     do trial = 1, 20
       call new_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), [1, 2, 3], chain%model)
@@ -281,13 +215,14 @@ contains
       chain%model%problem%initial%position = [0.4_wp, random%symmetric(), random%symmetric()]
       massive = merge(3, 4, mod(trial, 2) == 0)
       call add_body(chain%model, massive, 1.0_wp + 0.5_wp*random%symmetric(), random_vector(random), 0.3_wp*identity)
-      call prepare(chain, 'without inertia')
+      call prepare(chain, .false., found)
+      call test%is_true(found, 'a chain without inertia has a plan')
       call check_refusal(chain)
     end do
   end subroutine without_inertia
 
   subroutine check_refusal(this)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
+    type(cluster_case_type), intent(inout) :: this   !< mechanism, plans, state and equations
     type(error_type), allocatable :: err, none
     integer :: failed_at
 
@@ -306,14 +241,15 @@ contains
 
   !> One closed cluster on link 1, in the plane or in space, needs its coefficients in any case.
   subroutine closed_chains()
-    type(case_type) :: closed
+    type(cluster_case_type) :: closed
+    logical :: found
 
     call five_bar(closed%model)
-    call prepare(closed, 'five-bar')
-    call test%is_true(.not. closed%dynamics%articulated, 'articulated bodies are not taken for a five-bar')
+    call prepare(closed, .false., found)
+    call test%is_true(found .and. .not. closed%dynamics%articulated, 'articulated bodies are not taken for a five-bar')
     call general_loop(closed%model)
     call without_loads(closed%model)
-    call prepare(closed, 'spatial loop')
-    call test%is_true(.not. closed%dynamics%articulated, 'articulated bodies are not taken for a spatial loop')
+    call prepare(closed, .false., found)
+    call test%is_true(found .and. .not. closed%dynamics%articulated, 'articulated bodies are not taken for a spatial loop')
   end subroutine closed_chains
 end program test_open_chains
