@@ -13,14 +13,10 @@ program bench_growth
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
-  use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_driven_simulation, only: assemble_driven
   use mech9_free_simulation, only: assemble_free
-  use mech9_bench_support, only: read_data_file, stop_at, median, argument, peak_memory
+  use mech9_bench_support, only: read_data_file, stop_at, time_evaluations, median, passes, argument, peak_memory
   implicit none
-
-  !> Repetitions for a median.
-  integer, parameter :: passes = 5
 
   call run()
 contains
@@ -30,7 +26,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
-    real(wp) :: clock, reading, planning, position, evaluation
+    real(wp) :: clock, reading, planning, position, evaluation, memory
     integer :: n, status
     character(len=:), allocatable :: word
 
@@ -61,7 +57,7 @@ contains
       call time_positions(model, plan, start, position)
       start%dq(plan%independent) = model%problem%initial%velocity(plan%independent)
     end if
-    call time_evaluations(model, plan, start, evaluation)
+    call time_evaluations(model, plan, start, 0, evaluation, memory)
     print '(2i8,2f12.5,2f14.4,f10.1)', n, plan%n_links, reading, planning, position, evaluation, peak_memory()
   end subroutine run
 
@@ -151,34 +147,4 @@ contains
     end do
     time = 1.0e6_wp*median(each)
   end subroutine time_positions
-
-  !> Median time of one evaluation of the motion [us].
-  subroutine time_evaluations(model, plan, start, time)
-    type(model_type), intent(in), target :: model   !< a ladder or an open chain
-    type(plan_type), intent(in) :: plan             !< its plan
-    type(state_type), intent(in) :: start           !< assembled position at the start, with the independent rates
-    real(wp), intent(out) :: time                   !< of an evaluation, median of the passes [us]
-    type(motion_system_type), allocatable :: system
-    type(error_type), allocatable :: err
-    real(wp), allocatable :: y(:), rates(:)
-    real(wp) :: each(passes), begin
-    integer :: pass, i, evaluations
-
-    allocate (system)
-    call set_motion_system(model, model%problem%partition, plan, start, system, err)
-    call stop_at(err, 'the motion')
-    y = system%vector()
-    allocate (rates(size(y)), source=0.0_wp)
-    evaluations = max(10, min(3000, 200000/plan%n_links))
-    do pass = 1, passes
-      begin = seconds()
-      do i = 1, evaluations
-        call system%rate(0.0_wp, y, rates, err)
-        if (allocated(err)) exit
-      end do
-      each(pass) = (seconds() - begin)/evaluations
-      call stop_at(err, 'the motion')
-    end do
-    time = 1.0e6_wp*median(each)
-  end subroutine time_evaluations
 end program bench_growth

@@ -14,13 +14,9 @@ program bench_structures
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_free_simulation, only: assemble_free
-  use mech9_bench_support, only: read_data_file, stop_at, median, argument, data_memory
+  use mech9_bench_support, only: read_data_file, stop_at, time_evaluations, argument
   implicit none
-
-  !> Repetitions for a median.
-  integer, parameter :: passes = 5
 
   !> A data file under construction: its groups, and the numbers given so far.
   type :: draft_type
@@ -250,38 +246,4 @@ contains
     text = to_text(across)//',0,'//to_text(along)
     if (draft%is_planar) text = to_text(along)//','//to_text(across)//',0'
   end function place
-
-  !> Median time of one evaluation of the motion, and the memory of the process then.
-  subroutine time_evaluations(model, plan, start, exactly, time, memory)
-    type(model_type), intent(in), target :: model   !< the mechanism with its problem
-    type(plan_type), intent(in) :: plan             !< its plan
-    type(state_type), intent(in) :: start           !< assembled position at the start, with the independent rates
-    integer, intent(in) :: exactly                  !< number of evaluations; 0: as many as the clock needs
-    real(wp), intent(out) :: time                   !< of an evaluation, median of the passes [us]
-    real(wp), intent(out) :: memory                 !< for data [MB]
-    type(motion_system_type), allocatable :: system
-    type(error_type), allocatable :: err
-    real(wp), allocatable :: y(:), rates(:)
-    real(wp) :: each(passes), begin
-    integer :: pass, i, evaluations
-
-    allocate (system)
-    call set_motion_system(model, model%problem%partition, plan, start, system, err)
-    call stop_at(err, 'the motion')
-    y = system%vector()
-    allocate (rates(size(y)), source=0.0_wp)
-    evaluations = max(10, min(3000, 200000/plan%n_links))
-    if (exactly > 0) evaluations = exactly
-    do pass = 1, merge(1, passes, exactly > 0)
-      begin = seconds()
-      do i = 1, evaluations
-        call system%rate(0.0_wp, y, rates, err)
-        if (allocated(err)) exit
-      end do
-      each(pass) = (seconds() - begin)/evaluations
-      call stop_at(err, 'the motion')
-    end do
-    time = 1.0e6_wp*median(each(:merge(1, passes, exactly > 0)))
-    memory = data_memory()
-  end subroutine time_evaluations
 end program bench_structures

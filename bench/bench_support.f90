@@ -1,16 +1,23 @@
-!> Procedures that the benchmarks share: reading a mechanism, medians, and an end that tells why.
+!> Procedures that the benchmarks share: reading a mechanism, times of evaluations, medians, memory, and an end that tells why.
 module mech9_bench_support
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_clock, only: seconds
   use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
   use mech9_reader, only: read_model
   implicit none
   private
-  public :: read_data_file, stop_at, median, argument, peak_memory, data_memory
+  public :: read_data_file, stop_at, time_evaluations, median, passes, argument, peak_memory
+
+  !> Repetitions for a median.
+  integer, parameter :: passes = 5
 
 contains
 
@@ -38,6 +45,40 @@ contains
     write (error_unit, '(3a)') place, ': ', err%message
     stop 1
   end subroutine stop_at
+
+  !> Median time of one evaluation of the motion, and the memory of the process then.
+  subroutine time_evaluations(model, plan, start, exactly, time, memory)
+    type(model_type), intent(in), target :: model   !< the mechanism with its problem
+    type(plan_type), intent(in) :: plan             !< its plan
+    type(state_type), intent(in) :: start           !< assembled position at the start, with the independent rates
+    integer, intent(in) :: exactly                  !< number of evaluations; 0: as many as the clock needs
+    real(wp), intent(out) :: time                   !< of an evaluation, median of the passes [us]
+    real(wp), intent(out) :: memory                 !< for data [MB]
+    type(motion_system_type), allocatable :: system
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: y(:), rates(:)
+    real(wp) :: each(passes), begin
+    integer :: pass, i, evaluations
+
+    allocate (system)
+    call set_motion_system(model, model%problem%partition, plan, start, system, err)
+    call stop_at(err, 'the motion')
+    y = system%vector()
+    allocate (rates(size(y)), source=0.0_wp)
+    evaluations = max(10, min(3000, 200000/plan%n_links))
+    if (exactly > 0) evaluations = exactly
+    do pass = 1, merge(1, passes, exactly > 0)
+      begin = seconds()
+      do i = 1, evaluations
+        call system%rate(0.0_wp, y, rates, err)
+        if (allocated(err)) exit
+      end do
+      each(pass) = (seconds() - begin)/evaluations
+      call stop_at(err, 'the motion')
+    end do
+    time = 1.0e6_wp*median(each(:merge(1, passes, exactly > 0)))
+    memory = data_memory()
+  end subroutine time_evaluations
 
   !> The middle one of some numbers.
   pure real(wp) function median(numbers)
