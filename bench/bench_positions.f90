@@ -102,7 +102,7 @@ contains
 
   !> Time for the positions of all coordinates and of the last point, with all checks of the branch.
   subroutine time_positions(model, plan, start, time)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(in) :: plan             !< its plan, without the parts that positions do not need
     type(state_type), intent(in) :: start           !< assembled position at the start
     real(wp), intent(out) :: time                   !< of all positions together [s]

@@ -87,7 +87,7 @@ contains
   end subroutine run
 
   subroutine tight_run(model, problem, method, values)
-    type(model_type), intent(inout), target :: model       !< the model, whose method and tolerances are set
+    type(model_type), intent(inout), target :: model   !< the model, whose method and tolerances are set
     type(problem_type), intent(in) :: problem          !< the motion
     character(len=*), intent(in) :: method             !< name of the method
     real(wp), allocatable, intent(out) :: values(:)    !< columns of the problem at the end [rad, m]
@@ -101,7 +101,7 @@ contains
   end subroutine tight_run
 
   subroutine set_method(model, method, tolerance)
-    type(model_type), intent(inout), target :: model       !< the model, whose method and tolerances are set
+    type(model_type), intent(inout), target :: model   !< the model, whose method and tolerances are set
     character(len=*), intent(in) :: method             !< name of the method
     real(wp), intent(in) :: tolerance                  !< relative, and absolute [rad, m, per s]
 
@@ -112,7 +112,7 @@ contains
 
   !> The rows of one method.
   subroutine time_method(model, problem, method, exact, quick)
-    type(model_type), intent(inout), target :: model       !< the model, whose method and tolerances are set
+    type(model_type), intent(inout), target :: model   !< the model, whose method and tolerances are set
     type(problem_type), intent(in) :: problem          !< the motion
     character(len=*), intent(in) :: method             !< name of the method
     real(wp), intent(in) :: exact(:)                   !< columns of the problem at the end [rad, m]
@@ -198,7 +198,7 @@ contains
 
   !> One run from start to end: the values there, and the time it took besides reading and planning.
   subroutine integrate(model, problem, values, counts, time, err)
-    type(model_type), intent(in), target :: model                  !< the model, with method and tolerances
+    type(model_type), intent(in), target :: model              !< the model, with method and tolerances
     type(problem_type), intent(in) :: problem                  !< the motion
     real(wp), allocatable, intent(out) :: values(:)            !< columns of the problem at the end [rad, m]
     type(integration_statistics_type), intent(out) :: counts   !< work of the integrator

@@ -25,7 +25,7 @@ contains
   subroutine read_data_file(path, needs_drives, model)
     character(len=*), intent(in) :: path                !< of the data file
     logical, intent(in) :: needs_drives                 !< each independent coordinate must have a drive
-    type(model_type), intent(out) :: model      !< all that the file says, checked
+    type(model_type), intent(out) :: model              !< all that the file says, checked
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 

@@ -93,7 +93,7 @@ contains
   !> The user is told the positions of all coordinates, and the mobility by the geometry.
   subroutine tell_start(conversation, model, plan, start)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
-    type(model_type), intent(in) :: model             !< the model
+    type(model_type), intent(in) :: model                 !< the model
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(state_type), intent(in) :: start                 !< position at the start
     type(mobility_report_type) :: report

@@ -117,7 +117,7 @@ contains
 
   !> The facts about a run, for reports that programs read.
   subroutine dynamic_facts(model, plan, outcome, simulation, facts)
-    type(model_type), intent(in) :: model                 !< the model
+    type(model_type), intent(in) :: model                     !< the model
     type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
@@ -173,7 +173,7 @@ contains
   !> Write the report as JSON, with structure, coefficients of motion and events.
   subroutine save_dynamic_report(path, model, plan, table_path, diagnostics, outcome, simulation, err)
     character(len=*), intent(in) :: path                      !< of the report
-    type(model_type), intent(in) :: model                 !< the model
+    type(model_type), intent(in) :: model                     !< the model
     type(plan_type), intent(in) :: plan                       !< at the start
     character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
     type(diagnostics_type), intent(in) :: diagnostics         !< messages and exit code of the run

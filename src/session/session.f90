@@ -157,7 +157,7 @@ contains
   subroutine report_briefly(task, options, model, choice, diagnostics, code)
     class(task_type), intent(in) :: task                   !< the work of this program
     type(command_line_type), intent(in) :: options         !< the command line
-    type(model_type), intent(in) :: model              !< the model
+    type(model_type), intent(in) :: model                  !< the model
     type(diagnostics_type), intent(in) :: choice           !< judgement of the choice of independent coordinates
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     integer, intent(inout) :: code                         !< exit code of the program; of the first error

@@ -42,7 +42,7 @@ contains
 
   !> The equations at the closed position in `state`, for its rates of the independent coordinates.
   subroutine literal_equations(model, plan, state, literal, err)
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     type(plan_type), intent(in) :: plan                 !< its plan
     type(state_type), intent(in) :: state               !< a closed position
     type(literal_type), intent(out) :: literal          !< coefficients, velocity terms and forces
@@ -133,7 +133,7 @@ contains
 
   !> Derivatives of a snapshot with respect to each independent coordinate: (snapshot, I).
   subroutine differentiate(model, plan, state, derivatives, err)
-    type(model_type), intent(in) :: model                 !< the model
+    type(model_type), intent(in) :: model                     !< the model
     type(plan_type), intent(in) :: plan                       !< its plan
     type(state_type), intent(in) :: state                     !< its state
     real(wp), allocatable, intent(out) :: derivatives(:, :)   !< (snapshot,I) by the independent coordinates
@@ -159,7 +159,7 @@ contains
 
   !> All numbers that are differentiated: of each body, then of each load.
   function snapshot(model, plan, state) result(numbers)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(in) :: plan             !< its plan
     type(state_type), intent(in) :: state           !< its state
     real(wp) :: numbers(body_size*size(model%mechanism%bodies) + load_size*size(model%mechanism%loads))
@@ -214,7 +214,7 @@ contains
 
   !> (21): sum of m du/dq_p . du/dq_r + sum_jkl dA_jk/dq_p dA_jl/dq_r J'_kl.
   pure function coefficients_of(model, derivatives) result(a)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     real(wp), intent(in) :: derivatives(:, :)       !< (snapshot,I) by the independent coordinates
     real(wp) :: a(size(derivatives, 2), size(derivatives, 2))
     real(wp) :: moments(3, 3), rotation_p(3, 3), rotation_r(3, 3)
@@ -244,7 +244,7 @@ contains
 
   !> (25): forces and couples on links; springs as -dV/dq, dampers by the rates of their lengths.
   function forces_of(model, here, derivatives, rates) result(forces)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     real(wp), intent(in) :: here(:)                 !< snapshot
     real(wp), intent(in) :: derivatives(:, :)       !< (snapshot,I) by the independent coordinates
     real(wp), intent(in) :: rates(:)                !< of the independent coordinates

@@ -44,7 +44,7 @@ contains
   !> The paper's Fig. 1 with the independent coordinate `driven`; all loads, also across the plane.
   subroutine loaded_fig1(driven, model)
     integer, intent(in) :: driven                    !< number of the independent coordinate
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     type(random_type) :: random
 
     call fig1(driven, model)
@@ -87,7 +87,7 @@ contains
   !>   branch   11-14-15                        coordinates 15, 16
   subroutine two_loops(independent, model)
     integer, intent(in) :: independent(2)            !< those of the loops
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     integer, parameter :: links(2, 16) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8, 1, &
                                                   3, 9, 10, 9, 10, 11, 11, 12, 12, 13, 13, 5, 11, 14, 14, 15], [2, 16])
     type(random_type) :: random
@@ -113,7 +113,7 @@ contains
   end subroutine two_loops
 
   subroutine add_curved(model, k, reference, moving)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: k                           !< coordinate of the pair
     integer, intent(in) :: reference                   !< number of its reference link
     integer, intent(in) :: moving                      !< number of its moving link
@@ -149,7 +149,7 @@ contains
   !> frame, on every coordinate.
   subroutine load_everything(random, model)
     type(random_type), intent(inout) :: random         !< source of the random numbers
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer :: i, k, last
 
     call without_loads(model)
@@ -195,7 +195,7 @@ contains
 
   !> Points with mass on a link: together as one body, by its mass, centre and tensor, or a body each.
   subroutine add_point_masses(model, link, points, together)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: link                        !< link that carries the points
     real(wp), intent(in) :: points(:, :)               !< (4, n): x, y, z, mass
     logical, intent(in) :: together                    !< one body, not one for each point
@@ -221,7 +221,7 @@ contains
   end subroutine add_point_masses
 
   subroutine add_body(model, link, mass, centre, inertia)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: link                        !< its number
     real(wp), intent(in) :: mass                       !< [kg]
     real(wp), intent(in) :: centre(3)                  !< mass centre in the link [m]
@@ -231,7 +231,7 @@ contains
   end subroutine add_body
 
   subroutine add_load(model, load)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     class(load_type), intent(in) :: load               !< load that is added
     type(load_slot_type), allocatable :: longer(:)
     integer :: i

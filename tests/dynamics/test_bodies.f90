@@ -39,7 +39,7 @@ contains
 
   !> Assemble and work out the motion for some rates of the independent coordinates.
   subroutine find(model, plan, dynamics, work, err)
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     type(plan_type), intent(out) :: plan                !< its plan
     type(dynamics_plan_type), intent(out) :: dynamics   !< plan of its dynamics
     type(lagrange_work_type), intent(out) :: work       !< the equations at the start
@@ -74,8 +74,8 @@ contains
   !> dozens of units of round-off of the largest number.
   subroutine check_same(test, first, second, why)
     type(tester_type), intent(inout) :: test     !< counts the checks
-    type(model_type), intent(in) :: first    !< first mechanism
-    type(model_type), intent(in) :: second   !< second mechanism
+    type(model_type), intent(in) :: first        !< first mechanism
+    type(model_type), intent(in) :: second       !< second mechanism
     character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics

@@ -42,7 +42,7 @@ contains
   !> 1e-9 of the largest number are left.
   subroutine compare(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(state_type) :: state

@@ -40,7 +40,7 @@ contains
 
   subroutine check_all(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(model_type) :: conservative
 
@@ -80,7 +80,7 @@ contains
 
   !> The assembled start with some rates, and everything that its motion needs.
   subroutine begin(model, plan, dynamics, state, work, err)
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     type(plan_type), intent(out) :: plan                !< its plan
     type(dynamics_plan_type), intent(out) :: dynamics   !< plan of its dynamics
     type(state_type), intent(out) :: state              !< at the start, with some rates
@@ -103,7 +103,7 @@ contains
   !> closed coordinates are their rates and accelerations, that of the kinetic energy is the power of all forces.
   subroutine check_over_time(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     !> The accelerations, some hundreds, bend the path within a tenth of a second.
     real(wp), parameter :: h = 1.0_wp/512.0_wp
@@ -154,7 +154,7 @@ contains
   !> Q_p = -dV/dq_p where all loads have a potential energy.
   subroutine check_potential(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     real(wp), parameter :: h = 1.0_wp/128.0_wp
     type(plan_type) :: plan

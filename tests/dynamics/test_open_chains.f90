@@ -56,7 +56,7 @@ contains
     integer, intent(in) :: m                           !< coordinates
     logical, intent(in) :: planar                      !< only pairs about and across z
     integer, allocatable, intent(out) :: links(:, :)   !< (2,m) reference and moving link of each coordinate
-    type(model_type), intent(out) :: model         !< the model
+    type(model_type), intent(out) :: model             !< the model
     integer :: order(m), i, k, other
 
     order = [(i, i=1, m)]
@@ -86,7 +86,7 @@ contains
     type(random_type), intent(inout) :: random         !< source of the random numbers
     integer, intent(in) :: k                           !< its coordinate
     integer, intent(in) :: links(2)                    !< reference and moving link
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     type(screw_pair_type) :: helix
     type(curved_pair_type) :: curved
     type(pose_type) :: here, there
@@ -114,7 +114,7 @@ contains
     type(random_type), intent(inout) :: random         !< source of the random numbers
     integer, intent(in) :: k                           !< its coordinate
     integer, intent(in) :: links(2)                    !< reference and moving link
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     type(pose_type) :: here, there
     real(wp) :: along(3)
     logical :: slides
@@ -146,7 +146,7 @@ contains
     type(random_type), intent(inout) :: random         !< source of the random numbers
     integer, intent(in) :: links(:, :)                 !< (2,M) reference and moving link of each pair
     integer, intent(in) :: most                        !< links
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer :: i, light, toss
 
     light = 0

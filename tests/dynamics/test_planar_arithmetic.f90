@@ -153,7 +153,7 @@ contains
   !> Both arithmetics on one mechanism. Each number is a sum of some dozens of terms, and what is solved for
   !> is known to round-off over the conditioning of the chains, accelerations to that once more.
   subroutine compare(model, is_planar, why)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     logical, intent(in) :: is_planar                   !< it must have planar arithmetic
     character(len=*), intent(in) :: why                !< the statement that is checked, printed where it is wrong
     type(result_type) :: flat, space
@@ -181,7 +181,7 @@ contains
 
   !> The motion of a mechanism at its start, with some rates.
   subroutine evaluate(model, in_space, why, result)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     logical, intent(in) :: in_space                 !< in spatial arithmetic even where planar arithmetic would do
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(result_type), intent(out) :: result        !< all numbers of its motion

@@ -67,7 +67,7 @@ contains
   !> The mechanism that the text of a data file describes.
   subroutine mechanism_from_text(text, model, diagnostics)
     character(len=*), intent(in) :: text                 !< of a data file
-    type(model_type), intent(out) :: model       !< the mechanism that it describes
+    type(model_type), intent(out) :: model               !< the mechanism that it describes
     type(diagnostics_type), intent(out) :: diagnostics   !< errors in it
     type(document_type) :: document
 

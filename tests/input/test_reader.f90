@@ -30,7 +30,7 @@ contains
   subroutine read_well(text, model, why)
     character(len=*), intent(in) :: text             !< of a good data file
     character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
-    type(model_type), intent(out) :: model   !< the mechanism that it describes
+    type(model_type), intent(out) :: model           !< the mechanism that it describes
     type(diagnostics_type) :: diagnostics
 
     call mechanism_from_text(text, model, diagnostics)
@@ -40,7 +40,7 @@ contains
 
   !> Pose of a pair at q, held against a rotation and a translation.
   subroutine pose_is(model, k, q, r, p, why)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     integer, intent(in) :: k                        !< coordinate of the pair
     real(wp), intent(in) :: q                       !< its value [rad or m]
     real(wp), intent(in) :: r(3, 3)                 !< the right rotation
@@ -108,8 +108,8 @@ contains
   end subroutine sources_of_structure
 
   subroutine same_structure(a, b, why)
-    type(model_type), intent(in) :: a   !< first mechanism
-    type(model_type), intent(in) :: b   !< second mechanism
+    type(model_type), intent(in) :: a       !< first mechanism
+    type(model_type), intent(in) :: b       !< second mechanism
     character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
     integer :: k
 

@@ -21,7 +21,7 @@ contains
 
   subroutine set(setting, model, answer)
     character(len=*), intent(in) :: setting                !< argument of --set
-    type(model_type), intent(out) :: model         !< with it
+    type(model_type), intent(out) :: model                 !< with it
     character(len=:), allocatable, intent(out) :: answer   !< text that is printed
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics

@@ -28,7 +28,7 @@ contains
   !> Plan and assemble at time t, and start there. Without a position the test ends.
   subroutine begin_motion(test, model, t, plan, driven, start_error)
     type(tester_type), intent(inout) :: test                              !< counts the checks
-    type(model_type), intent(in) :: model                             !< the model
+    type(model_type), intent(in) :: model                                 !< the model
     real(wp), intent(in) :: t                                             !< time of the start [s]
     type(plan_type), intent(out) :: plan                                  !< its plan
     type(driven_motion_type), intent(out) :: driven                       !< its driven motion, at the start

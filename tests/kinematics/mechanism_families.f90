@@ -30,7 +30,7 @@ contains
     integer, intent(in) :: links(:, :)               !< (2,M) reference and moving link of each pair
     integer, intent(in) :: cq(:)                     !< independent coordinates
     type(axis_type), intent(in) :: axes(:)           !< of each pair in the home position
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     integer :: k
 
     call new_mechanism(n_links, links, cq, model)

@@ -98,7 +98,7 @@ contains
     real(wp), intent(in) :: offset                   !< height of the guide above the crank's pivot [m]
     real(wp), intent(in) :: angle                    !< of the crank, for the guesses
     integer, intent(in) :: branch                    !< +1: the slider is right of the crank's pin
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
     real(wp) :: across, along, direction
 
@@ -123,7 +123,7 @@ contains
     real(wp), intent(in) :: angle                    !< of the crank, for the guesses
     integer, intent(in) :: branch                    !< of the four-bar, +1 or -1
     integer, intent(in) :: second                    !< branch of the two links, +1 or -1
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     integer, parameter :: links(2, 7) = reshape([1, 2, 2, 3, 3, 4, 1, 4, 3, 5, 5, 6, 1, 6], [2, 7])
     real(wp) :: q(7), swing, point(2), pin(2), link_5, link_6
 

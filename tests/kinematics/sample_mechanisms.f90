@@ -21,7 +21,7 @@ contains
     integer, intent(in) :: n_links                   !< links, the frame included
     integer, intent(in) :: links(:, :)               !< (2,M) reference and moving link of each pair
     integer, intent(in) :: cq(:)                     !< independent coordinates
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     type(finding_type), allocatable :: findings(:)
     logical, allocatable :: independent(:)
     integer :: m
@@ -48,7 +48,7 @@ contains
   end function frame
 
   subroutine add_pair(model, k, reference, moving, pair)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: k                           !< coordinate of the pair
     integer, intent(in) :: reference                   !< number of its reference link
     integer, intent(in) :: moving                      !< number of its moving link
@@ -61,7 +61,7 @@ contains
   end subroutine add_pair
 
   subroutine add_revolute(model, k, reference, moving, in_reference, in_moving)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: k                           !< coordinate of the pair
     integer, intent(in) :: reference                   !< number of its reference link
     integer, intent(in) :: moving                      !< number of its moving link
@@ -72,7 +72,7 @@ contains
   end subroutine add_revolute
 
   subroutine add_prismatic(model, k, reference, moving, in_reference, in_moving)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: k                           !< coordinate of the pair
     integer, intent(in) :: reference                   !< number of its reference link
     integer, intent(in) :: moving                      !< number of its moving link
@@ -84,7 +84,7 @@ contains
 
   !> Drive a coordinate by c0 + c1 t + ...
   subroutine drive(model, k, coefficients)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: k                           !< the coordinate
     real(wp), intent(in) :: coefficients(:)            !< of 1, t, t^2, ...
     type(polynomial_drive_type) :: polynomial
@@ -99,7 +99,7 @@ contains
   !> The paper's Fig. 1 with dimensions; driven at the coordinate `driven`.
   subroutine fig1(driven, model)
     integer, intent(in) :: driven                    !< number of the driven coordinate
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     integer, parameter :: links(2, 7) = reshape([1, 6, 6, 5, 3, 5, 2, 3, 1, 2, 1, 4, 3, 4], [2, 7])
     real(wp), parameter :: at(2, 7) = reshape([-1.0_wp, 2.5_wp, 1.8_wp, 0.0_wp, 1.6_wp, 1.2_wp, 1.0_wp, 0.0_wp, &
                                                0.0_wp, 0.0_wp, 4.0_wp, 0.0_wp, 3.2_wp, 0.0_wp], [2, 7])
@@ -121,7 +121,7 @@ contains
     real(wp), intent(in) :: coupler                  !< length [m]
     real(wp), intent(in) :: rocker                   !< length [m]
     real(wp), intent(in) :: guess(4)                 !< of the coordinates [rad]
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
     real(wp), parameter :: origin(3) = 0.0_wp
 

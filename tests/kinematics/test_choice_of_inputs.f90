@@ -90,7 +90,7 @@ contains
 
   subroutine check(name, model, equations, rank, dependent)
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     real(wp), intent(in) :: equations(:, :)         !< (6 loops,M) that the rates satisfy
     integer, intent(in) :: rank                     !< of the equations
     logical, intent(in) :: dependent(:)             !< (M) coordinates that follow from the others

@@ -30,7 +30,7 @@ contains
 
   !> Rates and accelerations against high-order differences of the positions around t = 0.
   subroutine check_derivatives(model, name)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
     real(wp), parameter :: h = 2.0_wp**(-8)
     type(plan_type) :: plan

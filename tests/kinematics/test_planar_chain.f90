@@ -43,7 +43,7 @@ contains
     real(wp), intent(in) :: crank                    !< lengths [m]
     real(wp), intent(in) :: ground                   !< lengths [m]
     real(wp), intent(in) :: angle                    !< of the crank [rad]
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model           !< the model
     real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 4, 3, 1, 4], [2, 4])
     real(wp) :: way(2), guide
@@ -60,7 +60,7 @@ contains
 
   !> Rates and accelerations of coordinates and frames, at random ones of the independent coordinates.
   subroutine check_same_motion(model, chains, name)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     integer, intent(in) :: chains                   !< blocks that are such chains
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
     type(plan_type) :: plan

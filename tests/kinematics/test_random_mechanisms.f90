@@ -69,7 +69,7 @@ contains
     integer, intent(in) :: n_links                  !< links, the frame included
     integer, intent(in) :: links(:, :)              !< (2,M) reference and moving link of each pair
     type(axis_type), intent(in) :: axes(:)          !< of each pair in the home position
-    type(model_type), intent(in) :: model   !< mechanism that is given in other units
+    type(model_type), intent(in) :: model           !< mechanism that is given in other units
     real(wp), parameter :: units(2) = [1.0e-4_wp, 1.0e3_wp]
     type(axis_type) :: scaled(size(axes))
     type(model_type) :: other
@@ -106,7 +106,7 @@ contains
 
   subroutine check(name, model, equations, dependent)
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     real(wp), intent(in) :: equations(:, :)         !< (6 loops,M) that the rates satisfy
     logical, intent(in) :: dependent(:)             !< (M) coordinates that follow from the others
     type(plan_type) :: plan

@@ -60,7 +60,7 @@ contains
   !> Swing all independent coordinates.
   subroutine compare(name, model)
     character(len=*), intent(in) :: name               !< of the mechanism, for the report of a failure
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     type(plan_type) :: plan
     type(state_type) :: start
     type(driven_motion_type) :: few, many
@@ -101,7 +101,7 @@ contains
   end subroutine compare
 
   subroutine follow(model, plan, start, outputs, driven, err)
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     type(plan_type), intent(in) :: plan                 !< its plan
     type(state_type), intent(in) :: start               !< assembled position
     integer, intent(in) :: outputs                      !< how many

@@ -34,7 +34,7 @@ program test_range
 contains
 
   subroutine range_of(model, coordinate, range)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     integer, intent(in) :: coordinate               !< coordinate that is moved
     type(motion_range_type), intent(out) :: range   !< range that it has
     type(plan_type) :: plan

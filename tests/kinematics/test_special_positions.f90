@@ -81,7 +81,7 @@ contains
 
   !> Run to the dead point with few and with many outputs.
   subroutine find_end(model, limit, direction, name)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     real(wp), intent(in) :: limit                   !< the crank at the dead point [rad]
     integer, intent(in) :: direction                !< +1 or -1: of the crank
     character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
@@ -113,7 +113,7 @@ contains
   !> Turn the crank by one and a half turns and compare coordinates 2 to 4, their rates and accelerations
   !> with multiples of the crank's: coupler against crank, rocker against coupler, rocker.
   subroutine check_proportional(model, n, start, expected, factors, name)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: n                           !< outputs
     real(wp), intent(in) :: start                      !< of the crank
     real(wp), intent(in) :: expected(2:4)              !< at the crank's angle zero

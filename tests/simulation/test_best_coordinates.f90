@@ -164,7 +164,7 @@ contains
 
   !> Move the first independent coordinate until the chains close no longer, with steps that are halved there; the others stand.
   subroutine check_towards_limit(model, rows, why)
-    type(model_type), intent(in) :: model       !< the model
+    type(model_type), intent(in) :: model           !< the model
     integer, intent(in) :: rows(:)                  !< the rows of a screw that count
     character(len=*), intent(in) :: why             !< the place, printed where a check fails
     type(plan_type) :: plan

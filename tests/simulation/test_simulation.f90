@@ -99,7 +99,7 @@ contains
   subroutine read(text, is_driven, model)
     character(len=*), intent(in) :: text             !< text of a data file
     logical, intent(in) :: is_driven                 !< all independent coordinates are driven
-    type(model_type), intent(out) :: model   !< mechanism that it describes
+    type(model_type), intent(out) :: model           !< mechanism that it describes
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 

@@ -74,7 +74,7 @@ contains
   end subroutine carry_out
 
   subroutine follow(model, rows, err)
-    type(model_type), intent(in), target :: model           !< the model
+    type(model_type), intent(in), target :: model       !< the model
     real(wp), allocatable, intent(out) :: rows(:, :)    !< of the results, one in each column
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type) :: plan
@@ -88,7 +88,7 @@ contains
   end subroutine follow
 
   subroutine integrate(model, rows, err)
-    type(model_type), intent(in), target :: model           !< the model
+    type(model_type), intent(in), target :: model       !< the model
     real(wp), allocatable, intent(out) :: rows(:, :)    !< of the results, one in each column
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type) :: plan
@@ -103,7 +103,7 @@ contains
 
   subroutine fill(simulation, model, rows, err)
     class(simulation_type), intent(inout), target :: simulation   !< about to start
-    type(model_type), intent(in), target :: model                     !< the model
+    type(model_type), intent(in), target :: model                 !< the model
     real(wp), allocatable, intent(out) :: rows(:, :)              !< of the results, one in each column
     type(error_type), allocatable, intent(out) :: err             !< allocated if it failed
     type(row_source_type) :: source

@@ -31,7 +31,7 @@ contains
     type(draft_type), intent(in) :: draft               !< groups and names with their values as text
     character(len=*), intent(in) :: path                !< path of the data file; tables of drives are sought beside it
     logical, intent(in) :: needs_drives                 !< the program needs a drive for each independent coordinate
-    type(model_type), intent(out) :: model          !< the model
+    type(model_type), intent(out) :: model              !< the model
     type(draft_text_type), intent(out) :: written       !< text of the draft, with the place of each entry
     type(diagnostics_type), intent(out) :: diagnostics  !< gets what is wrong
     type(document_type) :: document

@@ -45,7 +45,7 @@ contains
   !> ending of a file's name are errors.
   subroutine read_picture_requests(options, model, program_name, requests, err)
     type(command_line_type), intent(in) :: options         !< the command line
-    type(model_type), intent(in) :: model              !< the model
+    type(model_type), intent(in) :: model                  !< the model
     character(len=*), intent(in) :: program_name           !< mech9k or mech9d
     type(picture_requests_type), intent(out) :: requests   !< the pictures that are requested
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -84,7 +84,7 @@ contains
   !> Make the sketch of an assembled position, without a run. Errors are exit_file.
   subroutine save_start(self, model, plan, start, err)
     class(picture_requests_type), intent(in) :: self    !< the picture requests
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(state_type), intent(in) :: start               !< assembled position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -101,7 +101,7 @@ contains
   !> Make the pictures of a film; a film without frames gives none. Errors are exit_file.
   subroutine save_pictures(self, model, film, err)
     class(picture_requests_type), intent(in) :: self    !< the picture requests
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     type(film_type), intent(in) :: film                 !< poses and columns at some outputs
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(skeleton_type) :: skeleton
@@ -134,7 +134,7 @@ contains
   !> Make one picture. The mechanism on a page can be turned unless it is planar; its projection leaves room for that.
   subroutine save_one(self, model, film, skeleton, view, planar, path, moving, err)
     class(picture_requests_type), intent(in) :: self    !< the picture requests
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     type(film_type), intent(in) :: film                 !< poses and columns at some outputs
     type(skeleton_type), intent(in) :: skeleton         !< places of the pairs on their axes
     type(view_type), intent(in) :: view                 !< direction of the view

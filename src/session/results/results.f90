@@ -42,7 +42,7 @@ contains
   subroutine open_results(self, options, model, data_text, program_name, columns, err)
     class(results_type), intent(out) :: self            !< the results
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     character(len=*), intent(in) :: data_text           !< of the data file
     character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< of the rows to come
@@ -75,7 +75,7 @@ contains
   subroutine open_plots(self, options, model, columns, plots, err)
     class(results_type), intent(in) :: self                      !< the results
     type(command_line_type), intent(in) :: options               !< the command line
-    type(model_type), intent(in) :: model                    !< the model
+    type(model_type), intent(in) :: model                        !< the model
     type(columns_type), intent(in) :: columns                    !< names and units of the columns
     type(sink_slot_type), allocatable, intent(out) :: plots(:)   !< one sink for each plot
     type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
@@ -112,7 +112,7 @@ contains
 
   subroutine open_table(self, model, program_name, columns, err)
     class(results_type), intent(inout) :: self          !< the results
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< names and units of the columns
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -130,7 +130,7 @@ contains
   subroutine open_hdf5(self, options, model, data_text, program_name, columns, err)
     class(results_type), intent(inout) :: self          !< the results
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(in) :: model               !< the model
     character(len=*), intent(in) :: data_text           !< text of the data file, kept in the file
     character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< names and units of the columns

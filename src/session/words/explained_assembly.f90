@@ -15,7 +15,7 @@ contains
 
   !> Plan and closed position at the start of a driven motion.
   subroutine assemble_driven_start(model, plan, state, err)
-    type(model_type), intent(in) :: model          !< the model, with a drive for each independent coordinate
+    type(model_type), intent(in) :: model              !< the model, with a drive for each independent coordinate
     type(plan_type), intent(out) :: plan               !< the plan of the mechanism
     type(state_type), intent(out) :: state             !< the closed position
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -26,7 +26,7 @@ contains
 
   !> Plan and closed position at the start of a free motion, with the rates of the independent coordinates.
   subroutine assemble_free_start(model, plan, state, err)
-    type(model_type), intent(in) :: model          !< the model
+    type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(out) :: plan               !< the plan of the mechanism
     type(state_type), intent(out) :: state             !< the closed position and these rates
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed

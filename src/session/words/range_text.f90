@@ -23,7 +23,7 @@ contains
   !> Write a line for each independent coordinate: start, lower and upper end, unit, and the cause of its limits.
   subroutine print_ranges(unit, model, plan, start)
     integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(model_type), intent(in) :: model      !< the model
+    type(model_type), intent(in) :: model          !< the model
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: start          !< the closed position at the start
     type(motion_range_type) :: range

@@ -43,7 +43,7 @@ contains
   subroutine begin_report(json, program_name, model, diagnostics, table_path)
     type(json_type), intent(inout) :: json             !< the report, which is being composed
     character(len=*), intent(in) :: program_name       !< mech9k or mech9d
-    type(model_type), intent(in) :: model          !< the model
+    type(model_type), intent(in) :: model              !< the model
     type(diagnostics_type), intent(in) :: diagnostics  !< all errors, which determine the exit code
     character(len=*), intent(in) :: table_path         !< path of the table; '-' is standard output; empty: no table
 
@@ -59,7 +59,7 @@ contains
   subroutine save_short_report(path, program_name, model, exit_code, choice, diagnostics, err)
     character(len=*), intent(in) :: path               !< path of the report
     character(len=*), intent(in) :: program_name       !< mech9k or mech9d
-    type(model_type), intent(in) :: model          !< the model, as far as it was read
+    type(model_type), intent(in) :: model              !< the model, as far as it was read
     integer, intent(in) :: exit_code                   !< exit code of the program
     type(diagnostics_type), intent(in) :: choice       !< errors of the choice of the independent coordinates
     type(diagnostics_type), intent(in) :: diagnostics  !< errors of the data file
@@ -80,7 +80,7 @@ contains
   subroutine add_outcome(json, program_name, model, exit_code)
     type(json_type), intent(inout) :: json         !< the report, which is being composed
     character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(model_type), intent(in) :: model      !< the model
+    type(model_type), intent(in) :: model          !< the model
     integer, intent(in) :: exit_code               !< exit code of the program
 
     call json%add('program', program_name)
@@ -121,7 +121,7 @@ contains
   !> Add the structural vectors and the blocks.
   subroutine add_structure(json, model, plan)
     type(json_type), intent(inout) :: json         !< the report, which is being composed
-    type(model_type), intent(in) :: model      !< the model
+    type(model_type), intent(in) :: model          !< the model
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     integer :: b, i
 
