@@ -46,7 +46,7 @@ contains
       end do
       times(3, pass) = seconds() - begin
     end do
-    times = times/evaluations*1.0e6_wp
+    times(:, :passes) = times(:, :passes)/evaluations*1.0e6_wp
     ! the sum is used, so that the loops are not optimised away
     if (total > huge(total)) times = 0.0_wp
     print '(a,f12.5,2es25.16)', 'two_links', median(times(1, :passes)), two_link_accelerations(start, start)
