@@ -8,7 +8,7 @@ program bench_by_hand
   use mech9_clock, only: seconds
   use mech9_closed_andrews, only: andrews_acceleration
   use mech9_closed_structures, only: two_link_accelerations, four_bar_acceleration
-  use mech9_bench_support, only: median, argument
+  use mech9_bench_basics, only: median, argument
   implicit none
 
   !> Angle of the crank at the start of Andrews' mechanism [rad].

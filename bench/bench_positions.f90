@@ -14,7 +14,8 @@ program bench_positions
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_driven_simulation, only: assemble_driven
   use mech9_closed_four_bar, only: four_bar_position, four_bar_motion
-  use mech9_bench_support, only: read_data_file, stop_at, median, argument
+  use mech9_bench_support, only: read_data_file, stop_at
+  use mech9_bench_basics, only: median, argument
   use mech9_frame_motion, only: point_motion
   implicit none
   call run()

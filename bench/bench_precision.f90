@@ -20,7 +20,8 @@ program bench_precision
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_closed_andrews, only: closed_andrews_type, andrews_angles
-  use mech9_bench_support, only: read_data_file, stop_at, median, argument
+  use mech9_bench_support, only: read_data_file, stop_at
+  use mech9_bench_basics, only: median, argument
   implicit none
 
   !> A motion, and the file that holds its true end.

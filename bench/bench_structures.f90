@@ -15,7 +15,8 @@ program bench_structures
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_free_simulation, only: assemble_free
-  use mech9_bench_support, only: read_data_file, stop_at, time_evaluations, argument
+  use mech9_bench_support, only: read_data_file, stop_at, time_evaluations
+  use mech9_bench_basics, only: argument
   implicit none
 
   !> A data file under construction: its groups, and the numbers given so far.

@@ -1,4 +1,4 @@
-!> Procedures that the benchmarks share: reading a mechanism, times of evaluations, medians, memory, and an end that tells why.
+!> Procedures that the benchmarks share: reading a mechanism, times of evaluations, memory, and an end that tells why.
 module mech9_bench_support
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
@@ -12,9 +12,10 @@ module mech9_bench_support
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
   use mech9_reader, only: read_model
+  use mech9_bench_basics, only: median
   implicit none
   private
-  public :: read_data_file, stop_at, time_evaluations, median, passes, argument, peak_memory
+  public :: read_data_file, stop_at, time_evaluations, passes, peak_memory
 
   !> Repetitions for a median.
   integer, parameter :: passes = 5
@@ -79,30 +80,6 @@ contains
     time = 1.0e6_wp*median(each(:merge(1, passes, exactly > 0)))
     memory = data_memory()
   end subroutine time_evaluations
-
-  !> The middle one of some numbers.
-  pure real(wp) function median(numbers)
-    real(wp), intent(in) :: numbers(:)   !< in any order; 0 is returned where there are none
-    integer :: i, below
-
-    do i = 1, size(numbers)
-      median = numbers(i)
-      below = count(numbers < median)
-      if (below <= (size(numbers) - 1)/2 .and. count(numbers <= median) > (size(numbers) - 1)/2) return
-    end do
-    median = 0.0_wp
-  end function median
-
-  !> Word i of the command line.
-  function argument(i) result(word)
-    integer, intent(in) :: i   !< from 1 on
-    character(len=:), allocatable :: word
-    integer :: length
-
-    call get_command_argument(i, length=length)
-    allocate (character(len=length) :: word)
-    if (length > 0) call get_command_argument(i, word)
-  end function argument
 
   !> The most memory that this process has had [MB]; 0 where the system does not tell.
   real(wp) function peak_memory()
