@@ -1,8 +1,8 @@
 !> Accelerations of mechanisms that are derived by hand, the limits of a general program.
 !>
 !> usage: bench_by_hand full|quick
-!> Prints a row for each mechanism: its name, microseconds an evaluation, and the accelerations of its independent coordinates at the
-!> start of its data file.
+!> Prints a row for each mechanism: its name, microseconds an evaluation, and the accelerations of its independent coordinates at
+!> the start of its data file.
 program bench_by_hand
   use mech9_kinds, only: wp
   use mech9_clock, only: seconds

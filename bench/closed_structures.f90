@@ -1,4 +1,5 @@
-!> Two structures of bench_structures, derived by hand: the accelerations of an open chain of two links and of a four-bar in the plane.
+!> Two structures of bench_structures, derived by hand: the accelerations of an open chain of two links and of a four-bar in the
+!> plane.
 module mech9_closed_structures
   use mech9_kinds, only: wp
   use mech9_two_bars, only: point_type, bar_type, turning_point, meet
